@@ -1,0 +1,3 @@
+//! Knots to spectra to correlations to scores.
+
+pub mod se3;

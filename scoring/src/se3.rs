@@ -1,0 +1,108 @@
+//! Poses: rigid motions of the ligand.
+//!
+//! A pose is a unit quaternion q and a translation t in Å: a ligand atom at x in its own file goes to R(q) x + t in the
+//! receptor's file frame. Quaternions are Hamilton's, active and right-handed, written (w, x, y, z) with w >= 0.
+
+use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
+
+/// A rigid motion x -> R(q) x + t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The rotation R(q).
+    pub rotation: UnitQuaternion<f64>,
+    /// The translation t, in Å.
+    pub translation: Vector3<f64>,
+}
+
+impl Pose {
+    /// The motion that moves nothing.
+    pub fn identity() -> Self {
+        Self {
+            rotation: UnitQuaternion::identity(),
+            translation: Vector3::zeros(),
+        }
+    }
+
+    /// A pose from quaternion (w, x, y, z), normalised here, and translation in Å.
+    pub fn from_parts(quaternion: [f64; 4], translation: [f64; 3]) -> Self {
+        let [w, x, y, z] = quaternion;
+        Self {
+            rotation: UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)),
+            translation: Vector3::from(translation),
+        }
+    }
+
+    /// Quaternion (w, x, y, z) of the two that stand for this rotation the one with w >= 0 (first nonzero component
+    /// positive where w = 0).
+    pub fn quaternion(&self) -> [f64; 4] {
+        let q = self.rotation.quaternion();
+        let parts = [q.w, q.i, q.j, q.k];
+        let first = parts.into_iter().find(|&part| part != 0.0).unwrap_or(1.0);
+        if first < 0.0 {
+            parts.map(|part| 0.0 - part)
+        } else {
+            parts.map(|part| part + 0.0)
+        }
+    }
+
+    /// The image of a point, in Å.
+    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
+        (self.rotation * Point3::from(point) + self.translation)
+            .coords
+            .into()
+    }
+
+    /// This motion after `first`: x -> self(first(x)).
+    pub fn after(&self, first: &Pose) -> Pose {
+        Pose {
+            rotation: self.rotation * first.rotation,
+            translation: self.rotation * first.translation + self.translation,
+        }
+    }
+
+    /// The motion that undoes this one.
+    pub fn inverse(&self) -> Pose {
+        let rotation = self.rotation.inverse();
+        Pose {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
+    }
+
+    /// Angle in radians, 0 to pi, of the rotation from `other` to this one.
+    pub fn angle_to(&self, other: &Pose) -> f64 {
+        self.rotation.angle_to(&other.rotation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_and_composition_undo_each_other() {
+        let pose = Pose::from_parts([0.1, -0.5, 0.7, 0.2], [3.0, -4.0, 1e3]);
+        let point = [1.0, 2.0, 3.0];
+        let back = pose.inverse().after(&pose).apply(point);
+        for axis in 0..3 {
+            assert!((back[axis] - point[axis]).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn quarter_turn_about_z_is_right_handed() {
+        let half = std::f64::consts::FRAC_PI_4;
+        let pose = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
+        let image = pose.apply([1.0, 0.0, 0.0]);
+        assert!(
+            (image[1] - 1.0).abs() < 1e-15,
+            "x must go to y, went to {image:?}"
+        );
+    }
+
+    #[test]
+    fn quaternion_has_w_not_negative() {
+        let pose = Pose::from_parts([-0.5, 0.5, -0.5, 0.5], [0.0; 3]);
+        assert_eq!(pose.quaternion(), [0.5, -0.5, 0.5, -0.5]);
+    }
+}

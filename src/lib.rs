@@ -1,0 +1,3 @@
+//! knotdock: the pipeline from two structures to a ranked list of poses.
+
+pub mod search;

@@ -1,0 +1,3 @@
+//! Search: rotations, peaks, refinement, clusters and ranks.
+
+pub mod outcome;

@@ -1,0 +1,192 @@
+//! Knots: a solid as a countable set of balls, held as parallel arrays.
+
+use num_complex::Complex64;
+
+/// A set of balls with complex weights: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
+///
+/// The three arrays have the same length. Shape alone needs weights of one; the double-skin affinity function
+/// (B&I eq. 51) needs complex ones, which is why they are complex here.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Knots {
+    /// Ball centres x_i, in Å (or the mesh's unit).
+    pub centers: Vec<[f64; 3]>,
+    /// Ball radii r_i > 0, in the unit of `centers`.
+    pub radii: Vec<f64>,
+    /// Dimensionless weights c_i.
+    pub weights: Vec<Complex64>,
+}
+
+/// Why a set of knots was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum KnotsError {
+    /// The set has no ball at all.
+    #[error("there are no knots; at least one ball is needed")]
+    Empty,
+    /// The parallel arrays differ in length.
+    #[error(
+        "{centers} centres, {radii} radii and {weights} weights: the three must be equally many"
+    )]
+    Lengths {
+        /// Number of centres given.
+        centers: usize,
+        /// Number of radii given.
+        radii: usize,
+        /// Number of weights given.
+        weights: usize,
+    },
+    /// A radius is zero, negative, NaN or infinite.
+    #[error("knot {index} has radius {radius}; radii must be finite and above zero")]
+    Radius {
+        /// Index of the offending knot.
+        index: usize,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("knot {index} has centre {center:?}; coordinates must be finite")]
+    Center {
+        /// Index of the offending knot.
+        index: usize,
+        /// Its centre.
+        center: [f64; 3],
+    },
+    /// A weight is NaN or infinite.
+    #[error("knot {index} has a weight that is not finite")]
+    Weight {
+        /// Index of the offending knot.
+        index: usize,
+    },
+}
+
+impl Knots {
+    /// Knots of unit weight.
+    ///
+    /// # Errors
+    /// [`KnotsError`] when the set is empty, the lengths differ, or a number is not usable.
+    pub fn new(centers: Vec<[f64; 3]>, radii: Vec<f64>) -> Result<Self, KnotsError> {
+        let weights = vec![Complex64::new(1.0, 0.0); centers.len()];
+        Self::with_weights(centers, radii, weights)
+    }
+
+    /// Knots with the given weights.
+    ///
+    /// # Errors
+    /// As [`Knots::new`].
+    pub fn with_weights(
+        centers: Vec<[f64; 3]>,
+        radii: Vec<f64>,
+        weights: Vec<Complex64>,
+    ) -> Result<Self, KnotsError> {
+        let knots = Self {
+            centers,
+            radii,
+            weights,
+        };
+        knots.check()?;
+        Ok(knots)
+    }
+
+    /// Checks what every user of knots relies on: equal lengths, at least one ball, finite numbers, radii above zero.
+    ///
+    /// # Errors
+    /// The first fault found, as a [`KnotsError`].
+    pub fn check(&self) -> Result<(), KnotsError> {
+        if self.centers.len() != self.radii.len() || self.centers.len() != self.weights.len() {
+            return Err(KnotsError::Lengths {
+                centers: self.centers.len(),
+                radii: self.radii.len(),
+                weights: self.weights.len(),
+            });
+        }
+        if self.centers.is_empty() {
+            return Err(KnotsError::Empty);
+        }
+        for (index, ((&center, &radius), weight)) in self
+            .centers
+            .iter()
+            .zip(&self.radii)
+            .zip(&self.weights)
+            .enumerate()
+        {
+            if !center.iter().all(|c| c.is_finite()) {
+                return Err(KnotsError::Center { index, center });
+            }
+            if !(radius.is_finite() && radius > 0.0) {
+                return Err(KnotsError::Radius { index, radius });
+            }
+            if !(weight.re.is_finite() && weight.im.is_finite()) {
+                return Err(KnotsError::Weight { index });
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of knots.
+    pub fn len(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// Whether there are no knots.
+    pub fn is_empty(&self) -> bool {
+        self.centers.is_empty()
+    }
+
+    /// Smallest and largest centre coordinate per axis, in Å.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for center in &self.centers {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(center[axis]);
+                high[axis] = high[axis].max(center[axis]);
+            }
+        }
+        (low, high)
+    }
+
+    /// The distinct radii in rising order, and for each knot the index of its own among them.
+    pub fn radius_classes(&self) -> (Vec<f64>, Vec<usize>) {
+        let mut distinct = self.radii.clone();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
+        let class = self
+            .radii
+            .iter()
+            .map(|radius| distinct.partition_point(|other| other < radius))
+            .collect();
+        (distinct, class)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_what_cannot_be_scored() {
+        let one = vec![[0.0; 3]];
+        assert_eq!(Knots::new(vec![], vec![]), Err(KnotsError::Empty));
+        for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                Knots::new(one.clone(), vec![radius]),
+                Err(KnotsError::Radius { index: 0, .. })
+            ));
+        }
+        assert!(matches!(
+            Knots::new(vec![[0.0, f64::NAN, 0.0]], vec![1.0]),
+            Err(KnotsError::Center { index: 0, .. })
+        ));
+        assert!(matches!(
+            Knots::new(one, vec![1.0, 2.0]),
+            Err(KnotsError::Lengths { .. })
+        ));
+    }
+
+    #[test]
+    fn radius_classes_are_sorted_and_point_back() {
+        let knots = Knots::new(vec![[0.0; 3]; 4], vec![1.9, 1.5, 1.9, 1.7]).unwrap();
+        let (radii, class) = knots.radius_classes();
+        assert_eq!(radii, [1.5, 1.7, 1.9]);
+        assert_eq!(class, [2, 0, 2, 1]);
+    }
+}

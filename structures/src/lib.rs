@@ -1,0 +1,16 @@
+//! Files to solids to knots.
+//!
+//! # Conventions
+//!
+//! - Lengths are in Å for molecules and in the file's own unit for meshes.
+//! - A **knot** is a ball: a centre, a radius and a weight (Behandish & Ilieş, CAD 70, 2016, section 2.2).
+//! - Chains carry the author's names (`auth_asym_id` in mmCIF), residues the author's numbers and insertion codes.
+//!
+//! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes
+//! PDB and mmCIF files; without it only [`Knots`] remains, which is all that the scoring crate needs.
+
+pub mod knots;
+#[cfg(feature = "molecule")]
+pub mod molecule;
+
+pub use knots::Knots;
