@@ -1,2 +1,3 @@
 //! tmp
+mod console; mod failure; mod memory;
 pub fn main() -> std::process::ExitCode { std::process::ExitCode::SUCCESS }

@@ -9,5 +9,6 @@
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
+pub mod manifest;
 pub mod poses;
 pub mod staging;
