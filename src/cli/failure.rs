@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use knotdock::output::manifest::RecordedRunError;
 use knotdock::output::poses::PoseTableError;
 use knotdock::output::staging::StagingError;
 
@@ -116,5 +117,14 @@ impl From<PoseTableError> for Failure {
             .at(error.path())
             .on_line(error.line())
             .remedy(error.remedy())
+    }
+}
+
+impl From<RecordedRunError> for Failure {
+    fn from(error: RecordedRunError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy("give a run that `knotdock dock` of this version wrote")
     }
 }

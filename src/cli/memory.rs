@@ -27,7 +27,11 @@ pub fn parse_size(text: &str) -> Result<u64, String> {
         "mi" | "mib" => 1024.0 * 1024.0,
         "gi" | "gib" => 1024.0 * 1024.0 * 1024.0,
         "ti" | "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
-        _ => return Err(format!("`{unit}` is no unit; write bytes, K, M, G, KiB, MiB or GiB")),
+        _ => {
+            return Err(format!(
+                "`{unit}` is no unit; write bytes, K, M, G, KiB, MiB or GiB"
+            ));
+        }
     };
     let size: f64 = digits
         .parse()
@@ -39,19 +43,15 @@ pub fn parse_size(text: &str) -> Result<u64, String> {
     Ok(bytes as u64)
 }
 
-/// A size as a person reads it, in powers of 1000.
-pub fn show_size(bytes: u64) -> String {
-    let bytes = bytes as f64;
-    if bytes >= 1e9 {
-        format!("{:.1} GB", bytes / 1e9)
-    } else {
-        format!("{:.0} MB", bytes / 1e6)
-    }
-}
-
 /// What a run may take when the user names no size: 80% of what is free, or `None` where the system does not say.
 pub fn default_limit() -> Option<u64> {
     free_memory(Path::new("/")).map(|free| (free as f64 * DEFAULT_SHARE) as u64)
+}
+
+/// The most memory that this process has held so far, in bytes. `None` off Linux.
+pub fn peak() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    Some(keyed(&status, "VmHWM:")?.saturating_mul(1024))
 }
 
 /// Free memory in bytes: what the kernel calls available, or what the process's control groups leave of it if that is
@@ -109,7 +109,10 @@ fn control_groups(root: &Path) -> Vec<ControlGroup> {
             "sys/fs/cgroup/memory"
         });
         let own = mount.join(path.trim_start_matches('/'));
-        for folder in own.ancestors().take_while(|folder| folder.starts_with(&mount)) {
+        for folder in own
+            .ancestors()
+            .take_while(|folder| folder.starts_with(&mount))
+        {
             groups.push(if version_2 {
                 ControlGroup {
                     folder: folder.to_owned(),
@@ -153,7 +156,16 @@ mod tests {
         ] {
             assert_eq!(parse_size(text), Ok(bytes), "{text}");
         }
-        for text in ["", "G", "-1G", "1.2.3", "4 parsecs", "0", "1e9", "99999999T"] {
+        for text in [
+            "",
+            "G",
+            "-1G",
+            "1.2.3",
+            "4 parsecs",
+            "0",
+            "1e9",
+            "99999999T",
+        ] {
             assert!(parse_size(text).is_err(), "{text}");
         }
     }
@@ -169,7 +181,11 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let root = root.path();
         assert_eq!(free_memory(root), None);
-        file(root, "proc/meminfo", "MemTotal: 9000 kB\nMemAvailable: 8000 kB\n");
+        file(
+            root,
+            "proc/meminfo",
+            "MemTotal: 9000 kB\nMemAvailable: 8000 kB\n",
+        );
         assert_eq!(free_memory(root), Some(8_000 * 1024));
 
         // Version 2: the group itself is unlimited, the one above is not.
@@ -178,14 +194,22 @@ mod tests {
         file(root, "sys/fs/cgroup/slice/job/memory.current", "1000\n");
         file(root, "sys/fs/cgroup/slice/memory.max", "5000\n");
         file(root, "sys/fs/cgroup/slice/memory.current", "4000\n");
-        file(root, "sys/fs/cgroup/slice/memory.stat", "anon 1500\ninactive_file 2500\n");
+        file(
+            root,
+            "sys/fs/cgroup/slice/memory.stat",
+            "anon 1500\ninactive_file 2500\n",
+        );
         assert_eq!(free_memory(root), Some(5000 - 4000 + 2500));
 
         // Version 1 inside a container: the path is the host's, the mount shows the group as its top.
         file(root, "proc/self/cgroup", "7:cpu:/\n4:memory:/docker/abc\n");
         file(root, "sys/fs/cgroup/memory/memory.limit_in_bytes", "3000\n");
         file(root, "sys/fs/cgroup/memory/memory.usage_in_bytes", "500\n");
-        file(root, "sys/fs/cgroup/memory/memory.stat", "total_inactive_file 100\n");
+        file(
+            root,
+            "sys/fs/cgroup/memory/memory.stat",
+            "total_inactive_file 100\n",
+        );
         assert_eq!(free_memory(root), Some(3000 - 500 + 100));
     }
 }

@@ -7,13 +7,16 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 
+use super::complexes::ChainMap;
 use super::staging::{StagingError, write_whole};
-use crate::search::{DockOptions, DockOutcome, DockPlan, StageTime};
+use crate::evaluate::MatchReport;
 use crate::search::outcome::MeasuredError;
+use crate::search::{DockOptions, DockOutcome, DockPlan, StageTime};
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 1;
@@ -24,6 +27,14 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The git commit that the program was built from, or `unknown`.
 pub const COMMIT: &str = env!("KNOTDOCK_COMMIT");
 
+/// Version and commit as `--version` shows them.
+pub const VERSION_WITH_COMMIT: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (",
+    env!("KNOTDOCK_COMMIT"),
+    ")"
+);
+
 /// Options that change how a run is carried out and never what comes of it; they are recorded under `machine`.
 const MACHINE_OPTIONS: [&str; 2] = ["threads", "memory"];
 
@@ -32,8 +43,8 @@ const MACHINE_OPTIONS: [&str; 2] = ["threads", "memory"];
 pub struct InputRecord {
     /// Absolute path.
     pub path: PathBuf,
-    /// Names of the chains that were picked; empty for all.
-    pub chains: Vec<String>,
+    /// Names of the chains that were picked; `null` for all.
+    pub chains: Option<Vec<String>>,
     /// SHA-256 of the file as it lies on the disk, in hexadecimal.
     pub sha256: String,
 }
@@ -75,25 +86,52 @@ impl InputRecord {
     ///
     /// # Errors
     /// [`InputRecordError::Read`].
-    pub fn new(path: &Path, chains: Vec<String>) -> Result<Self, InputRecordError> {
+    pub fn new(input: &InputSpec) -> Result<Self, InputRecordError> {
         Ok(Self {
-            path: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
-            chains,
-            sha256: sha256(path)?,
+            path: std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone()),
+            chains: input.chains.clone(),
+            sha256: sha256(&input.path)?,
         })
     }
 
-    /// Checks that the file is still the one recorded.
+    /// What to read.
+    pub fn spec(&self) -> InputSpec {
+        InputSpec {
+            path: self.path.clone(),
+            chains: self.chains.clone(),
+        }
+    }
+
+    /// The same record with the path at which the file is found: where it was, or under its name in one of `folders`,
+    /// for runs that were moved or copied together with their inputs.
     ///
     /// # Errors
-    /// [`InputRecordError`] when it is gone or has changed.
-    pub fn verify(&self) -> Result<(), InputRecordError> {
-        let found = sha256(&self.path)?;
+    /// [`InputRecordError`] of the recorded path when no file with the recorded checksum is there or in the folders.
+    pub fn locate(&self, folders: &[&Path]) -> Result<Self, InputRecordError> {
+        let first = match self.verify(&self.path) {
+            Ok(()) => return Ok(self.clone()),
+            Err(error) => error,
+        };
+        let name = self.path.file_name().unwrap_or_default();
+        folders
+            .iter()
+            .map(|folder| folder.join(name))
+            .find(|path| self.verify(path).is_ok())
+            .map(|path| Self {
+                path,
+                ..self.clone()
+            })
+            .ok_or(first)
+    }
+
+    /// Checks that a file is the one recorded.
+    fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
+        let found = sha256(path)?;
         if found == self.sha256 {
             Ok(())
         } else {
             Err(InputRecordError::Changed {
-                path: self.path.clone(),
+                path: path.to_owned(),
                 expected: self.sha256.clone(),
                 found,
             })
@@ -126,12 +164,18 @@ pub struct InputEntry {
 }
 
 /// The native complex that the poses were measured against.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct NativeRecord {
-    /// File and chains of its receptor.
-    pub receptor: InputRecord,
-    /// File and chains of its ligand.
-    pub ligand: InputRecord,
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NativeRecord {
+    /// One file with both partners.
+    Complex(InputRecord),
+    /// A file for each partner.
+    Partners {
+        /// File and chains of the receptor.
+        receptor: InputRecord,
+        /// File and chains of the ligand.
+        ligand: InputRecord,
+    },
 }
 
 /// The inputs of a run.
@@ -170,7 +214,9 @@ impl RunOptions {
 
     /// Options from a record. Those of the machine take their defaults.
     fn from_record(record: &Map<String, Value>) -> Result<Self, String> {
-        let mut dock = object(serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?);
+        let mut dock = object(
+            serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?,
+        );
         let mut no_cluster = false;
         let mut write_top = 0;
         for (name, value) in record {
@@ -259,9 +305,9 @@ pub struct Manifest<'a> {
     effects: Value,
     error: MeasuredError,
     results: Results,
-    chains: Value,
+    chains: &'a ChainMap,
     #[serde(rename = "match")]
-    matching: Value,
+    matching: Option<&'a MatchReport>,
     timing: Timing,
     machine: Machine,
 }
@@ -278,10 +324,10 @@ pub struct ManifestParts<'a> {
     pub outcome: &'a DockOutcome,
     /// Counts of it.
     pub results: Results,
-    /// Chain names in the complexes; `null` when none was written.
-    pub chains: Value,
-    /// How the native was matched; `null` without one.
-    pub matching: Value,
+    /// Chain names in the complexes.
+    pub chains: &'a ChainMap,
+    /// How the native was matched, if there is one.
+    pub matching: Option<&'a MatchReport>,
     /// What it cost.
     pub timing: Timing,
     /// Where it ran.
@@ -501,7 +547,11 @@ mod tests {
             .record()
             .unwrap();
         record.insert("charges".to_owned(), true.into());
-        assert!(RunOptions::from_record(&record).unwrap_err().contains("charges"));
+        assert!(
+            RunOptions::from_record(&record)
+                .unwrap_err()
+                .contains("charges")
+        );
     }
 
     #[test]
@@ -509,16 +559,27 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("input.pdb");
         fs::write(&path, "abc").unwrap();
-        let record = InputRecord::new(&path, vec![]).unwrap();
+        let record = InputRecord::new(&InputSpec::whole(&path)).unwrap();
         // FIPS 180-2, appendix B.1
         assert_eq!(
             record.sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
         );
-        record.verify().unwrap();
+        assert_eq!(record.locate(&[]).unwrap(), record);
+        let moved = root.path().join("moved");
+        fs::create_dir(&moved).unwrap();
+        fs::rename(&path, moved.join("input.pdb")).unwrap();
+        assert!(matches!(
+            record.locate(&[root.path()]),
+            Err(InputRecordError::Read { .. })
+        ));
+        assert_eq!(
+            record.locate(&[root.path(), &moved]).unwrap().path,
+            moved.join("input.pdb")
+        );
         fs::write(&path, "abd").unwrap();
         assert!(matches!(
-            record.verify(),
+            record.locate(&[root.path()]),
             Err(InputRecordError::Changed { .. })
         ));
     }

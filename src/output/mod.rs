@@ -9,6 +9,9 @@
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
+pub mod complexes;
 pub mod manifest;
 pub mod poses;
+pub mod quality;
+pub mod report;
 pub mod staging;

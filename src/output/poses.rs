@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
+use serde_json::Value;
 
 use super::staging::{StagingError, write_whole};
 use crate::search::outcome::RankedPose;
@@ -249,6 +250,23 @@ impl PoseTable {
         &self.rows
     }
 
+    /// Rows as JSON objects with the columns' names: numbers, truth values and text, `null` for empty fields. Indices
+    /// past the end are skipped.
+    pub fn objects(&self, indices: impl IntoIterator<Item = usize>) -> Vec<Value> {
+        let records = indices
+            .into_iter()
+            .filter_map(|index| self.records.get(index));
+        records
+            .map(|record| {
+                let fields = self.header.iter().zip(record);
+                fields
+                    .map(|(name, field)| (name.to_owned(), value(field)))
+                    .collect::<serde_json::Map<_, _>>()
+                    .into()
+            })
+            .collect()
+    }
+
     /// Puts a column at the end, or in the place of the one that has its name.
     ///
     /// A row for which `column` has no field gets an empty one.
@@ -291,6 +309,18 @@ impl PoseTable {
             writer.write_record(record)?;
         }
         writer.flush()
+    }
+}
+
+/// A field as JSON.
+fn value(field: &str) -> Value {
+    if field.is_empty() {
+        return Value::Null;
+    }
+    // Numbers and truth values are written in CSV as in JSON; what is neither is text.
+    match serde_json::from_str(field) {
+        Ok(value @ (Value::Bool(_) | Value::Number(_))) => value,
+        _ => field.into(),
     }
 }
 
@@ -346,7 +376,11 @@ impl PoseColumns {
         let quaternion = [float(w)?, float(x)?, float(y)?, float(z)?];
         let [x, y, z] = self.translation;
         let translation = [float(x)?, float(y)?, float(z)?];
-        let length = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let length = quaternion
+            .iter()
+            .map(|part| part * part)
+            .sum::<f64>()
+            .sqrt();
         // Three digits a component keep the length within 1e-3; more is no rotation that was rounded.
         if (length - 1.0).abs() > 1e-3 {
             return Err(PoseTableError::Quaternion {
@@ -401,6 +435,17 @@ mod tests {
     }
 
     #[test]
+    fn rows_as_objects_carry_types() {
+        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])]);
+        let objects = table.objects([0, 7]);
+        assert_eq!(objects.len(), 1);
+        assert_eq!(objects[0]["rank"], 1);
+        assert_eq!(objects[0]["score"], 1.0 / 3.0);
+        assert_eq!(objects[0]["refined"], true);
+        assert_eq!(objects[0]["cluster"], Value::Null);
+    }
+
+    #[test]
     fn poses_read_back_bit_for_bit() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("poses.csv");
@@ -433,7 +478,10 @@ mod tests {
         let mut table = PoseTable::read(&path).unwrap();
         let row = table.rows()[0];
         assert_eq!(row.rank, 5);
-        assert_eq!(row.pose, Pose::from_parts([1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0]));
+        assert_eq!(
+            row.pose,
+            Pose::from_parts([1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0])
+        );
         for (name, value) in [("irmsd", "0.5"), ("fnat", "1")] {
             table.set_column(&Column {
                 name: name.to_owned(),

@@ -50,7 +50,9 @@ impl StagingError {
     /// What the user can do about it.
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::ExistingRun(_) => "choose another directory with -o, or pass --force to replace the run",
+            Self::ExistingRun(_) => {
+                "choose another directory with -o, or pass --force to replace the run"
+            }
             Self::NotARun { .. } => "choose another directory with -o",
             Self::Unwritable { .. } => "choose with -o a directory that you may write to",
             Self::Write { .. } => "check the free space and the permissions there",

@@ -1,0 +1,391 @@
+//! `knotdock dock`: from two structures to a ranked list of poses and complexes.
+
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use clap::Args;
+use knotdock::output::complexes::write_complexes;
+use knotdock::output::manifest::{
+    COMMIT, Inputs, Machine, Manifest, ManifestParts, RecordedRun, Results, RunOptions, Timing,
+    VERSION, VERSION_WITH_COMMIT, cpu_features,
+};
+use knotdock::output::poses::PoseTable;
+use knotdock::output::quality;
+use knotdock::output::report::{BEST, best_clusters, firsts};
+use knotdock::output::staging::Staging;
+use knotdock::search::outcome::RankedPose;
+use knotdock::search::{self, DockOptions, DockOutcome, Effect};
+use serde_json::json;
+
+use super::arguments::{above_zero, at_least_one, effect, not_negative, rotations_of_angle};
+use super::console::Console;
+use super::failure::Failure;
+use super::input::Input;
+use super::memory;
+use super::native::{NativeArguments, NativeFiles, match_text, measure};
+
+/// Dock a ligand to a receptor and rank the poses.
+///
+/// Writes poses.csv, top/rank_0001.pdb ... and run.json into a directory of the run. The same input and options give the
+/// same bytes for any number of threads.
+#[derive(Args, Debug)]
+pub struct Dock {
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
+    receptor: Option<String>,
+    /// The molecule that moves, likewise.
+    #[arg(required_unless_present = "from", value_name = "LIGAND")]
+    ligand: Option<String>,
+    /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the run in the directory, once the new one is done.
+    #[arg(long)]
+    force: bool,
+    /// Repeat the run that wrote this run.json: its inputs, checked by SHA-256, and its options.
+    #[arg(long, value_name = "RUN.JSON", conflicts_with_all = RECORDED)]
+    from: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArguments,
+    /// List every pose; without this, one row a cluster, its best pose.
+    #[arg(long)]
+    no_cluster: bool,
+    /// Complexes to write to top/.
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    write_top: usize,
+    #[command(flatten)]
+    native: NativeArguments,
+    /// Threads [default: all hardware threads].
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    threads: Option<usize>,
+    /// Memory that the search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
+    memory: Option<u64>,
+}
+
+/// What run.json records, so that none of it goes with --from.
+const RECORDED: [&str; 21] = [
+    "receptor",
+    "ligand",
+    "rotations",
+    "angle",
+    "resolution",
+    "pass",
+    "spacing",
+    "lambda",
+    "offset",
+    "alpha",
+    "tolerance",
+    "effects",
+    "per_rotation",
+    "poses",
+    "refine",
+    "cluster_radius",
+    "no_cluster",
+    "write_top",
+    "native",
+    "native_receptor",
+    "native_ligand",
+];
+
+/// Options of the search.
+#[derive(Args, Debug)]
+struct SearchArguments {
+    /// Rotations of the ligand, near uniform over all.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations)]
+    rotations: usize,
+    /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
+    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations")]
+    angle: Option<usize>,
+    /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
+    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
+    resolution: Option<f64>,
+    /// Frequency up to which the low-pass takes nothing, in cycles per Å.
+    #[arg(long, value_name = "F", value_parser = not_negative, help_heading = TRADE_OFFS)]
+    pass: Option<f64>,
+    /// Spacing of the translation grid, in Å [default: half the resolution].
+    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
+    spacing: Option<f64>,
+    /// Penalty of overlap against the reward of contact (dimensionless).
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().lambda)]
+    lambda: f64,
+    /// Depth r0 of the skin, in Å.
+    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().offset)]
+    offset: f64,
+    /// Exponent of the bump kernel (dimensionless); large values harden the balls.
+    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha)]
+    alpha: f64,
+    /// Error of the fast path that is allowed, as a share of the best score.
+    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
+    tolerance: f64,
+    /// Effects to score.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = effect, default_value = "shape")]
+    effects: Vec<Effect>,
+    /// Peaks kept of each rotation.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation)]
+    per_rotation: usize,
+    /// Poses kept of all rotations.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().poses)]
+    poses: usize,
+    /// Best poses to refine off the grid.
+    #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine)]
+    refine: usize,
+    /// Ligand CA RMSD within which poses form a cluster, in Å.
+    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 5.0)]
+    cluster_radius: f64,
+}
+
+/// Heading of the options that trade accuracy for time.
+const TRADE_OFFS: &str = "Accuracy against time";
+
+impl SearchArguments {
+    fn options(&self) -> DockOptions {
+        DockOptions {
+            rotations: self.angle.unwrap_or(self.rotations),
+            resolution: self.resolution,
+            pass: self.pass,
+            spacing: self.spacing,
+            lambda: self.lambda,
+            offset: self.offset,
+            alpha: self.alpha,
+            tolerance: self.tolerance,
+            effects: self.effects.clone(),
+            per_rotation: self.per_rotation,
+            poses: self.poses,
+            refine: self.refine,
+            cluster_radius: Some(self.cluster_radius),
+            ..DockOptions::default()
+        }
+    }
+}
+
+/// A run as asked for, by options or by a run.json.
+struct Request {
+    receptor: Input,
+    ligand: Input,
+    native: Option<NativeFiles>,
+    options: RunOptions,
+}
+
+impl Request {
+    /// What an earlier run was asked for, from its run.json.
+    fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
+        let run = RecordedRun::read(path)?;
+        if (run.version.as_str(), run.commit.as_str()) != (VERSION, COMMIT) {
+            console.warn(format!(
+                "the run is of version {} ({}), this is {VERSION_WITH_COMMIT}: the poses may differ",
+                run.version, run.commit
+            ));
+        }
+        if run.cpu_features != cpu_features() {
+            console.warn(format!(
+                "the run was on {}, this is {}: last digits may differ",
+                run.cpu_features,
+                cpu_features()
+            ));
+        }
+        Ok(Self {
+            receptor: Input::recorded(&run.receptor, path)?,
+            ligand: Input::recorded(&run.ligand, path)?,
+            native: run
+                .native
+                .as_ref()
+                .map(|native| NativeFiles::recorded(native, path))
+                .transpose()?,
+            options: run.options,
+        })
+    }
+
+    /// The inputs for run.json.
+    fn inputs(&self) -> Result<Inputs, Failure> {
+        Ok(Inputs {
+            receptor: self.receptor.entry()?,
+            ligand: self.ligand.entry()?,
+            native: self.native.as_ref().map(NativeFiles::record),
+        })
+    }
+
+    /// The directory of a run that names none.
+    fn directory(&self) -> PathBuf {
+        PathBuf::from(format!(
+            "knotdock_{}_{}",
+            self.receptor.label(),
+            self.ligand.label()
+        ))
+    }
+
+    /// The poses that are listed, best first.
+    fn ranking(&self, outcome: &DockOutcome) -> Vec<RankedPose> {
+        if self.options.no_cluster {
+            return outcome.poses.clone();
+        }
+        firsts(&outcome.poses)
+            .into_iter()
+            .filter_map(|index| outcome.poses.get(index).cloned())
+            .collect()
+    }
+}
+
+impl Dock {
+    /// What the command line asks for.
+    fn request(&self) -> Result<Request, Failure> {
+        let (Some(receptor), Some(ligand)) = (&self.receptor, &self.ligand) else {
+            return Err(Failure::input("a receptor and a ligand are needed"));
+        };
+        Ok(Request {
+            receptor: Input::read(receptor)?,
+            ligand: Input::read(ligand)?,
+            native: self.native.read()?,
+            options: RunOptions {
+                dock: self.search.options(),
+                no_cluster: self.no_cluster,
+                write_top: self.write_top,
+            },
+        })
+    }
+
+    /// Docks.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let clock = Clock::start();
+        let mut request = match &self.from {
+            Some(path) => Request::recorded(path, console)?,
+            None => self.request()?,
+        };
+        request.options.dock.memory = self.memory.or_else(memory::default_limit);
+        if let Some(threads) = self.threads {
+            request.options.dock.threads = threads;
+        }
+        let request = request;
+        let directory = self.output.unwrap_or_else(|| request.directory());
+        console.say(format!(
+            "Receptor: {}\nLigand: {}",
+            request.receptor.molecule.report, request.ligand.molecule.report
+        ));
+        let (receptor, ligand) = (&request.receptor.molecule, &request.ligand.molecule);
+        let evaluator = match &request.native {
+            Some(native) => Some(native.evaluator(receptor, ligand)?),
+            None => None,
+        };
+        if let Some(evaluator) = &evaluator {
+            console.say(match_text(evaluator));
+        }
+        let plan = search::plan(receptor, ligand, &request.options.dock)
+            .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+        console.say(format!("\n{plan}"));
+        let staging = Staging::open(&directory, self.force)?;
+        let progress = console.progress();
+        let outcome = search::dock(&plan, receptor, ligand, &progress)
+            .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
+        drop(progress);
+
+        let ranking = request.ranking(&outcome);
+        let mut table = PoseTable::new(&ranking);
+        let quality = match &evaluator {
+            Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
+            None => Vec::new(),
+        };
+        for column in &quality {
+            table.set_column(column);
+        }
+        table.write(&staging.folder().join("poses.csv"))?;
+        let top = table
+            .rows()
+            .get(..request.options.write_top)
+            .unwrap_or(table.rows());
+        let written = write_complexes(receptor, ligand, top, &staging.folder().join("top"))?;
+        let inputs = request.inputs()?;
+        let manifest = Manifest::new(ManifestParts {
+            inputs: &inputs,
+            options: &request.options,
+            plan: &plan,
+            outcome: &outcome,
+            results: Results {
+                rows: ranking.len(),
+                clusters: firsts(&outcome.poses).len(),
+                poses: outcome.poses.len(),
+            },
+            chains: &written.chains,
+            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            timing: clock.timing(&outcome),
+            machine: machine(&request.options.dock),
+        })
+        .map_err(Failure::other)?;
+        manifest.write(&staging.folder().join("run.json"))?;
+        staging.commit()?;
+
+        console.say(format!("\n{}", told(&outcome)));
+        console.say(format!("\n{}", best_clusters(&ranking, &quality)));
+        console.say(format!(
+            "\n{} rows in {}",
+            ranking.len(),
+            directory.join("poses.csv").display()
+        ));
+        console.result(&json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "complexes": written.names.iter().map(|name| directory.join("top").join(name).display().to_string()).collect::<Vec<_>>(),
+            "best": table.objects(firsts(&ranking).into_iter().take(BEST)),
+            "run": manifest,
+        }));
+        Ok(())
+    }
+}
+
+/// Which effects were on, and how far the fast path was off.
+fn told(outcome: &DockOutcome) -> String {
+    let effects = outcome
+        .effects
+        .iter()
+        .map(|cost| format!("{cost:?}"))
+        .collect::<Vec<_>>();
+    let error = outcome.error;
+    format!(
+        "Effects: {}\nFast path against the exact sum on {} poses: {:.1e} rms, {:.1e} worst of the best score; the low-pass took {:.1}%",
+        effects.join("; "),
+        error.poses,
+        error.rms,
+        error.worst,
+        100.0 * error.low_pass_share
+    )
+}
+
+/// When the run began.
+struct Clock {
+    wall: SystemTime,
+    monotonic: Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self {
+            wall: SystemTime::now(),
+            monotonic: Instant::now(),
+        }
+    }
+
+    fn timing(&self, outcome: &DockOutcome) -> Timing {
+        Timing {
+            // A clock set before 1970 says nothing.
+            started_unix_seconds: self
+                .wall
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |since| since.as_secs()),
+            wall_seconds: self.monotonic.elapsed().as_secs_f64(),
+            stages: outcome.timing.clone(),
+            peak_memory_bytes: memory::peak(),
+        }
+    }
+}
+
+fn machine(options: &DockOptions) -> Machine {
+    Machine {
+        system: std::env::consts::OS,
+        architecture: std::env::consts::ARCH,
+        hardware_threads: std::thread::available_parallelism().map_or(1, |threads| threads.get()),
+        threads: options.threads,
+        memory_limit_bytes: options.memory,
+        command: std::env::args_os()
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect(),
+    }
+}
