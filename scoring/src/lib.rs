@@ -1,3 +1,4 @@
 //! Knots to spectra to correlations to scores.
 
+pub mod kernel;
 pub mod se3;
