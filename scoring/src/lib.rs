@@ -2,3 +2,4 @@
 
 pub mod kernel;
 pub mod se3;
+pub mod transform;
