@@ -1,6 +1,7 @@
 //! Knots to spectra to correlations to scores.
 
 pub mod affinity;
+pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
