@@ -1,0 +1,452 @@
+//! The engine on CPU cores: per rotation q pruned forward transforms, one product, one inverse transform.
+//!
+//! G^(w) = sum_q U_q(w) conj(B_q(w)), B_q the transform of the ligand's knots weighted by d_j V_q(s_j). U holds everything that does
+//! not turn: the receptor's transform, the folded lifted kernel, both windows' deconvolution and 1 / volume. Columns of modes are
+//! transformed along x, multiplied and transformed back while they lie in the first-level cache.
+
+use super::plan::Plan;
+use crate::lifted_axis::Fold;
+use crate::transform::Real;
+use crate::transform::modes::{ModeSet, place};
+use crate::transform::nfft::{Forward, ForwardWorkspace};
+use knotdock_structures::Knots;
+use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
+use num_complex::Complex;
+use realfft::{ComplexToReal, RealFftPlanner};
+use rustfft::{Fft, FftPlanner};
+use std::sync::Arc;
+
+/// Columns that go through the x transforms together.
+const COLUMNS: usize = 8;
+/// Planes kz that go through the y transforms together: a cache line of the spectrum's rows.
+const PLANES: usize = 8;
+
+/// A prepared correlation of one pair.
+pub struct CpuEngine<T: Real> {
+    plan: Arc<Plan>,
+    forward: Forward<T>,
+    /// U: [column][field][kx].
+    spectra: Vec<Complex<T>>,
+    /// d_j V_q(s_j): [knot][field].
+    weights: Vec<T>,
+    /// Ligand knots relative to the ligand's centre, Å.
+    ligand: Vec<Vector3<f64>>,
+    /// Position of voxel 0 relative to the receptor's centre, Å.
+    origin: [f64; 3],
+    inverse_x: Arc<dyn Fft<T>>,
+    inverse_y: Arc<dyn Fft<T>>,
+    inverse_z: Arc<dyn ComplexToReal<T>>,
+    /// Singular values of the lifted axis in use, as shares of the largest.
+    singular: Vec<f64>,
+}
+
+/// Buffers of one rotation in flight; nothing is allocated after this.
+pub struct Workspace<T> {
+    forward: ForwardWorkspace<T>,
+    points: Vec<[f64; 3]>,
+    lines: Vec<Complex<T>>,
+    product: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+    /// [kz in block][x][y].
+    planes: Vec<Complex<T>>,
+    /// [x][y][kz].
+    rows: Vec<Complex<T>>,
+    /// Scores, (nx, ny, nz) row-major.
+    pub grid: Vec<T>,
+    /// Largest score of each row (x, y).
+    pub row_best: Vec<T>,
+}
+
+/// The receptor's side, uncompressed: H[basis function][mode], and the ligand's basis values.
+pub struct Folded<T> {
+    spectra: Vec<Vec<Complex<T>>>,
+    /// d_j v_b(s_j): (knots, basis functions).
+    ligand: DMatrix<f64>,
+    center: [f64; 3],
+}
+
+impl<T: Real> Folded<T> {
+    /// Transforms the receptor and folds the lifted kernel into it.
+    pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Fold) -> Self {
+        let modes = &plan.modes;
+        let (receptor_size, ligand_size) = plan.basis.sizes(&plan.axis);
+        let fine = plan.fine;
+        let extent = [0, 1, 2]
+            .map(|axis| plan.receptor_extent[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5);
+        let forward = Forward::<T>::new(Arc::clone(modes), fine, plan.width, extent, 1);
+        let mut work = forward.workspace();
+        let points: Vec<[f64; 3]> = receptor
+            .centers
+            .iter()
+            .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
+            .collect();
+        let w_max = plan.modes.cut;
+        let zero = Complex::new(T::zero(), T::zero());
+        let mut spectra = vec![vec![zero; modes.count]; ligand_size];
+        let mut field = vec![zero; modes.count];
+        for a in 0..receptor_size {
+            let mut inside = Vec::new();
+            let mut weights = Vec::new();
+            for (i, &radius) in receptor.radii.iter().enumerate() {
+                let value =
+                    plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i].re;
+                if value != 0.0 {
+                    inside.push(points[i]);
+                    weights.push(T::of(value));
+                }
+            }
+            forward.transform(&inside, &weights, &mut work, &mut field);
+            for (b, spectrum) in spectra.iter_mut().enumerate() {
+                let Some(table) =
+                    plan.basis
+                        .coupling(&plan.kernel, &plan.axis, fold, (a, b), w_max)
+                else {
+                    continue;
+                };
+                modes.for_each(|mode, w, _| {
+                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+                    let factor = T::of(table.value(length)[0]);
+                    spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
+                });
+            }
+        }
+        let ligand = DMatrix::from_fn(ligand.len(), ligand_size, |j, b| {
+            ligand.weights[j].re * plan.basis.ligand_value(&plan.axis, b, ligand.radii[j])
+        });
+        let scale = forward.cells_per_length();
+        let center = forward.center();
+        Self {
+            spectra,
+            ligand,
+            center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
+        }
+    }
+
+    /// Number of basis functions: the rank that is exact.
+    pub fn full_rank(&self) -> usize {
+        self.spectra.len()
+    }
+
+    /// The factorisation of the lifted axis: for every rank q the receptor's combination (basis, q), the ligand's coefficients
+    /// (knots, q), and the singular values, largest first.
+    ///
+    /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'; the singular vectors of
+    /// H S, stacked [Re; Im] so that V stays real, give the best q terms in the mean over knots placed at random.
+    pub fn factor(&self, modes: &ModeSet) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
+        let size = self.spectra.len();
+        let mut gram = DMatrix::<f64>::zeros(size, size);
+        let mut multiplicities = Vec::with_capacity(modes.count);
+        modes.for_each(|_, _, multiplicity| multiplicities.push(multiplicity));
+        for a in 0..size {
+            for b in 0..=a {
+                let sum: f64 = self.spectra[a]
+                    .iter()
+                    .zip(&self.spectra[b])
+                    .zip(&multiplicities)
+                    .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
+                    .sum();
+                gram[(a, b)] = sum;
+                gram[(b, a)] = sum;
+            }
+        }
+        let ligand = SymmetricEigen::new(self.ligand.transpose() * &self.ligand);
+        let largest = ligand.eigenvalues.max();
+        let power = |exponent: f64| {
+            let scaled = ligand.eigenvalues.map(|value| {
+                // Functions that no ligand knot tells apart carry nothing.
+                if value > 1e-13 * largest {
+                    value.powf(exponent)
+                } else {
+                    0.0
+                }
+            });
+            &ligand.eigenvectors * DMatrix::from_diagonal(&scaled) * ligand.eigenvectors.transpose()
+        };
+        let (root, inverse_root) = (power(0.5), power(-0.5));
+        let eigen = SymmetricEigen::new(&root * gram * &root);
+        let mut order: Vec<usize> = (0..size).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let vectors = DMatrix::from_fn(size, size, |row, q| eigen.eigenvectors[(row, order[q])]);
+        let singular = order
+            .iter()
+            .map(|&i| eigen.eigenvalues[i].max(0.0).sqrt())
+            .collect();
+        (
+            &root * &vectors,
+            &self.ligand * inverse_root * &vectors,
+            singular,
+        )
+    }
+}
+
+impl<T: Real> CpuEngine<T> {
+    /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
+    pub fn new(plan: Arc<Plan>, folded: &Folded<T>, ligand: &Knots, rank: usize) -> Self {
+        let modes = Arc::clone(&plan.modes);
+        let rank = rank.clamp(1, folded.full_rank());
+        let (combination, coefficients, singular) = folded.factor(&modes);
+        let fine = plan.fine;
+        let extent = [0, 1, 2]
+            .map(|axis| plan.ligand_radius * fine[axis] as f64 / modes.lengths[axis] + 0.5);
+        let forward = Forward::<T>::new(Arc::clone(&modes), fine, plan.width, extent, rank);
+        let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
+            (0..=modes.size[axis] as i32 / 2)
+                .map(|k| forward.deconvolution(axis, k))
+                .collect()
+        });
+        let zero = Complex::new(T::zero(), T::zero());
+        let mut spectra = vec![zero; rank * modes.count];
+        for column in &modes.columns {
+            let outer = factors[1][column.ky.unsigned_abs() as usize]
+                * factors[2][column.kz as usize]
+                / modes.volume();
+            for q in 0..rank {
+                for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
+                    let mut sum = zero;
+                    for (b, spectrum) in folded.spectra.iter().enumerate() {
+                        sum = sum + spectrum[column.start + i].scale(T::of(combination[(b, q)]));
+                    }
+                    let factor = outer * factors[0][k.unsigned_abs() as usize];
+                    spectra[rank * column.start + q * column.len() + i] = sum.scale(T::of(factor));
+                }
+            }
+        }
+        let weights = (0..ligand.len())
+            .flat_map(|j| (0..rank).map(move |q| (j, q)))
+            .map(|(j, q)| T::of(coefficients[(j, q)]))
+            .collect();
+        let scale = forward.cells_per_length();
+        let center = forward.center();
+        let origin = [0, 1, 2].map(|axis| center[axis] / scale[axis] - folded.center[axis]);
+        let mut planner = FftPlanner::new();
+        let largest = singular
+            .first()
+            .copied()
+            .unwrap_or(1.0)
+            .max(f64::MIN_POSITIVE);
+        Self {
+            forward,
+            spectra,
+            weights,
+            ligand: ligand
+                .centers
+                .iter()
+                .map(|&y| Vector3::from(y) - plan.ligand_center)
+                .collect(),
+            origin,
+            inverse_x: planner.plan_fft_inverse(modes.size[0]),
+            inverse_y: planner.plan_fft_inverse(modes.size[1]),
+            inverse_z: RealFftPlanner::new().plan_fft_inverse(modes.size[2]),
+            singular: singular.iter().map(|value| value / largest).collect(),
+            plan,
+        }
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Rank q of the lifted axis in use.
+    pub fn rank(&self) -> usize {
+        self.forward.fields()
+    }
+
+    /// All singular values of the lifted axis as shares of the largest.
+    pub fn singular(&self) -> &[f64] {
+        &self.singular
+    }
+
+    /// Buffers for one rotation at a time.
+    pub fn workspace(&self) -> Workspace<T> {
+        let [nx, ny, nz] = self.plan.modes.size;
+        let zero = Complex::new(T::zero(), T::zero());
+        let scratch = self
+            .inverse_x
+            .get_inplace_scratch_len()
+            .max(self.inverse_y.get_inplace_scratch_len())
+            .max(self.inverse_z.get_scratch_len());
+        Workspace {
+            forward: self.forward.workspace(),
+            points: vec![[0.0; 3]; self.ligand.len()],
+            lines: vec![zero; COLUMNS * self.rank() * self.forward.line_length()],
+            product: vec![zero; COLUMNS * nx],
+            scratch: vec![zero; scratch],
+            planes: vec![zero; PLANES * nx * ny],
+            rows: vec![zero; nx * ny * (nz / 2 + 1)],
+            grid: vec![T::zero(); nx * ny * nz],
+            row_best: vec![T::zero(); nx * ny],
+        }
+    }
+
+    /// Bytes that a workspace takes.
+    pub fn workspace_bytes(&self) -> usize {
+        let [nx, ny, nz] = self.plan.modes.size;
+        let reals = 2 * COLUMNS * self.rank() * self.forward.line_length()
+            + 2 * PLANES * nx * ny
+            + nx * ny * (nz + 2)
+            + nx * ny * (nz + 1);
+        self.forward.workspace_bytes() + reals * std::mem::size_of::<T>() + 24 * self.ligand.len()
+    }
+
+    /// Position of the ligand's centre relative to the receptor's for a voxel, in Å, in the box centred on the receptor.
+    pub fn position(&self, voxel: usize) -> Vector3<f64> {
+        let [_, ny, nz] = self.plan.modes.size;
+        let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
+        Vector3::from([0, 1, 2].map(|axis| {
+            let length = self.plan.modes.lengths[axis];
+            let t = index[axis] as f64 * self.plan.spacing + self.origin[axis];
+            t - length * (t / length + 0.5).floor()
+        }))
+    }
+
+    /// G over all translations at one rotation, into `work.grid`, and each row's best into `work.row_best`.
+    pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                self.spread(rotation, work);
+                self.forward.planes(&mut work.forward);
+                self.multiply(work);
+                self.rows_to_grid(work);
+            },
+        );
+    }
+
+    /// Time in seconds of each stage of one rotation: spreading, forward planes, columns with product and inverse, rows.
+    pub fn stage_seconds(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+        work: &mut Workspace<T>,
+    ) -> [f64; 4] {
+        let arch = pulp::Arch::new();
+        let mut last = std::time::Instant::now();
+        let mut lap = || {
+            let now = std::time::Instant::now();
+            let seconds = now.duration_since(last).as_secs_f64();
+            last = now;
+            seconds
+        };
+        arch.dispatch(
+            #[inline(always)]
+            || self.spread(rotation, work),
+        );
+        let spread = lap();
+        arch.dispatch(
+            #[inline(always)]
+            || self.forward.planes(&mut work.forward),
+        );
+        let planes = lap();
+        arch.dispatch(
+            #[inline(always)]
+            || self.multiply(work),
+        );
+        let columns = lap();
+        arch.dispatch(
+            #[inline(always)]
+            || self.rows_to_grid(work),
+        );
+        [spread, planes, columns, lap()]
+    }
+
+    #[inline(always)]
+    fn spread(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
+        let matrix = rotation.to_rotation_matrix();
+        for (point, y) in work.points.iter_mut().zip(&self.ligand) {
+            *point = (matrix * y).into();
+        }
+        self.forward
+            .spread(&work.points, &self.weights, &mut work.forward);
+    }
+
+    /// Columns: forward along x, product, inverse along x; then y for each block of planes.
+    #[inline(always)]
+    fn multiply(&self, work: &mut Workspace<T>) {
+        let modes = &self.plan.modes;
+        let [nx, ny, nz] = modes.size;
+        let half = nz / 2 + 1;
+        let mx = self.forward.line_length();
+        let rank = self.rank();
+        let zero = Complex::new(T::zero(), T::zero());
+        for block in (0..half).step_by(PLANES) {
+            let depth = PLANES.min(half - block);
+            for level in 0..depth {
+                let plane = &mut work.planes[level * nx * ny..(level + 1) * nx * ny];
+                plane.fill(zero);
+                let Some(range) = modes.planes.get(block + level) else {
+                    continue;
+                };
+                for start in range.clone().step_by(COLUMNS) {
+                    let end = (start + COLUMNS).min(range.end);
+                    self.forward
+                        .columns(start..end, &mut work.forward, &mut work.lines);
+                    for (index, column) in modes.columns[start..end].iter().enumerate() {
+                        let product = &mut work.product[index * nx..(index + 1) * nx];
+                        product.fill(zero);
+                        let side = column.kx_max as usize;
+                        for q in 0..rank {
+                            let line =
+                                &work.lines[(index * rank + q) * mx..(index * rank + q + 1) * mx];
+                            let from = rank * column.start + q * column.len();
+                            let spectrum = &self.spectra[from..from + column.len()];
+                            multiply_add(
+                                &mut product[nx - side..],
+                                &spectrum[..side],
+                                &line[mx - side..],
+                            );
+                            multiply_add(&mut product[..=side], &spectrum[side..], &line[..=side]);
+                        }
+                    }
+                    self.inverse_x.process_with_scratch(
+                        &mut work.product[..(end - start) * nx],
+                        &mut work.scratch,
+                    );
+                    for (index, column) in modes.columns[start..end].iter().enumerate() {
+                        let y = place(column.ky, ny);
+                        let product = &work.product[index * nx..(index + 1) * nx];
+                        for (row, value) in plane.chunks_exact_mut(ny).zip(product) {
+                            row[y] = *value;
+                        }
+                    }
+                }
+                self.inverse_y
+                    .process_with_scratch(plane, &mut work.scratch);
+            }
+            for (row, values) in work.rows.chunks_exact_mut(half).enumerate() {
+                for (level, value) in values[block..block + depth].iter_mut().enumerate() {
+                    *value = work.planes[level * nx * ny + row];
+                }
+            }
+        }
+    }
+
+    /// Rows: complex to real along z, and the best of each row.
+    #[inline(always)]
+    fn rows_to_grid(&self, work: &mut Workspace<T>) {
+        let nz = self.plan.modes.size[2];
+        for ((values, row), best) in work
+            .rows
+            .chunks_exact_mut(nz / 2 + 1)
+            .zip(work.grid.chunks_exact_mut(nz))
+            .zip(&mut work.row_best)
+        {
+            values[0].im = T::zero();
+            // Lengths are those of the plan, and the ends are real: the transform cannot fail.
+            let _ = self
+                .inverse_z
+                .process_with_scratch(values, row, &mut work.scratch);
+            *best = row
+                .iter()
+                .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a });
+        }
+    }
+}
+
+/// sum += a conj(b), element by element.
+#[inline(always)]
+fn multiply_add<T: Real>(sum: &mut [Complex<T>], a: &[Complex<T>], b: &[Complex<T>]) {
+    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+        sum.re = sum.re + (a.re * b.re + a.im * b.im);
+        sum.im = sum.im + (a.im * b.re - a.re * b.im);
+    }
+}

@@ -1,0 +1,127 @@
+//! The bump function psi_alpha of B&I eq. (10): a smooth stand-in for the indicator of the unit ball.
+//!
+//! psi_alpha(x) = exp(1 / (1 - |x|^-alpha)) for |x| < 1, else 0; psi_alpha(0) = 1; alpha -> infinity is the indicator.
+
+use serde::{Deserialize, Serialize};
+
+/// The bump function of one exponent alpha > 0 (dimensionless); infinity gives the indicator of the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bump {
+    alpha: f64,
+}
+
+/// The exponent is not above zero.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("alpha is {0}; the bump function needs an exponent above zero (infinity is allowed)")]
+pub struct AlphaError(pub f64);
+
+impl Bump {
+    /// The bump function psi_alpha.
+    ///
+    /// # Errors
+    /// [`AlphaError`] unless alpha > 0.
+    pub fn new(alpha: f64) -> Result<Self, AlphaError> {
+        if alpha > 0.0 {
+            Ok(Self { alpha })
+        } else {
+            Err(AlphaError(alpha))
+        }
+    }
+
+    /// The exponent alpha.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    /// psi_alpha(x), between 0 and 1.
+    ///
+    /// Written as exp(-u / (1 - u)) with u = |x|^alpha and 1 - u from `expm1`, so that nothing is lost as x -> 1 or
+    /// alpha -> 0.
+    pub fn value(&self, x: f64) -> f64 {
+        let x = x.abs();
+        if x >= 1.0 {
+            return 0.0;
+        }
+        if x == 0.0 || self.alpha.is_infinite() {
+            return 1.0;
+        }
+        let log_u = self.alpha * x.ln();
+        (log_u.exp() / log_u.exp_m1()).exp()
+    }
+
+    /// d psi_alpha / dx at x >= 0 (for alpha < 1 the slope at 0 is minus infinity; there 0 is returned, the mean of
+    /// both sides).
+    pub fn derivative(&self, x: f64) -> f64 {
+        if x >= 1.0 || x == 0.0 || self.alpha.is_infinite() {
+            return 0.0;
+        }
+        let log_u = self.alpha * x.ln();
+        let one_minus_u = -log_u.exp_m1();
+        let u = log_u.exp();
+        let value = (-u / one_minus_u).exp();
+        if value == 0.0 {
+            return 0.0;
+        }
+        -value * self.alpha * u / (x * one_minus_u * one_minus_u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_values() {
+        let bump = Bump::new(2.0).unwrap();
+        assert_eq!(bump.value(0.0), 1.0);
+        assert_eq!(bump.value(1.0), 0.0);
+        // u = 1/2 at x = 1/sqrt 2, so psi = exp(-1).
+        assert!((bump.value(0.5f64.sqrt()) - (-1f64).exp()).abs() < 1e-15);
+        assert!((bump.value(-0.5f64.sqrt()) - (-1f64).exp()).abs() < 1e-15);
+        assert!(Bump::new(0.0).is_err() && Bump::new(f64::NAN).is_err());
+    }
+
+    /// Hard case: x -> 1 and extreme alpha, where 1 - |x|^-alpha cancels or overflows as printed in the paper.
+    #[test]
+    fn stays_finite_and_falls_for_extreme_arguments() {
+        for alpha in [1e-6, 1e-2, 0.5, 2.0, 50.0, 1e6, f64::INFINITY] {
+            let bump = Bump::new(alpha).unwrap();
+            let mut last = 1.0;
+            for x in [
+                0.0,
+                1e-300,
+                1e-9,
+                0.3,
+                0.9,
+                1.0 - 1e-9,
+                1.0 - f64::EPSILON,
+                1.0,
+                2.0,
+            ] {
+                let value = bump.value(x);
+                assert!(
+                    (0.0..=last).contains(&value),
+                    "alpha {alpha}, x {x}: {value}"
+                );
+                assert!(bump.derivative(x).is_finite());
+                last = value;
+            }
+        }
+        // alpha -> 0: u -> 1 everywhere off the centre, so the bump shrinks to its centre value alone.
+        assert!(Bump::new(1e-6).unwrap().value(0.5) < 1e-300);
+        // alpha -> infinity: the indicator.
+        assert!((Bump::new(1e6).unwrap().value(0.99) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn derivative_matches_central_differences() {
+        for alpha in [1.0, 2.0, 3.5] {
+            let bump = Bump::new(alpha).unwrap();
+            for i in 1..99 {
+                let (x, h) = (i as f64 / 100.0, 1e-6);
+                let numeric = (bump.value(x + h) - bump.value(x - h)) / (2.0 * h);
+                assert!((numeric - bump.derivative(x)).abs() < 1e-7);
+            }
+        }
+    }
+}

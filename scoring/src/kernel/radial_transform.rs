@@ -1,0 +1,128 @@
+//! The three-dimensional Fourier transform of the bump function, a radial function of q = |w| (cycles per unit length).
+//!
+//! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z). A ball of radius
+//! sigma has the transform sigma^3 psi^(q sigma), which this module also continues to sigma < 0 as the odd function it is.
+
+use super::bump::Bump;
+use std::f64::consts::PI;
+
+/// sin(pi z) / (pi z), 1 at z = 0.
+pub fn sinc(z: f64) -> f64 {
+    let x = PI * z;
+    if x.abs() < 1e-4 {
+        1.0 - x * x / 6.0
+    } else {
+        x.sin() / x
+    }
+}
+
+/// psi^ of one bump function, by double-exponential quadrature: absolute error below 1e-12 for |q| up to the range it was
+/// built for (the tests hold it to 1e-10 against closed forms and mpmath).
+#[derive(Clone, Debug)]
+pub struct RadialTransform {
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    /// alpha = infinity: the ball itself, in closed form.
+    Ball,
+    /// Quadrature nodes x_i and 4 pi x_i^2 psi(x_i) times their weights.
+    Quadrature { nodes: Vec<f64>, weights: Vec<f64> },
+}
+
+impl RadialTransform {
+    /// Prepares the transform for arguments |q| <= `q_max`.
+    pub fn new(bump: Bump, q_max: f64) -> Self {
+        if bump.alpha().is_infinite() {
+            return Self { kind: Kind::Ball };
+        }
+        // x = (1 + tanh(pi/2 sinh t)) / 2 clusters the nodes doubly exponentially at both ends, which takes in the
+        // essential singularity at x = 1 and the |x|^alpha cusp at 0; in the middle dx = (pi/4) dt, so the step must
+        // also resolve cos(2 pi q x).
+        let step = (1.0 / 64.0f64).min(0.25 / (q_max.abs() + 1.0));
+        let half = (4.0 / step).ceil() as i64;
+        let mut nodes = Vec::new();
+        let mut weights = Vec::new();
+        for k in -half..=half {
+            let t = k as f64 * step;
+            let s = 0.5 * PI * t.sinh();
+            // Distance to the nearer end without cancellation: 1/(1+exp(2|s|)).
+            let end = 1.0 / (1.0 + (2.0 * s.abs()).exp());
+            let x = if s < 0.0 { end } else { 1.0 - end };
+            let slope = PI * t.cosh() * end * (1.0 - end);
+            let weight = 4.0 * PI * x * x * bump.value(x) * slope * step;
+            if weight > 1e-22 {
+                nodes.push(x);
+                weights.push(weight);
+            }
+        }
+        Self {
+            kind: Kind::Quadrature { nodes, weights },
+        }
+    }
+
+    /// psi^(q) of the unit ball's bump.
+    pub fn value(&self, q: f64) -> f64 {
+        match &self.kind {
+            Kind::Ball => ball(q),
+            Kind::Quadrature { nodes, weights } => nodes
+                .iter()
+                .zip(weights)
+                .map(|(x, weight)| weight * sinc(2.0 * q * x))
+                .sum(),
+        }
+    }
+
+    /// Transform of the bump of radius sigma at frequency w: sigma^3 psi^(w sigma), odd in sigma.
+    pub fn scaled(&self, w: f64, sigma: f64) -> f64 {
+        sigma.powi(3) * self.value(w * sigma)
+    }
+}
+
+/// Transform of the unit ball's indicator: (sin z - z cos z) / (2 pi^2 q^3), z = 2 pi q.
+fn ball(q: f64) -> f64 {
+    let z = 2.0 * PI * q;
+    if z.abs() < 1e-2 {
+        let z2 = z * z;
+        return 4.0 * PI / 3.0 * (1.0 - z2 / 10.0 * (1.0 - z2 / 28.0));
+    }
+    4.0 * PI * (z.sin() - z * z.cos()) / z.powi(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Large alpha must tend to the ball, whose transform is known in closed form.
+    #[test]
+    fn indicator_is_the_closed_form_and_the_limit() {
+        let exact = RadialTransform::new(Bump::new(f64::INFINITY).unwrap(), 5.0);
+        assert!((exact.value(0.0) - 4.0 * PI / 3.0).abs() < 1e-15);
+        let steep = RadialTransform::new(Bump::new(1e5).unwrap(), 5.0);
+        for q in [0.0, 0.003, 0.1, 0.7, 1.3, 4.9] {
+            assert!((exact.value(q) - steep.value(q)).abs() < 1e-3);
+        }
+        // Series and formula of the ball meet.
+        assert!((ball(1.59e-3) - ball(1.5916e-3)).abs() < 1e-5);
+    }
+
+    /// Reference: scripts/kernel_reference.py (mpmath, 40 digits).
+    #[test]
+    fn agrees_with_mpmath_to_1e_10() {
+        for (alpha, q, value) in super::super::reference::RADIAL_TRANSFORM {
+            let transform = RadialTransform::new(Bump::new(alpha).unwrap(), 20.0);
+            let ours = transform.value(q);
+            assert!(
+                (ours - value).abs() < 1e-10,
+                "alpha {alpha}, q {q}: {ours} against {value}"
+            );
+        }
+    }
+
+    #[test]
+    fn odd_in_sigma() {
+        let transform = RadialTransform::new(Bump::new(2.0).unwrap(), 5.0);
+        assert_eq!(transform.scaled(0.2, 3.0), -transform.scaled(0.2, -3.0));
+    }
+}

@@ -1,0 +1,133 @@
+//! Radial functions as piecewise polynomials on equal panels: one multiply, one truncation and a Horner chain a value.
+
+/// Coefficients a panel holds: polynomials of degree 7.
+const TERMS: usize = 8;
+
+/// `LANES` functions of one variable on [0, end], each a polynomial of degree 7 on each of equally wide panels, fitted
+/// at Chebyshev nodes. Beyond `end` every function is 0.
+#[derive(Clone, Debug)]
+pub struct Table<const LANES: usize> {
+    end: f64,
+    panels_per_unit: f64,
+    /// [panel][power][lane]
+    coefficients: Vec<[[f64; LANES]; TERMS]>,
+}
+
+impl<const LANES: usize> Table<LANES> {
+    /// Fits `function` on [0, end] with panels no wider than `panel`.
+    pub fn fit(end: f64, panel: f64, mut function: impl FnMut(f64) -> [f64; LANES]) -> Self {
+        let count = (end / panel).ceil().max(1.0) as usize;
+        let width = end / count as f64;
+        let (nodes, inverse) = interpolation();
+        let coefficients = (0..count)
+            .map(|index| {
+                let values: [[f64; LANES]; TERMS] = std::array::from_fn(|node| {
+                    function(width * (index as f64 + 0.5 * (nodes[node] + 1.0)))
+                });
+                std::array::from_fn(|power| {
+                    std::array::from_fn(|lane| {
+                        (0..TERMS)
+                            .map(|node| inverse[power][node] * values[node][lane])
+                            .sum()
+                    })
+                })
+            })
+            .collect();
+        Self {
+            end,
+            panels_per_unit: count as f64 / end,
+            coefficients,
+        }
+    }
+
+    /// End of the range, beyond which the functions are 0.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// All lanes at x >= 0.
+    #[inline(always)]
+    pub fn value(&self, x: f64) -> [f64; LANES] {
+        let scaled = x * self.panels_per_unit;
+        let Some(panel) = self.coefficients.get(scaled as usize) else {
+            return [0.0; LANES];
+        };
+        let u = 2.0 * (scaled - (scaled as usize) as f64) - 1.0;
+        let mut sum = panel[TERMS - 1];
+        for power in (0..TERMS - 1).rev() {
+            for lane in 0..LANES {
+                sum[lane] = sum[lane] * u + panel[power][lane];
+            }
+        }
+        sum
+    }
+
+    /// All lanes and their derivatives at x >= 0.
+    #[inline(always)]
+    pub fn value_and_derivative(&self, x: f64) -> ([f64; LANES], [f64; LANES]) {
+        let scaled = x * self.panels_per_unit;
+        let Some(panel) = self.coefficients.get(scaled as usize) else {
+            return ([0.0; LANES], [0.0; LANES]);
+        };
+        let u = 2.0 * (scaled - (scaled as usize) as f64) - 1.0;
+        let mut sum = panel[TERMS - 1];
+        let mut slope = [0.0; LANES];
+        for power in (0..TERMS - 1).rev() {
+            for lane in 0..LANES {
+                slope[lane] = slope[lane] * u + sum[lane];
+                sum[lane] = sum[lane] * u + panel[power][lane];
+            }
+        }
+        for value in &mut slope {
+            *value *= 2.0 * self.panels_per_unit;
+        }
+        (sum, slope)
+    }
+}
+
+/// Chebyshev nodes on [-1, 1] and the matrix that turns values there into monomial coefficients.
+fn interpolation() -> ([f64; TERMS], [[f64; TERMS]; TERMS]) {
+    let nodes: [f64; TERMS] =
+        std::array::from_fn(|i| -(std::f64::consts::PI * (i as f64 + 0.5) / TERMS as f64).cos());
+    // Column `node` holds the coefficients of the Lagrange polynomial that is 1 there and 0 at the others.
+    let mut inverse = [[0.0; TERMS]; TERMS];
+    for node in 0..TERMS {
+        let mut polynomial = [0.0; TERMS];
+        polynomial[0] = 1.0;
+        let mut degree = 0;
+        for other in (0..TERMS).filter(|&other| other != node) {
+            let scale = 1.0 / (nodes[node] - nodes[other]);
+            for power in (0..=degree).rev() {
+                let value = polynomial[power] * scale;
+                polynomial[power + 1] += value;
+                polynomial[power] = -nodes[other] * value;
+            }
+            degree += 1;
+        }
+        for power in 0..TERMS {
+            inverse[power][node] = polynomial[power];
+        }
+    }
+    (nodes, inverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_of_degree_seven_are_exact() {
+        let polynomial = |x: f64| 1.0 - 2.0 * x + 0.5 * x.powi(4) - 0.25 * x.powi(7);
+        let derivative = |x: f64| -2.0 + 2.0 * x.powi(3) - 1.75 * x.powi(6);
+        let table = Table::<2>::fit(2.0, 0.3, |x| [polynomial(x), x]);
+        for i in 0..200 {
+            let x = 0.01 * f64::from(i);
+            let (value, slope) = table.value_and_derivative(x);
+            assert!((value[0] - polynomial(x)).abs() < 1e-11);
+            assert!((slope[0] - derivative(x)).abs() < 1e-10);
+            assert!((value[1] - x).abs() < 1e-13 && (slope[1] - 1.0).abs() < 1e-11);
+            assert_eq!(value, table.value(x));
+        }
+        assert_eq!(table.value(2.0), [0.0, 0.0]);
+    }
+}
