@@ -3,14 +3,16 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-venv=target/python
+target=${CARGO_TARGET_DIR:-target}
+venv=$target/python
 if ! cmp --silent scripts/requirements.txt "$venv/installed.txt"; then
     rm -rf "$venv"
     python3 -m venv "$venv"
     "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement scripts/requirements.txt
     cp scripts/requirements.txt "$venv/installed.txt"
 fi
-for check in scripts/check_*.py; do
-    echo "-- $check"
-    "$venv/bin/python" "$check"
-done
+cargo build --locked
+example=structures/examples/1ppe
+"$venv/bin/python" scripts/check_dockq.py "$target/debug/knotdock" \
+    "${example}_receptor_unbound.pdb" "${example}_ligand_unbound.pdb" \
+    "${example}_receptor_bound.pdb" "${example}_ligand_bound.pdb"

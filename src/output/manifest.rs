@@ -7,12 +7,11 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use knotdock_structures::molecule::InputSpec;
+use knotdock_structures::molecule::{ChainMap, InputSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
 
-use super::complexes::ChainMap;
 use super::staging::{StagingError, write_whole};
 use crate::evaluate::MatchReport;
 use crate::search::outcome::MeasuredError;
