@@ -189,6 +189,9 @@ def dock_and_measure(options, folder, files, name, seed):
         if option not in options.dock_options:
             command += [option, *value]
     cost = measured(command + options.dock_options, folder / "dock.log")
+    # The system's figure for a child can be that of this script before it became the child; the program's own is not.
+    own_peak = json.loads((run / "run.json").read_text())["timing"]["peak_memory_bytes"]
+    cost["peak_memory_bytes"] = own_peak or cost["peak_memory_bytes"]
     native = ["--native-receptor", str(files["receptor_bound"]), "--native-ligand", str(files["ligand_bound"])]
     command = [options.knotdock, "evaluate", str(run), *native, "--json", "--quiet"]
     evaluation = subprocess.run(command, capture_output=True, text=True)
