@@ -1,6 +1,46 @@
 //! Molecules: atoms as read from PDB and mmCIF files, with what was kept, dropped and altered on the way.
+//!
+//! # Conventions
+//!
+//! - Lengths are in Å, in the file's own frame.
+//! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and `pdbx_PDB_ins_code` in
+//!   mmCIF).
+//! - Hydrogens are never kept: radii are united-atom radii, which stand for them.
+//! - Lines are counted from 1 in the unpacked text.
+//!
+//! # From file to molecule
+//!
+//! path -> `source` (open, unpack, tell the format) -> `sieve` (atoms of the first model, in a form that pdbtbx is sure to
+//! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `select` (chains, waters, additives,
+//! `elements`, `alternate` locations) -> `groups`, `radii`, `completeness` -> [`Molecule`] with its [`ReadReport`].
 
 use serde::Serialize;
+
+mod additives;
+mod alternate;
+mod completeness;
+mod elements;
+mod error;
+mod groups;
+mod input;
+mod parse;
+mod radii;
+mod read;
+mod report;
+mod residues;
+mod select;
+mod sieve;
+mod source;
+mod write;
+
+pub use error::ReadError;
+pub use groups::GroupKind;
+pub use input::InputSpec;
+pub use read::{ReadOptions, read};
+pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
+pub use write::{
+    ChainMap, ChainName, Partner, WriteError, complex_format, write_complex, write_molecule,
+};
 
 /// File format of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -50,9 +90,30 @@ pub struct Molecule {
     pub atoms: Vec<Atom>,
     /// The format that the file had.
     pub format: Format,
+    /// What reading the file did: kept, dropped, altered, warned of. Empty for a molecule made in memory.
+    pub report: ReadReport,
 }
 
 impl Molecule {
+    /// A molecule made in memory, with an empty report.
+    pub fn new(atoms: Vec<Atom>, format: Format) -> Self {
+        Self {
+            atoms,
+            format,
+            report: ReadReport::default(),
+        }
+    }
+
+    /// The molecule with every position x (Å) moved to `map(x)`, e.g. a ligand placed by a pose.
+    #[must_use]
+    pub fn map_positions(&self, map: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        let mut moved = self.clone();
+        for atom in &mut moved.atoms {
+            atom.position = map(atom.position);
+        }
+        moved
+    }
+
     /// The atoms as knots of unit weight and united-atom radius, in the file's frame (Å).
     ///
     /// # Errors

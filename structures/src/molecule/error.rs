@@ -1,0 +1,243 @@
+//! Why a structure could not be read: the file, the line where there is one, and what to do.
+
+use std::path::{Path, PathBuf};
+
+/// Why reading a structure failed.
+///
+/// `Display` gives the message alone; [`file`](Self::file), [`line`](Self::line) and [`remedy`](Self::remedy) give the
+/// rest, so that a caller can lay the four out as it likes.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// An input specification has a colon with no usable chain after it.
+    #[error("'{text}' names no chain after the colon")]
+    Specification {
+        /// The specification as given.
+        text: String,
+    },
+    /// There is no such file.
+    #[error("there is no such file")]
+    Missing {
+        /// The path as given.
+        file: PathBuf,
+    },
+    /// The path leads to a directory.
+    #[error("this is a directory, not a structure file")]
+    Directory {
+        /// The path as given.
+        file: PathBuf,
+    },
+    /// The operating system refused to read the file.
+    #[error("the file cannot be read: {source}")]
+    Unreadable {
+        /// The path as given.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The gzip stream is cut short or damaged.
+    #[error("the gzip data are damaged or cut short: {source}")]
+    Gzip {
+        /// The path as given.
+        file: PathBuf,
+        /// What the decompressor said.
+        source: std::io::Error,
+    },
+    /// The file, unpacked, is larger than any structure.
+    #[error("the file is larger than {limit} bytes once unpacked")]
+    TooLarge {
+        /// The path as given.
+        file: PathBuf,
+        /// The largest size that is read, in bytes.
+        limit: u64,
+    },
+    /// The file holds neither PDB nor mmCIF records.
+    #[error("this is not a structure: no PDB record and no mmCIF data block was found")]
+    NotAStructure {
+        /// The path as given.
+        file: PathBuf,
+    },
+    /// The file is a structure file without any atom.
+    #[error("the file holds no atoms")]
+    NoAtoms {
+        /// The path as given.
+        file: PathBuf,
+    },
+    /// A field of an atom cannot be understood.
+    #[error("{field} is '{text}' where {expected} is needed")]
+    Field {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line of the record.
+        line: usize,
+        /// Which field, with its columns or its mmCIF item.
+        field: String,
+        /// What stands there.
+        text: String,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// An atom record ends before its coordinates do.
+    #[error("the atom record ends after {length} characters, before its coordinates are complete")]
+    ShortRecord {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line of the record.
+        line: usize,
+        /// Number of characters on the line.
+        length: usize,
+    },
+    /// The mmCIF text breaks the rules of the format.
+    #[error("the mmCIF text is broken: {what}")]
+    BrokenCif {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line where it shows.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+    /// The atom table of an mmCIF file lacks a column that cannot be done without.
+    #[error("the _atom_site table has no column {column}")]
+    MissingColumn {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line where the table starts.
+        line: usize,
+        /// The column, with its mmCIF name.
+        column: &'static str,
+    },
+    /// The element of an atom is neither given nor clear from its residue and name.
+    #[error("the element of atom {atom} of {residue} is not known")]
+    UnknownElement {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line of the record.
+        line: usize,
+        /// Atom name.
+        atom: String,
+        /// Residue, chain and number.
+        residue: String,
+    },
+    /// A chain was asked for that the file does not have.
+    #[error("there is no chain '{chain}'; the file has {}", list_chains(present))]
+    UnknownChain {
+        /// The path as given.
+        file: PathBuf,
+        /// The chain asked for.
+        chain: String,
+        /// Author names of the chains in the file, in file order.
+        present: Vec<String>,
+    },
+    /// Every atom was dropped: hydrogens, waters and additives only.
+    #[error("no atom is left after hydrogens, waters and additives are dropped ({dropped} atoms)")]
+    EmptySelection {
+        /// The path as given.
+        file: PathBuf,
+        /// Number of atoms dropped.
+        dropped: usize,
+    },
+    /// The parser behind the sieve refused the file.
+    #[error("the parser refused the file: {what}")]
+    Parser {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line, where the parser named one.
+        line: Option<usize>,
+        /// What it said.
+        what: String,
+    },
+}
+
+/// Names chains for a message; a blank name is shown as `_`, which also selects it.
+fn list_chains(present: &[String]) -> String {
+    let names: Vec<&str> = present
+        .iter()
+        .map(|name| if name.is_empty() { "_" } else { name })
+        .collect();
+    match names.as_slice() {
+        [] => "none".to_string(),
+        [one] => format!("only {one}"),
+        several => several.join(", "),
+    }
+}
+
+impl ReadError {
+    /// The offending file, where there is one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Specification { .. } => None,
+            Self::Missing { file }
+            | Self::Directory { file }
+            | Self::Unreadable { file, .. }
+            | Self::Gzip { file, .. }
+            | Self::TooLarge { file, .. }
+            | Self::NotAStructure { file }
+            | Self::NoAtoms { file }
+            | Self::Field { file, .. }
+            | Self::ShortRecord { file, .. }
+            | Self::BrokenCif { file, .. }
+            | Self::MissingColumn { file, .. }
+            | Self::UnknownElement { file, .. }
+            | Self::UnknownChain { file, .. }
+            | Self::EmptySelection { file, .. }
+            | Self::Parser { file, .. } => Some(file),
+        }
+    }
+
+    /// The offending line (1-based, in the unpacked text), where there is one.
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::Field { line, .. }
+            | Self::ShortRecord { line, .. }
+            | Self::BrokenCif { line, .. }
+            | Self::MissingColumn { line, .. }
+            | Self::UnknownElement { line, .. } => Some(*line),
+            Self::Parser { line, .. } => *line,
+            _ => None,
+        }
+    }
+
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Specification { .. } => {
+                "write FILE to read all chains, or FILE:H,L to pick chains by their author names"
+            }
+            Self::Missing { .. } => "check the path; chains are picked with FILE:H,L",
+            Self::Directory { .. } => "name one .pdb, .ent, .cif or .mmcif file, plain or .gz",
+            Self::Unreadable { .. } => {
+                "check the permissions of the file and that it is on a readable disk"
+            }
+            Self::Gzip { .. } => {
+                "fetch the file again, or unpack it with gunzip to see where it breaks"
+            }
+            Self::TooLarge { .. } => "cut the file down to the chains and the model to be docked",
+            Self::NotAStructure { .. } => {
+                "give a PDB or mmCIF file, plain or gzip-compressed; BinaryCIF, XML and other compressions are not read"
+            }
+            Self::NoAtoms { .. } => {
+                "give a file with ATOM or HETATM records, or an _atom_site table"
+            }
+            Self::Field { .. } => "correct the record, or remove the atom",
+            Self::ShortRecord { .. } => {
+                "fetch the file again: it may be cut short; coordinates stand in columns 31 to 54"
+            }
+            Self::BrokenCif { .. } => "fetch the file again, or check the text about this line",
+            Self::MissingColumn { .. } => {
+                "write the file again with all columns that the wwPDB requires"
+            }
+            Self::UnknownElement { .. } => {
+                "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), or remove the atom"
+            }
+            Self::UnknownChain { .. } => {
+                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"
+            }
+            Self::EmptySelection { .. } => {
+                "pick other chains, or keep residue names that are dropped as additives"
+            }
+            Self::Parser { .. } => {
+                "please report this file: the sieve before the parser should have caught it"
+            }
+        }
+    }
+}

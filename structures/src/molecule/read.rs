@@ -1,0 +1,132 @@
+//! Reading a structure, from path to molecule.
+
+use super::error::ReadError;
+use super::groups::{GroupKind, Residue, residues};
+use super::input::InputSpec;
+use super::report::{ChainCount, DropKind, GroupCount, ReadReport};
+use super::{Atom, Format, Molecule, completeness, parse, radii, select, sieve, source};
+
+/// How to read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Residue names to keep though they are dropped by default as water or as a buffer or cryo additive.
+    pub keep: Vec<String>,
+}
+
+/// Reads the atoms to dock from a PDB or mmCIF file, plain or gzip-compressed.
+///
+/// The first model; the chains asked for; hydrogens, waters and a listed set of buffer and cryo additives left out; one
+/// alternate location a residue, the one of the highest summed occupancy and the alphabetically first of equals; atoms of
+/// zero occupancy kept. Cofactors, metals, glycans, modified residues and nucleic acids are kept. The molecule's report says
+/// what was kept, dropped and altered.
+///
+/// # Errors
+/// [`ReadError`], with the file, the line where there is one, and a remedy.
+pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, ReadError> {
+    let file = spec.path.as_path();
+    let source = source::open(file)?;
+    let not_a_structure = || ReadError::NotAStructure {
+        file: file.to_path_buf(),
+    };
+    let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
+    let sieved = match format {
+        Format::Pdb => sieve::pdb::sieve(file, &source.text)?,
+        Format::Mmcif => sieve::mmcif::sieve(file, &source.text)?,
+    };
+    drop(source.text);
+    if sieved.carried.is_empty() {
+        return Err(if sieved.recognised {
+            ReadError::NoAtoms {
+                file: file.to_path_buf(),
+            }
+        } else {
+            not_a_structure()
+        });
+    }
+
+    let mut report = ReadReport {
+        file: file.display().to_string(),
+        format: Some(format),
+        compressed: source.compressed,
+        ..ReadReport::default()
+    };
+    report.altered.models_ignored = sieved.models_ignored;
+    report.altered.defaults_filled = sieved.defaults_filled;
+    report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
+
+    let parsed = parse::parse(file, format, sieved)?;
+    let atoms = select::select(file, parsed, spec.chains.as_deref(), options, &mut report)?;
+    Ok(finish(format, atoms, report))
+}
+
+/// Gives the atoms their radii and the report its counts.
+fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molecule {
+    let groups = residues(&atoms);
+    report.warnings = completeness::warnings(&atoms, &groups);
+    report.chains = count_chains(&groups);
+    report.groups = count_groups(&groups);
+    let mut all_radii = vec![0.0; atoms.len()];
+    for group in &groups {
+        let has_backbone = matches!(
+            group.kind,
+            GroupKind::AminoAcid | GroupKind::ModifiedResidue
+        );
+        for &index in &group.atoms {
+            if let (Some(atom), Some(radius)) = (atoms.get(index), all_radii.get_mut(index)) {
+                *radius =
+                    radii::radius(&atom.residue_name, &atom.name, &atom.element, has_backbone);
+            }
+        }
+    }
+    for (atom, radius) in atoms.iter_mut().zip(all_radii) {
+        atom.radius = radius;
+    }
+    Molecule {
+        atoms,
+        format,
+        report,
+    }
+}
+
+fn count_chains(groups: &[Residue<'_>]) -> Vec<ChainCount> {
+    let mut chains: Vec<ChainCount> = Vec::new();
+    for group in groups {
+        let at = match chains.iter().position(|chain| chain.name == group.key.0) {
+            Some(at) => at,
+            None => {
+                chains.push(ChainCount {
+                    name: group.key.0.to_string(),
+                    residues: 0,
+                    atoms: 0,
+                });
+                chains.len() - 1
+            }
+        };
+        if let Some(chain) = chains.get_mut(at) {
+            chain.residues += 1;
+            chain.atoms += group.atoms.len();
+        }
+    }
+    chains
+}
+
+fn count_groups(groups: &[Residue<'_>]) -> Vec<GroupCount> {
+    let mut counts: Vec<GroupCount> = Vec::new();
+    for group in groups.iter().filter(|g| g.kind != GroupKind::AminoAcid) {
+        let is_same = |count: &GroupCount| count.name == group.key.3 && count.kind == group.kind;
+        match counts.iter_mut().find(|count| is_same(count)) {
+            Some(count) => {
+                count.residues += 1;
+                count.atoms += group.atoms.len();
+            }
+            None => counts.push(GroupCount {
+                name: group.key.3.to_string(),
+                kind: group.kind,
+                residues: 1,
+                atoms: group.atoms.len(),
+            }),
+        }
+    }
+    counts.sort_by(|a, b| (a.kind, &a.name).cmp(&(b.kind, &b.name)));
+    counts
+}

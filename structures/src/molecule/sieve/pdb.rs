@@ -1,0 +1,286 @@
+//! The sieve for PDB files: fixed columns, wwPDB format 3.3, "Coordinate Section".
+//!
+//! Columns in comments are 1-based, as in the format's description.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
+use crate::molecule::error::ReadError;
+use crate::molecule::source::lines;
+
+/// Record names that show a file to be PDB even where it holds no atom.
+const RECORDS: [&str; 14] = [
+    "HEADER", "TITLE", "COMPND", "SOURCE", "REMARK", "CRYST1", "SEQRES", "MODEL", "ENDMDL", "TER",
+    "END", "CONECT", "MASTER", "EXPDTA",
+];
+
+/// Sieves the text of a PDB file.
+pub(in crate::molecule) fn sieve(file: &Path, text: &str) -> Result<Sieved, ReadError> {
+    let mut sieved = Sieved::default();
+    let mut models = Models::default();
+    for (line, record) in lines(text) {
+        if record.starts_with("ATOM  ") || record.starts_with("HETATM") {
+            sieved.recognised = true;
+            if models.keeps(record) {
+                atom(file, line, record, &mut sieved)?;
+            } else {
+                sieved.atoms_ignored += 1;
+            }
+        } else {
+            let name = record.split_ascii_whitespace().next().unwrap_or("");
+            sieved.recognised |= RECORDS.contains(&name);
+            models.note(name);
+        }
+    }
+    sieved.models_ignored = models.ignored;
+    Ok(sieved)
+}
+
+/// Tells the first model from those after it.
+#[derive(Default)]
+struct Models {
+    /// Columns 13 to 27 of the first atom: what a second model starts with too.
+    first: Option<String>,
+    /// A MODEL, ENDMDL or END record stands since the last atom.
+    boundary: Option<Boundary>,
+    /// The atoms being read belong to a later model.
+    beyond: bool,
+    ignored: usize,
+}
+
+enum Boundary {
+    /// MODEL or ENDMDL: a new model follows.
+    Model,
+    /// END: a new model follows if it starts with the same atom (trajectories are written so), otherwise it is another
+    /// part of the same structure (complexes are often put together so).
+    End,
+}
+
+impl Models {
+    fn note(&mut self, record_name: &str) {
+        match record_name {
+            "MODEL" | "ENDMDL" => self.boundary = Some(Boundary::Model),
+            "END" if self.boundary.is_none() => self.boundary = Some(Boundary::End),
+            _ => {}
+        }
+    }
+
+    fn keeps(&mut self, record: &str) -> bool {
+        let identity = record.get(12..27).unwrap_or(record);
+        let boundary = self.boundary.take();
+        let Some(first) = &self.first else {
+            self.first = Some(identity.to_string());
+            return true;
+        };
+        let starts_model = match boundary {
+            Some(Boundary::Model) => true,
+            Some(Boundary::End) => identity == first,
+            None => false,
+        };
+        if starts_model {
+            self.beyond = true;
+            self.ignored += 1;
+        }
+        !self.beyond
+    }
+}
+
+/// Adds one atom record.
+fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(), ReadError> {
+    if record.len() < 54 {
+        return Err(ReadError::ShortRecord {
+            file: file.to_path_buf(),
+            line,
+            length: record.len(),
+        });
+    }
+    // The serial number in columns 7-11 is not used, and may hold anything.
+    let columns = record.as_bytes().iter().take(66).skip(12);
+    if let Some(odd) = columns.into_iter().find(|byte| !(32..127).contains(*byte)) {
+        let text = format!("byte {odd:#04x}");
+        return Err(field(
+            file,
+            line,
+            "a character in columns 13-66",
+            &text,
+            "plain ASCII text",
+        ));
+    }
+    // ASCII up to column 66, so that slices up to there fall between characters; `get` guards the rest.
+    let slice = |start: usize, end: usize| record.get(start..end.min(record.len())).unwrap_or("");
+
+    let positions = [slice(30, 38), slice(38, 46), slice(46, 54)];
+    for ((axis, columns), text) in [("x", "31-38"), ("y", "39-46"), ("z", "47-54")]
+        .into_iter()
+        .zip(positions)
+    {
+        if coordinate(text).is_none() {
+            let name = format!("coordinate {axis} (columns {columns})");
+            return Err(field(file, line, name, text, "a finite number"));
+        }
+    }
+    if let Some(text) = run_together(positions) {
+        let name = "the coordinates (columns 31-54)";
+        return Err(field(
+            file,
+            line,
+            name,
+            &text,
+            "three numbers in columns of eight (larger ones need mmCIF)",
+        ));
+    }
+
+    let name = slice(12, 16);
+    // Columns 18-20 by the format; programs put a fourth letter into column 21.
+    let residue_name = match slice(17, 21).trim() {
+        "" => "UNK",
+        name => name,
+    };
+    let (residue_number, insertion) =
+        residue_number(slice(22, 26), slice(26, 27)).ok_or_else(|| {
+            field(
+                file,
+                line,
+                "the residue number (columns 23-26)",
+                slice(22, 27),
+                "a whole number",
+            )
+        })?;
+    let alternate = slice(16, 17).chars().next().filter(|c| *c != ' ');
+
+    let mut number = |text: &str, default: &'static str, width: usize| -> String {
+        let text = text.trim();
+        if coordinate(text).is_some() {
+            format!("{text:>width$}")
+        } else {
+            sieved.defaults_filled += 1;
+            format!("{default:>width$}")
+        }
+    };
+    let occupancy = number(slice(54, 60), "1.00", 6);
+    let b_factor = number(slice(60, 66), "0.00", 6);
+
+    // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
+    let serial = sieved.carried.len() % 100_000;
+    let chain = slice(21, 22).trim();
+    let shown_chain = if chain.is_empty() { "A" } else { chain };
+    // What pdbtbx's four columns cannot hold is carried, and shown as 0.
+    let shown_number = Some(residue_number)
+        .filter(|number| (-999..=9999).contains(number))
+        .unwrap_or(0);
+    let [x, y, z] = positions;
+    // The element travels past pdbtbx; carbon is what it finds fastest.
+    let _ = writeln!(
+        sieved.text,
+        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  ",
+        slice(0, 6),
+        alternate.unwrap_or(NO_ALTERNATE),
+        residue_name,
+        "",
+    );
+    sieved.carried.push(Carried {
+        line,
+        chain: chain.to_string(),
+        residue_name: residue_name.to_string(),
+        residue_number,
+        alternate_location: alternate,
+        element: slice(76, 78).trim().to_string(),
+        name_column: if name.starts_with(' ') {
+            NameColumn::Blank
+        } else {
+            NameColumn::Filled
+        },
+        exact: None,
+    });
+    Ok(())
+}
+
+/// Whether two coordinates run into one another, so that the columns no longer say where one ends.
+///
+/// Programs that print 1e6 Å with `%8.3f` shift the columns and leave numbers that parse but are wrong. In a sound record
+/// a number may touch the one before only if that one has its three decimals.
+fn run_together(positions: [&str; 3]) -> Option<String> {
+    let touches = |left: &str, right: &str| {
+        let decimals = left
+            .trim()
+            .split_once('.')
+            .map_or(0, |(_, tail)| tail.len());
+        left.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+            && right.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+            && (decimals != 3 || !right.contains('.'))
+    };
+    let [x, y, z] = positions;
+    (touches(x, y) || touches(y, z)).then(|| positions.concat())
+}
+
+/// Residue number and insertion code from columns 23-26 and 27.
+///
+/// Numbers above 9,999 come as hybrid-36 (`A000` is 10,000; Grosse-Kunstleve, cctbx) or with a fifth digit in the column of
+/// the insertion code.
+fn residue_number(number: &str, insertion: &str) -> Option<(i64, char)> {
+    let code = insertion.chars().next().unwrap_or(' ');
+    if let Ok(value) = number.trim().parse::<i64>() {
+        let is_full = number.starts_with(|c: char| c.is_ascii_digit());
+        return match code.to_digit(10) {
+            Some(digit) if is_full => Some((10 * value + i64::from(digit), ' ')),
+            _ => Some((value, code)),
+        };
+    }
+    hybrid_36(number).map(|value| (value, code))
+}
+
+/// Decodes a four-character hybrid-36 number from 10,000 on: base 36, upper case first, then lower case.
+fn hybrid_36(text: &str) -> Option<i64> {
+    let lead = text.chars().next().filter(|_| text.len() == 4)?;
+    let upper = lead.is_ascii_uppercase();
+    if !upper && !lead.is_ascii_lowercase() {
+        return None;
+    }
+    let same_case = |c: char| c.is_ascii_digit() || c.is_ascii_uppercase() == upper;
+    if !text
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() && same_case(c))
+    {
+        return None;
+    }
+    let value = i64::from_str_radix(text, 36).ok()?;
+    let first = 10 * 36_i64.pow(3);
+    let letters = 26 * 36_i64.pow(3);
+    Some(value - first + 10_000 + if upper { 0 } else { letters })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hybrid_36_continues_after_9999() {
+        // Values from the definition: A000 follows 9999, ZZZZ is followed by a000.
+        assert_eq!(hybrid_36("A000"), Some(10_000));
+        assert_eq!(hybrid_36("A001"), Some(10_001));
+        assert_eq!(hybrid_36("ZZZZ"), Some(10_000 + 26 * 46_656 - 1));
+        assert_eq!(hybrid_36("a000"), Some(10_000 + 26 * 46_656));
+        assert_eq!(hybrid_36("Aa00"), None);
+        assert_eq!(hybrid_36(" A00"), None);
+        assert_eq!(hybrid_36("1A00"), None);
+    }
+
+    #[test]
+    fn residue_numbers_keep_signs_and_insertion_codes() {
+        assert_eq!(residue_number("  -5", " "), Some((-5, ' ')));
+        assert_eq!(residue_number(" 100", "A"), Some((100, 'A')));
+        // A digit is an insertion code (old entries) unless the number fills its columns.
+        assert_eq!(residue_number(" 100", "1"), Some((100, '1')));
+        assert_eq!(residue_number("1000", "1"), Some((10_001, ' ')));
+        assert_eq!(residue_number("    ", " "), None);
+    }
+
+    #[test]
+    fn shifted_columns_are_told_from_touching_ones() {
+        assert_eq!(run_together(["1234.567", "1234.567", "-100.000"]), None);
+        assert_eq!(run_together(["-100.123", "-200.456", "   1.000"]), None);
+        // 1000000.000 three times, printed without a blank: parses as 1e6, 10000, 1e5.
+        assert!(run_together(["1000000.", "00010000", "00.00010"]).is_some());
+    }
+}
