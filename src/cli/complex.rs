@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use knotdock::output::complexes::write_complexes;
-use knotdock::output::manifest::RecordedRun;
 use knotdock::output::poses::{PoseRow, PoseTable};
+use knotdock::output::recorded_run::RecordedRun;
 use serde_json::json;
 
 use super::console::Console;

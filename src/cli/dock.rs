@@ -6,23 +6,26 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 use clap::Args;
 use knotdock::output::complexes::write_complexes;
 use knotdock::output::manifest::{
-    COMMIT, Inputs, Machine, Manifest, ManifestParts, RecordedRun, Results, RunOptions, Timing,
-    VERSION, VERSION_WITH_COMMIT, cpu_features,
+    COMMIT, Inputs, Machine, Manifest, ManifestParts, Results, Timing, VERSION,
+    VERSION_WITH_COMMIT, cpu_features,
 };
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
+use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, firsts};
+use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
 use knotdock::search::outcome::RankedPose;
-use knotdock::search::{self, DockOptions, DockOutcome, Effect};
+use knotdock::search::{self, DockOptions, DockOutcome};
 use serde_json::json;
 
-use super::arguments::{above_zero, at_least_one, effect, not_negative, rotations_of_angle};
+use super::arguments::at_least_one;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
 use super::memory;
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
+use super::search_arguments::{RANKING, SearchArguments};
 
 /// Dock a ligand to a receptor and rank the poses.
 ///
@@ -48,18 +51,18 @@ pub struct Dock {
     #[command(flatten)]
     search: SearchArguments,
     /// List every pose; without this, one row a cluster, its best pose.
-    #[arg(long)]
+    #[arg(long, help_heading = RANKING)]
     no_cluster: bool,
     /// Complexes to write to top/.
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
     write_top: usize,
     #[command(flatten)]
     native: NativeArguments,
     /// Threads [default: all hardware threads].
-    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
     threads: Option<usize>,
     /// Memory that the search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
-    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size, help_heading = MACHINE)]
     memory: Option<u64>,
 }
 
@@ -88,76 +91,7 @@ const RECORDED: [&str; 21] = [
     "native_ligand",
 ];
 
-/// Options of the search.
-#[derive(Args, Debug)]
-struct SearchArguments {
-    /// Rotations of the ligand, near uniform over all.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations)]
-    rotations: usize,
-    /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
-    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations")]
-    angle: Option<usize>,
-    /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
-    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
-    resolution: Option<f64>,
-    /// Frequency up to which the low-pass takes nothing, in cycles per Å.
-    #[arg(long, value_name = "F", value_parser = not_negative, help_heading = TRADE_OFFS)]
-    pass: Option<f64>,
-    /// Spacing of the translation grid, in Å [default: half the resolution].
-    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
-    spacing: Option<f64>,
-    /// Penalty of overlap against the reward of contact (dimensionless).
-    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().lambda)]
-    lambda: f64,
-    /// Depth r0 of the skin, in Å.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().offset)]
-    offset: f64,
-    /// Exponent of the bump kernel (dimensionless); large values harden the balls.
-    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha)]
-    alpha: f64,
-    /// Error of the fast path that is allowed, as a share of the best score.
-    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
-    tolerance: f64,
-    /// Effects to score.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = effect, default_value = "shape")]
-    effects: Vec<Effect>,
-    /// Peaks kept of each rotation.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation)]
-    per_rotation: usize,
-    /// Poses kept of all rotations.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().poses)]
-    poses: usize,
-    /// Best poses to refine off the grid.
-    #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine)]
-    refine: usize,
-    /// Ligand CA RMSD within which poses form a cluster, in Å.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 5.0)]
-    cluster_radius: f64,
-}
-
-/// Heading of the options that trade accuracy for time.
-const TRADE_OFFS: &str = "Accuracy against time";
-
-impl SearchArguments {
-    fn options(&self) -> DockOptions {
-        DockOptions {
-            rotations: self.angle.unwrap_or(self.rotations),
-            resolution: self.resolution,
-            pass: self.pass,
-            spacing: self.spacing,
-            lambda: self.lambda,
-            offset: self.offset,
-            alpha: self.alpha,
-            tolerance: self.tolerance,
-            effects: self.effects.clone(),
-            per_rotation: self.per_rotation,
-            poses: self.poses,
-            refine: self.refine,
-            cluster_radius: Some(self.cluster_radius),
-            ..DockOptions::default()
-        }
-    }
-}
+const MACHINE: &str = "Machine";
 
 /// A run as asked for, by options or by a run.json.
 struct Request {

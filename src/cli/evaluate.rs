@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::evaluate::{Capri, PoseQuality};
-use knotdock::output::manifest::RecordedRun;
 use knotdock::output::poses::{PoseRow, PoseTable};
+use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::{quality, report};
 use serde_json::json;
 

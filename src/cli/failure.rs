@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::manifest::RecordedRunError;
-use knotdock::output::poses::PoseTableError;
+use knotdock::output::poses_reader::PoseTableError;
+use knotdock::output::recorded_run::RecordedRunError;
 use knotdock::output::staging::StagingError;
 
 /// Whose fault it was.

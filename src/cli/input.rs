@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use knotdock::output::manifest::{InputEntry, InputRecord, InputRecordError};
+use knotdock::output::input_record::{InputRecord, InputRecordError};
+use knotdock::output::manifest::InputEntry;
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
 
 use super::failure::Failure;

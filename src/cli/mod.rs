@@ -11,6 +11,7 @@ mod input;
 mod memory;
 mod native;
 mod ranks;
+mod search_arguments;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -25,7 +26,7 @@ use failure::Failure;
 /// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, angles in degrees.
 /// Exit codes: 0 done, 2 bad input, 1 any other failure.
 #[derive(Debug, Parser)]
-#[command(name = "knotdock", version = version(), max_term_width = 110)]
+#[command(name = "knotdock", version = version())]
 struct Cli {
     #[command(subcommand)]
     command: Command,

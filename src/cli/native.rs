@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use knotdock::evaluate::{Evaluator, Native, PoseQuality};
-use knotdock::output::manifest::NativeRecord;
+use knotdock::output::input_record::NativeRecord;
 use knotdock::output::poses::PoseRow;
 use knotdock_structures::molecule::Molecule;
 

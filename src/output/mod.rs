@@ -10,8 +10,12 @@
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
 pub mod complexes;
+pub mod input_record;
 pub mod manifest;
 pub mod poses;
+pub mod poses_reader;
 pub mod quality;
+pub mod recorded_run;
 pub mod report;
+pub mod run_options;
 pub mod staging;
