@@ -14,7 +14,9 @@
 //! - `fnat`: share of the native's residue contacts (any heavy atoms within 5 Å) that the pose has too. Contacts of
 //!   residues without a match count as lost.
 //! - `dockq`: as DockQ 2.1.3 computes it, which takes the side with fewer residues for its ligand, so that its ligand
-//!   RMSD is not always `lrmsd`.
+//!   RMSD is not always `lrmsd`. DockQ pairs residues by sequence alone: where a residue is missing beside one of the
+//!   same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native), and
+//!   then our figures are those that it gives for the pairs that the numbers name.
 //! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
 //!
 //! # Cost

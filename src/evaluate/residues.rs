@@ -2,7 +2,9 @@
 //!
 //! A **segment** is what is matched as one chain: the residues of one chain name, in file order. Where a chain repeats a
 //! residue number that it has had before, several chains were written under one name (the H and L of an antibody, say),
-//! and a new segment begins there.
+//! and a new segment begins there; likewise where its numbers leap by a hundred or more, which is how the makers of
+//! docking benchmark 5 keep merged chains apart (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS). A leap
+//! over a missing domain is cut too, which does no harm: both pieces are matched.
 
 use std::collections::HashSet;
 
@@ -16,6 +18,11 @@ pub(super) const BACKBONE_ATOMS: [&str; 16] = [
     "CA", "C", "N", "O", "P", "OP1", "OP2", "O2'", "O3'", "O4'", "O5'", "C1'", "C2'", "C3'", "C4'",
     "C5'",
 ];
+
+/// Smallest step in residue numbers that begins a new segment.
+const LEAP: i64 = 100;
+/// Only if this many residues stand on both sides of it: shorter pieces stay with their chain.
+const LEAST_PIECE: usize = 20;
 
 /// What a residue is called in its file: number and insertion code.
 pub(super) type Number = (i64, Option<char>);
@@ -98,22 +105,29 @@ impl Residues {
         Ok(all)
     }
 
-    /// Cuts one chain's atoms into residues and appends them, beginning a new segment at each repeated number.
+    /// Cuts one chain's atoms into residues and appends them as one or more segments.
     fn add_chain(&mut self, name: &str, atoms: &[&Atom]) {
+        let found: Vec<_> = residue_runs(atoms)
+            .into_iter()
+            .filter_map(Residue::of)
+            .collect();
+        let mut left = found.len();
         let mut seen: HashSet<Number> = HashSet::new();
-        let mut members = Vec::new();
+        let mut members: Vec<usize> = Vec::new();
         let mut pieces = 1;
-        for group in residue_runs(atoms) {
-            let Some(residue) = Residue::of(group) else {
-                continue;
-            };
-            if !seen.insert(residue.number) {
+        for residue in found {
+            let before = members.last().map(|&member| self.residues[member].number.0);
+            let leaps = before
+                .is_some_and(|before| residue.number.0.saturating_sub(before) >= LEAP)
+                && members.len().min(left) >= LEAST_PIECE;
+            if !seen.insert(residue.number) || leaps {
                 self.add_segment(name, pieces, std::mem::take(&mut members));
                 pieces += 1;
                 seen = HashSet::from([residue.number]);
             }
             members.push(self.residues.len());
             self.residues.push(residue);
+            left -= 1;
         }
         self.add_segment(name, pieces, members);
     }
@@ -252,7 +266,7 @@ fn kind(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_molecules::{atom, molecule};
+    use super::super::test_molecules::{atom, chain_of, molecule};
     use super::*;
 
     #[test]
@@ -268,6 +282,21 @@ mod tests {
         let sizes: Vec<_> = residues.segments.iter().map(|s| s.members.len()).collect();
         assert_eq!(sizes, [3, 2]);
         assert_eq!(residues.segments[1].name, "A/2");
+    }
+
+    #[test]
+    fn leaping_number_begins_a_segment() {
+        let sizes = |numbers: Vec<i64>| -> Vec<usize> {
+            let letters = "A".repeat(numbers.len());
+            let residues =
+                Residues::of(&molecule(chain_of("A", &letters, &numbers)), "receptor").unwrap();
+            let segments = residues.segments.iter();
+            segments.map(|segment| segment.members.len()).collect()
+        };
+        assert_eq!(sizes((1..=30).chain(1001..=1025).collect()), [30, 25]);
+        // A loop of 99 missing residues, and a tag of five: one chain.
+        assert_eq!(sizes((1..=30).chain(129..=150).collect()), [52]);
+        assert_eq!(sizes((1..=30).chain(501..=505).collect()), [35]);
     }
 
     #[test]

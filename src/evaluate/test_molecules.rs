@@ -34,10 +34,7 @@ pub(super) fn atom(
 }
 
 pub(super) fn molecule(atoms: Vec<Atom>) -> Molecule {
-    Molecule {
-        atoms,
-        format: Format::Pdb,
-    }
+    Molecule::new(atoms, Format::Pdb)
 }
 
 pub(super) fn numbers(first: i64, count: usize) -> Vec<i64> {
