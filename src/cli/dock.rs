@@ -1,21 +1,16 @@
 //! `knotdock dock`: from two structures to a ranked list of poses and complexes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
 use knotdock::output::complexes::write_complexes;
-use knotdock::output::manifest::{
-    COMMIT, Inputs, Machine, Manifest, ManifestParts, Results, Timing, VERSION,
-    VERSION_WITH_COMMIT, cpu_features,
-};
+use knotdock::output::manifest::{Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
-use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
-use knotdock::search::outcome::RankedPose;
 use knotdock::search::{self, DockOptions, DockOutcome};
 use serde_json::json;
 
@@ -24,7 +19,8 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
 use super::memory;
-use super::native::{NativeArguments, NativeFiles, match_text, measure};
+use super::native::{NativeArguments, match_text, measure};
+use super::request::Request;
 use super::search_arguments::{RANKING, SearchArguments};
 
 /// Dock a ligand to a receptor and rank the poses.
@@ -92,73 +88,6 @@ const RECORDED: [&str; 21] = [
 ];
 
 const MACHINE: &str = "Machine";
-
-/// A run as asked for, by options or by a run.json.
-struct Request {
-    receptor: Input,
-    ligand: Input,
-    native: Option<NativeFiles>,
-    options: RunOptions,
-}
-
-impl Request {
-    /// What an earlier run was asked for, from its run.json.
-    fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
-        let run = RecordedRun::read(path)?;
-        if (run.version.as_str(), run.commit.as_str()) != (VERSION, COMMIT) {
-            console.warn(format!(
-                "the run is of version {} ({}), this is {VERSION_WITH_COMMIT}: the poses may differ",
-                run.version, run.commit
-            ));
-        }
-        if run.cpu_features != cpu_features() {
-            console.warn(format!(
-                "the run was on {}, this is {}: last digits may differ",
-                run.cpu_features,
-                cpu_features()
-            ));
-        }
-        Ok(Self {
-            receptor: Input::recorded(&run.receptor, path)?,
-            ligand: Input::recorded(&run.ligand, path)?,
-            native: run
-                .native
-                .as_ref()
-                .map(|native| NativeFiles::recorded(native, path))
-                .transpose()?,
-            options: run.options,
-        })
-    }
-
-    /// The inputs for run.json.
-    fn inputs(&self) -> Result<Inputs, Failure> {
-        Ok(Inputs {
-            receptor: self.receptor.entry()?,
-            ligand: self.ligand.entry()?,
-            native: self.native.as_ref().map(NativeFiles::record),
-        })
-    }
-
-    /// The directory of a run that names none.
-    fn directory(&self) -> PathBuf {
-        PathBuf::from(format!(
-            "knotdock_{}_{}",
-            self.receptor.label(),
-            self.ligand.label()
-        ))
-    }
-
-    /// The poses that are listed, best first.
-    fn ranking(&self, outcome: &DockOutcome) -> Vec<RankedPose> {
-        if self.options.no_cluster {
-            return outcome.poses.clone();
-        }
-        firsts(&outcome.poses)
-            .into_iter()
-            .filter_map(|index| outcome.poses.get(index).cloned())
-            .collect()
-    }
-}
 
 impl Dock {
     /// What the command line asks for.
@@ -254,12 +183,16 @@ impl Dock {
             ranking.len(),
             directory.join("poses.csv").display()
         ));
+        let complexes = written
+            .names
+            .iter()
+            .map(|name| directory.join("top").join(name));
         console.result(&json!({
             "directory": directory.display().to_string(),
             "poses": directory.join("poses.csv").display().to_string(),
-            "complexes": written.names.iter().map(|name| directory.join("top").join(name).display().to_string()).collect::<Vec<_>>(),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
             "best": table.objects(firsts(&ranking).into_iter().take(BEST)),
-            "run": manifest,
+            "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
         }));
         Ok(())
     }

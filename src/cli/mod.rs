@@ -11,6 +11,7 @@ mod input;
 mod memory;
 mod native;
 mod ranks;
+mod request;
 mod search_arguments;
 
 use std::ffi::OsString;
