@@ -11,7 +11,8 @@ if ! cmp --silent scripts/requirements.txt "$venv/installed.txt"; then
     "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement scripts/requirements.txt
     cp scripts/requirements.txt "$venv/installed.txt"
 fi
-cargo build --locked
+# The tests build the program; building it alone would compile some of its dependencies again with fewer features.
+cargo test --workspace --no-run --quiet --locked
 example=structures/examples/1ppe
 "$venv/bin/python" scripts/check_dockq.py "$target/debug/knotdock" \
     "${example}_receptor_unbound.pdb" "${example}_ligand_unbound.pdb" \
