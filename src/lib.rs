@@ -1,3 +1,4 @@
 //! knotdock: the pipeline from two structures to a ranked list of poses.
 
+pub mod evaluate;
 pub mod search;

@@ -31,12 +31,16 @@ mod residues;
 mod select;
 mod sieve;
 mod source;
+mod write;
 
 pub use error::ReadError;
 pub use groups::GroupKind;
 pub use input::InputSpec;
 pub use read::{ReadOptions, read};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
+pub use write::{
+    ChainMap, ChainName, Partner, WriteError, complex_format, write_complex, write_molecule,
+};
 
 /// File format of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

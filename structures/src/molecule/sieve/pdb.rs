@@ -2,6 +2,7 @@
 //!
 //! Columns in comments are 1-based, as in the format's description.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
@@ -94,10 +95,17 @@ fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(
             length: record.len(),
         });
     }
-    let columns = record.as_bytes().get(..66).unwrap_or(record.as_bytes());
-    if let Some(odd) = columns.iter().find(|byte| !(32..127).contains(*byte)) {
+    // The serial number in columns 7-11 is not used, and may hold anything.
+    let columns = record.as_bytes().iter().take(66).skip(12);
+    if let Some(odd) = columns.into_iter().find(|byte| !(32..127).contains(*byte)) {
         let text = format!("byte {odd:#04x}");
-        return Err(field(file, line, "columns 1-66", &text, "plain ASCII text"));
+        return Err(field(
+            file,
+            line,
+            "a character in columns 13-66",
+            &text,
+            "plain ASCII text",
+        ));
     }
     // ASCII up to column 66, so that slices up to there fall between characters; `get` guards the rest.
     let slice = |start: usize, end: usize| record.get(start..end.min(record.len())).unwrap_or("");
@@ -162,10 +170,10 @@ fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(
         .filter(|number| (-999..=9999).contains(number))
         .unwrap_or(0);
     let [x, y, z] = positions;
-    use std::fmt::Write;
+    // The element travels past pdbtbx; carbon is what it finds fastest.
     let _ = writeln!(
         sieved.text,
-        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:14}",
+        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  ",
         slice(0, 6),
         alternate.unwrap_or(NO_ALTERNATE),
         residue_name,

@@ -1,0 +1,222 @@
+//! What touches what: the native's interface, and the share of its contacts that a pose keeps.
+//!
+//! Two residues are in contact when any two of their heavy atoms are less than 5 Å apart; a residue belongs to the
+//! interface when a heavy atom of it is less than 10 Å from one across (DockQ 2.1.3 `constants.py`; the CAPRI
+//! definitions, Méndez et al., Proteins 52 (2003) 51-67).
+
+use std::collections::HashMap;
+
+use knotdock_scoring::se3::Pose;
+use nalgebra::Point3;
+
+use super::residues::Residue;
+
+/// Largest distance of a contact, in Å.
+pub(super) const CONTACT_DISTANCE: f64 = 5.0;
+/// Largest distance across the interface, in Å.
+pub(super) const INTERFACE_DISTANCE: f64 = 10.0;
+
+/// A pair of residues across the native's interface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AcrossPair {
+    /// Index of the receptor's residue.
+    pub receptor: usize,
+    /// Index of the ligand's residue.
+    pub ligand: usize,
+    /// Whether they are in contact too.
+    pub contact: bool,
+}
+
+/// All pairs of residues less than 10 Å apart, by receptor and then ligand residue.
+///
+/// Cost: every pair of residues once, and every pair of atoms of those whose bounding balls come near.
+pub(super) fn pairs_across(receptor: &[Residue], ligand: &[Residue]) -> Vec<AcrossPair> {
+    let mut found = Vec::new();
+    for (i, a) in receptor.iter().enumerate() {
+        for (j, b) in ligand.iter().enumerate() {
+            let reach = INTERFACE_DISTANCE + a.radius + b.radius;
+            if nalgebra::distance_squared(&a.center, &b.center) > reach * reach {
+                continue;
+            }
+            let least = least_distance_squared(&a.heavy, &b.heavy);
+            if least < INTERFACE_DISTANCE * INTERFACE_DISTANCE {
+                found.push(AcrossPair {
+                    receptor: i,
+                    ligand: j,
+                    contact: least < CONTACT_DISTANCE * CONTACT_DISTANCE,
+                });
+            }
+        }
+    }
+    found
+}
+
+fn least_distance_squared(a: &[Point3<f64>], b: &[Point3<f64>]) -> f64 {
+    let mut least = f64::INFINITY;
+    for x in a {
+        for y in b {
+            least = least.min(nalgebra::distance_squared(x, y));
+        }
+    }
+    least
+}
+
+/// A ball of atoms: the heavy atoms of one residue and where they lie.
+#[derive(Clone, Debug)]
+struct Ball {
+    atoms: std::ops::Range<usize>,
+    center: Point3<f64>,
+    radius: f64,
+}
+
+/// The residues of one side that take part in contacts, their atoms in one array.
+#[derive(Clone, Debug, Default)]
+struct ContactSide {
+    atoms: Vec<Point3<f64>>,
+    balls: Vec<Ball>,
+    place: HashMap<usize, usize>,
+}
+
+impl ContactSide {
+    /// Place of the residue with this index, added when it is new.
+    fn place(&mut self, index: usize, residue: &Residue) -> usize {
+        *self.place.entry(index).or_insert_with(|| {
+            let first = self.atoms.len();
+            self.atoms.extend_from_slice(&residue.heavy);
+            self.balls.push(Ball {
+                atoms: first..self.atoms.len(),
+                center: residue.center,
+                radius: residue.radius,
+            });
+            self.balls.len() - 1
+        })
+    }
+}
+
+/// The native's contacts as pairs of the user's residues.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NativeContacts {
+    receptor: ContactSide,
+    ligand: ContactSide,
+    /// Places of matched residues that touch in the native.
+    pairs: Vec<(usize, usize)>,
+    /// Number of contacts of the whole native, matched or not.
+    total: usize,
+}
+
+impl NativeContacts {
+    /// The contacts among `across`, whose residues are the user's `receptor` and `ligand` residues where
+    /// `receptor_of` and `ligand_of` know them.
+    pub fn new(
+        across: &[AcrossPair],
+        receptor: &[Residue],
+        ligand: &[Residue],
+        receptor_of: &HashMap<usize, usize>,
+        ligand_of: &HashMap<usize, usize>,
+    ) -> Self {
+        let mut contacts = Self::default();
+        for pair in across.iter().filter(|pair| pair.contact) {
+            contacts.total += 1;
+            let (Some(&i), Some(&j)) =
+                (receptor_of.get(&pair.receptor), ligand_of.get(&pair.ligand))
+            else {
+                continue;
+            };
+            let places = (
+                contacts.receptor.place(i, &receptor[i]),
+                contacts.ligand.place(j, &ligand[j]),
+            );
+            contacts.pairs.push(places);
+        }
+        contacts
+    }
+
+    /// Number of contacts of the native.
+    pub fn total(&self) -> usize {
+        self.total
+    }
+
+    /// Number of those between matched residues.
+    pub fn matched(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// The share, 0 to 1, of the native's contacts that are contacts with the ligand at `pose`.
+    pub fn share_kept(&self, pose: &Pose) -> f64 {
+        if self.total == 0 {
+            return 0.0;
+        }
+        let moved = |point: &Point3<f64>| pose.rotation * point + pose.translation;
+        let atoms: Vec<_> = self.ligand.atoms.iter().map(moved).collect();
+        let centers: Vec<_> = self
+            .ligand
+            .balls
+            .iter()
+            .map(|ball| moved(&ball.center))
+            .collect();
+        let kept = self
+            .pairs
+            .iter()
+            .filter(|&&(i, j)| {
+                let (fixed, moving) = (&self.receptor.balls[i], &self.ligand.balls[j]);
+                let reach = CONTACT_DISTANCE + fixed.radius + moving.radius;
+                nalgebra::distance_squared(&fixed.center, &centers[j]) < reach * reach
+                    && touches(
+                        &self.receptor.atoms[fixed.atoms.clone()],
+                        &atoms[moving.atoms.clone()],
+                    )
+            })
+            .count();
+        kept as f64 / self.total as f64
+    }
+}
+
+fn touches(a: &[Point3<f64>], b: &[Point3<f64>]) -> bool {
+    let limit = CONTACT_DISTANCE * CONTACT_DISTANCE;
+    a.iter()
+        .any(|x| b.iter().any(|y| nalgebra::distance_squared(x, y) < limit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::residues::Residues;
+    use super::super::test_molecules::{atom, molecule};
+    use super::*;
+
+    /// One residue of one atom at each place along x.
+    fn row(places: &[f64]) -> Vec<Residue> {
+        let atoms = places
+            .iter()
+            .zip(1..)
+            .map(|(&x, number)| atom("A", number, "GLY", "CA", [x, 0.0, 0.0]))
+            .collect();
+        Residues::of(&molecule(atoms), "receptor").unwrap().residues
+    }
+
+    #[test]
+    fn five_and_ten_angstrom_are_outside() {
+        // DockQ compares with `<`: a pair at the very limit is none.
+        let found = pairs_across(&row(&[0.0]), &row(&[4.999, 5.0, 9.999, 10.0]));
+        let seen: Vec<_> = found
+            .iter()
+            .map(|pair| (pair.ligand, pair.contact))
+            .collect();
+        assert_eq!(seen, [(0, true), (1, false), (2, false)]);
+    }
+
+    #[test]
+    fn share_counts_unmatched_contacts_as_lost() {
+        let (receptor, ligand) = (row(&[0.0, 100.0]), row(&[3.0, 103.0]));
+        let across = pairs_across(&receptor, &ligand);
+        let all: HashMap<_, _> = [(0, 0), (1, 1)].into();
+        let one: HashMap<_, _> = [(0, 0)].into();
+        let share = |of: &HashMap<_, _>, x: f64| {
+            let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+            NativeContacts::new(&across, &receptor, &ligand, of, &all).share_kept(&pose)
+        };
+        assert_eq!(share(&all, 0.0), 1.0);
+        assert_eq!(share(&all, 1.9), 1.0);
+        assert_eq!(share(&all, 2.1), 0.0);
+        assert_eq!(share(&one, 0.0), 0.5);
+    }
+}

@@ -1,0 +1,92 @@
+//! The DockQ score and the CAPRI class of a pose.
+
+use serde::Serialize;
+
+/// DockQ from the share of native contacts and the interface and ligand RMSD in Å:
+/// (fnat + 1 / (1 + (irmsd / 1.5)^2) + 1 / (1 + (lrmsd / 8.5)^2)) / 3, from 0 to 1.
+///
+/// Source: Basu & Wallner, PLoS ONE 11 (2016) e0161879; Mirabello & Wallner, Bioinformatics 40 (2024) btae586.
+pub fn dockq(fnat: f64, irmsd: f64, lrmsd: f64) -> f64 {
+    let scaled = |rmsd: f64, scale: f64| 1.0 / (1.0 + (rmsd / scale).powi(2));
+    (fnat + scaled(irmsd, 1.5) + scaled(lrmsd, 8.5)) / 3.0
+}
+
+/// The class of a prediction by the CAPRI rules.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Capri {
+    /// None of the others.
+    Incorrect,
+    /// fnat >= 0.1 and (lrmsd <= 10 Å or irmsd <= 4 Å).
+    Acceptable,
+    /// fnat >= 0.3 and (lrmsd <= 5 Å or irmsd <= 2 Å).
+    Medium,
+    /// fnat >= 0.5 and (lrmsd <= 1 Å or irmsd <= 1 Å).
+    High,
+}
+
+impl Capri {
+    /// The best class whose conditions hold (Lensink, Méndez & Wodak, Proteins 69 (2007) 704-718, table 1).
+    pub fn of(fnat: f64, irmsd: f64, lrmsd: f64) -> Self {
+        let within = |share: f64, ligand: f64, interface: f64| {
+            fnat >= share && (lrmsd <= ligand || irmsd <= interface)
+        };
+        if within(0.5, 1.0, 1.0) {
+            Self::High
+        } else if within(0.3, 5.0, 2.0) {
+            Self::Medium
+        } else if within(0.1, 10.0, 4.0) {
+            Self::Acceptable
+        } else {
+            Self::Incorrect
+        }
+    }
+
+    /// The class's name as written in tables: `incorrect`, `acceptable`, `medium` or `high`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Incorrect => "incorrect",
+            Self::Acceptable => "acceptable",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dockq_by_hand() {
+        assert_eq!(dockq(1.0, 0.0, 0.0), 1.0);
+        // Each RMSD at its scale halves its term: (0.5 + 0.5 + 0.5) / 3.
+        assert!((dockq(0.5, 1.5, 8.5) - 0.5).abs() < 1e-15);
+        // (0.2 + 1/(1+4) + 1/(1+9)) / 3 = 0.5 / 3.
+        assert!((dockq(0.2, 3.0, 25.5) - 0.5 / 3.0).abs() < 1e-15);
+        assert!(dockq(0.0, f64::MAX, f64::MAX).abs() < 1e-300);
+    }
+
+    #[test]
+    fn capri_classes_by_the_table() {
+        for (fnat, irmsd, lrmsd, class) in [
+            (0.5, 1.0, 99.0, Capri::High),
+            (0.5, 9.0, 1.0, Capri::High),
+            (0.49, 0.5, 0.5, Capri::Medium),
+            (0.9, 1.01, 1.01, Capri::Medium),
+            (0.3, 2.0, 99.0, Capri::Medium),
+            (0.29, 0.5, 0.5, Capri::Acceptable),
+            (0.9, 2.01, 5.01, Capri::Acceptable),
+            (0.1, 4.0, 99.0, Capri::Acceptable),
+            (0.1, 99.0, 10.0, Capri::Acceptable),
+            (0.09, 0.0, 0.0, Capri::Incorrect),
+            (1.0, 4.01, 10.01, Capri::Incorrect),
+        ] {
+            assert_eq!(
+                Capri::of(fnat, irmsd, lrmsd),
+                class,
+                "{fnat} {irmsd} {lrmsd}"
+            );
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Why poses cannot be judged by the native given.
+
+/// Why an [`Evaluator`](super::Evaluator) could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EvaluateError {
+    /// A molecule holds no residue of protein or nucleic acid.
+    #[error("the {molecule} has no residue of protein or nucleic acid")]
+    NoResidues {
+        /// Which molecule: "receptor", "ligand", "native", "native receptor" or "native ligand".
+        molecule: &'static str,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("the {molecule} has an atom (line {line}) whose coordinates are not finite")]
+    NotFinite {
+        /// Which molecule, as above.
+        molecule: &'static str,
+        /// 1-based line of the atom in its file.
+        line: usize,
+    },
+    /// No chain of the native is that of the user's molecule.
+    #[error("no chain of the native has the sequence of the {side}")]
+    Unmatched {
+        /// "receptor" or "ligand".
+        side: &'static str,
+    },
+    /// The native's two sides do not touch.
+    #[error("the native's receptor and ligand have no heavy atoms within 5 Å of each other")]
+    NoContact,
+    /// Too little of the native's interface has a match for the figures to mean anything.
+    #[error(
+        "only {matched} of the {interface} residues that the native's {side} has at the interface are matched in the \
+         {side} that was docked; at least half are needed"
+    )]
+    Interface {
+        /// "receptor" or "ligand".
+        side: &'static str,
+        /// Interface residues matched.
+        matched: usize,
+        /// Interface residues of the native on this side.
+        interface: usize,
+    },
+    /// Too few backbone atoms to superpose.
+    #[error(
+        "only {atoms} backbone atoms of the {side} are matched with the native; at least 3 are needed"
+    )]
+    Backbone {
+        /// "receptor" or "ligand".
+        side: &'static str,
+        /// Backbone atoms matched.
+        atoms: usize,
+    },
+}
+
+impl EvaluateError {
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::NoResidues { .. } => {
+                "name chains of protein or nucleic acid; waters, ions and cofactors are not compared"
+            }
+            Self::NotFinite { .. } => "correct the coordinates in the file",
+            Self::Unmatched { .. } => {
+                "name the chains of the native that belong to each side with --native-receptor FILE:CHAINS and \
+                 --native-ligand FILE:CHAINS, and check that they are the same proteins and that receptor and ligand are \
+                 not exchanged"
+            }
+            Self::NoContact => {
+                "check that the two are in one common frame and that the chains named are neighbours in the native; \
+                 --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS choose them"
+            }
+            Self::Interface { .. } => {
+                "check that the native is of the same proteins and that receptor and ligand are not exchanged; name the \
+                 native's chains with --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS. Only residues of \
+                 the same name are matched"
+            }
+            Self::Backbone { .. } => {
+                "give files with backbone atoms (N, CA, C and O) for all residues"
+            }
+        }
+    }
+}

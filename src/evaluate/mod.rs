@@ -1,0 +1,292 @@
+//! Judging poses by a known complex: interface and ligand RMSD, native contacts, DockQ and CAPRI class.
+//!
+//! # Conventions
+//!
+//! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native may lie in any
+//!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
+//! - **Residues** are matched by chain, number and insertion code where the names there agree, and by sequence
+//!   otherwise; chains by their sequences, whatever their names. Only equal residues are matched. Where identical chains
+//!   can be matched in several ways, each pose gets the one with the best DockQ.
+//! - **Backbone** is N, CA, C and O, and phosphate and sugar in nucleic acids, of matched residues, where both have the
+//!   atom. Hydrogens, waters, ions, cofactors and glycans play no part.
+//! - `irmsd`: backbone of the native's interface residues (any heavy atom within 10 Å across) after superposing them.
+//! - `lrmsd`: backbone of the user's ligand after superposing the user's *receptor* on the native's.
+//! - `fnat`: share of the native's residue contacts (any heavy atoms within 5 Å) that the pose has too. Contacts of
+//!   residues without a match count as lost.
+//! - `dockq`: as DockQ 2.1.3 computes it, which takes the side with fewer residues for its ligand, so that its ligand
+//!   RMSD is not always `lrmsd`. DockQ pairs residues by sequence alone: where a residue is missing beside one of the
+//!   same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native), and
+//!   then our figures are those that it gives for the pairs that the numbers name.
+//! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
+//!
+//! # Cost
+//!
+//! [`Evaluator::new`] aligns, superposes and lists contacts once. A pose then costs one eigenvalue problem of a 4 x 4
+//! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules.
+
+mod alignment;
+mod contacts;
+mod dockq;
+mod error;
+mod matching;
+mod native;
+mod permutations;
+mod report;
+mod residues;
+mod rmsd;
+mod superposition;
+#[cfg(test)]
+mod test_molecules;
+#[cfg(test)]
+mod tests;
+
+use std::collections::{HashMap, HashSet};
+
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::molecule::Molecule;
+use serde::Serialize;
+
+pub use dockq::{Capri, dockq};
+pub use error::EvaluateError;
+pub use native::Native;
+pub use report::{ChainMatch, MatchMethod, MatchReport, SideMatch};
+
+use contacts::{AcrossPair, NativeContacts, pairs_across};
+use native::Groups;
+use permutations::{Assignment, assignments, residue_pairs};
+use residues::Residues;
+use rmsd::{RmsdForms, Side, ligand_is_smaller};
+
+/// Least share of a side's native interface residues that must be matched for its figures to mean anything.
+const LEAST_INTERFACE_SHARE: f64 = 0.5;
+/// Receptor and ligand are the same chains when, exchanged, they match this share of what they match as they are.
+const EXCHANGED_SHARE: f64 = 0.9;
+/// Fewest backbone atoms that fix a superposition.
+const LEAST_ATOMS: usize = 3;
+
+/// How near a pose is to the native. All numbers are finite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PoseQuality {
+    /// Interface RMSD, in Å.
+    pub irmsd: f64,
+    /// Ligand RMSD with the user's receptor superposed, in Å.
+    pub lrmsd: f64,
+    /// Share of native contacts kept, 0 to 1.
+    pub fnat: f64,
+    /// DockQ, 0 to 1.
+    pub dockq: f64,
+    /// CAPRI class.
+    pub capri: Capri,
+}
+
+/// Everything about one way of matching that evaluating a pose needs.
+#[derive(Clone, Debug)]
+struct Arrangement {
+    rmsds: RmsdForms,
+    contacts: NativeContacts,
+}
+
+impl Arrangement {
+    fn evaluate(&self, pose: &Pose) -> PoseQuality {
+        let rmsds = self.rmsds.at(pose);
+        let fnat = self.contacts.share_kept(pose);
+        PoseQuality {
+            irmsd: rmsds.interface,
+            lrmsd: rmsds.ligand,
+            fnat,
+            dockq: dockq(fnat, rmsds.interface, rmsds.smaller),
+            capri: Capri::of(fnat, rmsds.interface, rmsds.ligand),
+        }
+    }
+}
+
+/// A receptor, a ligand and their native, made ready to judge poses.
+#[derive(Clone, Debug)]
+pub struct Evaluator {
+    first: Arrangement,
+    others: Vec<Arrangement>,
+    report: MatchReport,
+}
+
+impl Evaluator {
+    /// Matches the user's receptor and ligand, as docked, with the native.
+    ///
+    /// # Errors
+    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, the native no contacts, or too
+    /// little of the native's interface is matched.
+    pub fn new(
+        receptor: &Molecule,
+        ligand: &Molecule,
+        native: Native,
+    ) -> Result<Self, EvaluateError> {
+        let receptor = Residues::of(receptor, "receptor")?;
+        let ligand = Residues::of(ligand, "ligand")?;
+        let mut prepared: Vec<(Arrangement, MatchReport)> = Vec::new();
+        for groups in &native::groups(&receptor, &ligand, native)? {
+            match (prepare(&receptor, &ligand, groups), prepared.first()) {
+                (Ok(found), None) => prepared = found,
+                (Err(error), None) => return Err(error),
+                // Exchanged sides count only where they match as well: paralogues would pass for each other.
+                (Ok(found), Some((_, first))) => {
+                    let least = EXCHANGED_SHARE * first.matched() as f64;
+                    prepared.extend(
+                        found
+                            .into_iter()
+                            .filter(|(_, report)| report.matched() as f64 >= least),
+                    );
+                }
+                (Err(_), Some(_)) => {}
+            }
+        }
+        let permutations = prepared.len();
+        let mut prepared = prepared.into_iter();
+        let Some((first, report)) = prepared.next() else {
+            return Err(EvaluateError::Unmatched { side: "receptor" });
+        };
+        Ok(Self {
+            first,
+            others: prepared.map(|(arrangement, _)| arrangement).collect(),
+            report: MatchReport {
+                permutations,
+                ..report
+            },
+        })
+    }
+
+    /// What was matched with what.
+    pub fn report(&self) -> &MatchReport {
+        &self.report
+    }
+
+    /// Judges one pose of the ligand.
+    pub fn evaluate(&self, pose: &Pose) -> PoseQuality {
+        let first = self.first.evaluate(pose);
+        self.others.iter().fold(first, |best, other| {
+            let quality = other.evaluate(pose);
+            if quality.dockq > best.dockq {
+                quality
+            } else {
+                best
+            }
+        })
+    }
+}
+
+/// Every arrangement of the user's chains on these groups that covers enough of the interface; at least one.
+fn prepare(
+    receptor: &Residues,
+    ligand: &Residues,
+    groups: &Groups,
+) -> Result<Vec<(Arrangement, MatchReport)>, EvaluateError> {
+    let across = pairs_across(&groups.receptor.residues, &groups.ligand.residues);
+    if !across.iter().any(|pair| pair.contact) {
+        return Err(EvaluateError::NoContact);
+    }
+    let receptors = assignments(receptor, &groups.receptor);
+    let ligands = assignments(ligand, &groups.ligand);
+    for (side, found) in [("receptor", &receptors), ("ligand", &ligands)] {
+        if found.is_empty() {
+            return Err(EvaluateError::Unmatched { side });
+        }
+    }
+    let mut prepared = Vec::new();
+    let mut first_error = None;
+    for on_receptor in &receptors {
+        for on_ligand in &ligands {
+            match arrange(
+                (receptor, on_receptor),
+                (ligand, on_ligand),
+                groups,
+                &across,
+            ) {
+                Ok(arrangement) => prepared.push(arrangement),
+                Err(error) => first_error = first_error.or(Some(error)),
+            }
+        }
+    }
+    match first_error {
+        Some(error) if prepared.is_empty() => Err(error),
+        _ => Ok(prepared),
+    }
+}
+
+/// Prepares one arrangement, given each side's residues and assignment.
+fn arrange(
+    (receptor, on_receptor): (&Residues, &Assignment),
+    (ligand, on_ligand): (&Residues, &Assignment),
+    groups: &Groups,
+    across: &[AcrossPair],
+) -> Result<(Arrangement, MatchReport), EvaluateError> {
+    let receptor_pairs: Vec<_> = residue_pairs(on_receptor).collect();
+    let ligand_pairs: Vec<_> = residue_pairs(on_ligand).collect();
+    let rmsds = RmsdForms::new(
+        Side {
+            user: receptor,
+            native: &groups.receptor,
+            pairs: &receptor_pairs,
+        },
+        Side {
+            user: ligand,
+            native: &groups.ligand,
+            pairs: &ligand_pairs,
+        },
+        across,
+    );
+    let of_native = |pairs: &[(usize, usize)]| -> HashMap<usize, usize> {
+        pairs.iter().map(|&(user, native)| (native, user)).collect()
+    };
+    let contacts = NativeContacts::new(
+        across,
+        &receptor.residues,
+        &ligand.residues,
+        &of_native(&receptor_pairs),
+        &of_native(&ligand_pairs),
+    );
+    let receptor_near: HashSet<_> = across.iter().map(|pair| pair.receptor).collect();
+    let ligand_near: HashSet<_> = across.iter().map(|pair| pair.ligand).collect();
+    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
+    let receptor_match = report::SideMatch::new(
+        receptor,
+        &groups.receptor,
+        on_receptor,
+        &receptor_near,
+        receptor_rmsd,
+    );
+    let ligand_match =
+        report::SideMatch::new(ligand, &groups.ligand, on_ligand, &ligand_near, ligand_rmsd);
+    let (receptor_atoms, ligand_atoms) = rmsds.atoms();
+    for (side, found, atoms) in [
+        ("receptor", &receptor_match, receptor_atoms),
+        ("ligand", &ligand_match, ligand_atoms),
+    ] {
+        if found.interface_share() < LEAST_INTERFACE_SHARE {
+            return Err(EvaluateError::Interface {
+                side,
+                matched: found.interface_matched,
+                interface: found.interface_residues,
+            });
+        }
+        if atoms < LEAST_ATOMS {
+            return Err(EvaluateError::Backbone { side, atoms });
+        }
+    }
+    let (kept, interface) = (
+        receptor_match.interface_matched + ligand_match.interface_matched,
+        receptor_match.interface_residues + ligand_match.interface_residues,
+    );
+    let report = MatchReport {
+        interface_share: kept as f64 / interface.max(1) as f64,
+        native_contacts: contacts.total(),
+        native_contacts_matched: contacts.matched(),
+        dockq_ligand: if ligand_is_smaller(&groups.receptor, &groups.ligand) {
+            "ligand"
+        } else {
+            "receptor"
+        },
+        permutations: 1,
+        unused_native_chains: groups.unused.clone(),
+        receptor: receptor_match,
+        ligand: ligand_match,
+    };
+    Ok((Arrangement { rmsds, contacts }, report))
+}

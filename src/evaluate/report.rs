@@ -1,0 +1,146 @@
+//! What was matched with what, for the user to judge how far the figures reach.
+
+use serde::Serialize;
+
+use super::permutations::Assignment;
+use super::residues::Residues;
+
+/// How a chain's residues were matched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MatchMethod {
+    /// All matched residues have the same number and insertion code in both files.
+    Number,
+    /// By sequence alignment: at least one pair differs in number.
+    Sequence,
+}
+
+/// A chain of the user's matched with one of the native's.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChainMatch {
+    /// Chain name in the user's file; `/2`, `/3` ... mark further runs of numbers under one name.
+    pub chain: String,
+    /// Chain name in the native.
+    pub native_chain: String,
+    /// How they were matched.
+    pub method: MatchMethod,
+    /// Equal residues matched.
+    pub matched: usize,
+    /// Equal residues as a share, 0 to 1, of all aligned ones.
+    pub identity: f64,
+}
+
+/// The match of one side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SideMatch {
+    /// Residues of the user's molecule.
+    pub residues: usize,
+    /// Residues of the native's.
+    pub native_residues: usize,
+    /// Equal residues matched.
+    pub matched: usize,
+    /// `matched` as a share, 0 to 1, of the native's residues.
+    pub matched_share: f64,
+    /// Matched residues whose number and insertion code agree; the others were matched by sequence.
+    pub matched_by_number: usize,
+    /// Native residues within 10 Å of the other side.
+    pub interface_residues: usize,
+    /// Those of them that are matched.
+    pub interface_matched: usize,
+    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot mend.
+    pub backbone_rmsd: f64,
+    /// Chain by chain, the one with most matched residues first.
+    pub chains: Vec<ChainMatch>,
+    /// Chains of the user's molecule that no chain of the native matches.
+    pub unmatched_chains: Vec<String>,
+    /// Chains of the native that no chain of the user's molecule matches.
+    pub unmatched_native_chains: Vec<String>,
+}
+
+/// The match of the user's molecules with the native.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MatchReport {
+    /// The receptor's match.
+    pub receptor: SideMatch,
+    /// The ligand's match.
+    pub ligand: SideMatch,
+    /// Share, 0 to 1, of the native's interface residues of both sides that are matched.
+    pub interface_share: f64,
+    /// Residue contacts (5 Å) of the native.
+    pub native_contacts: usize,
+    /// Those of them whose two residues are matched: the most that a pose can keep.
+    pub native_contacts_matched: usize,
+    /// The side that is the ligand in `dockq`: DockQ takes the one of fewer residues.
+    pub dockq_ligand: &'static str,
+    /// Ways of matching identical chains; every pose is given the best of them by `dockq`. This report is of the first.
+    pub permutations: usize,
+    /// Chains of a native complex that belong to neither side.
+    pub unused_native_chains: Vec<String>,
+}
+
+impl MatchReport {
+    /// Equal residues matched, of both sides.
+    pub fn matched(&self) -> usize {
+        self.receptor.matched + self.ligand.matched
+    }
+}
+
+impl SideMatch {
+    /// Counts what `assignment` matches; `interface` holds the native's interface residues of this side.
+    pub(super) fn new(
+        user: &Residues,
+        native: &Residues,
+        assignment: &Assignment,
+        interface: &std::collections::HashSet<usize>,
+        backbone_rmsd: f64,
+    ) -> Self {
+        let same_number =
+            |&&(i, j): &&(usize, usize)| user.residues[i].number == native.residues[j].number;
+        let chains: Vec<_> = assignment
+            .iter()
+            .map(|chain| {
+                let by_number = chain.pairs.iter().filter(same_number).count();
+                ChainMatch {
+                    chain: user.segments[chain.user].name.clone(),
+                    native_chain: native.segments[chain.native].name.clone(),
+                    method: if by_number == chain.pairs.len() {
+                        MatchMethod::Number
+                    } else {
+                        MatchMethod::Sequence
+                    },
+                    matched: chain.pairs.len(),
+                    identity: chain.pairs.len() as f64 / chain.aligned.max(1) as f64,
+                }
+            })
+            .collect();
+        let all = || assignment.iter().flat_map(|chain| &chain.pairs);
+        let matched = all().count();
+        let unmatched = |residues: &Residues, is_used: &dyn Fn(usize) -> bool| {
+            let segments = residues.segments.iter().enumerate();
+            segments
+                .filter(|&(index, _)| !is_used(index))
+                .map(|(_, segment)| segment.name.clone())
+                .collect()
+        };
+        Self {
+            residues: user.residues.len(),
+            native_residues: native.residues.len(),
+            matched,
+            matched_share: matched as f64 / native.residues.len().max(1) as f64,
+            matched_by_number: all().filter(same_number).count(),
+            interface_residues: interface.len(),
+            interface_matched: all().filter(|(_, j)| interface.contains(j)).count(),
+            backbone_rmsd,
+            chains,
+            unmatched_chains: unmatched(user, &|index| assignment.iter().any(|c| c.user == index)),
+            unmatched_native_chains: unmatched(native, &|index| {
+                assignment.iter().any(|c| c.native == index)
+            }),
+        }
+    }
+
+    /// Share, 0 to 1, of the native's interface residues of this side that are matched.
+    pub fn interface_share(&self) -> f64 {
+        self.interface_matched as f64 / self.interface_residues.max(1) as f64
+    }
+}

@@ -1,0 +1,348 @@
+//! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
+//!
+//! A **segment** is what is matched as one chain: the residues of one chain name, in file order. Where a chain repeats a
+//! residue number that it has had before, several chains were written under one name (the H and L of an antibody, say),
+//! and a new segment begins there; likewise where its numbers leap by a hundred or more, which is how the makers of
+//! docking benchmark 5 keep merged chains apart (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS). A leap
+//! over a missing domain is cut too, which does no harm: both pieces are matched.
+
+use std::collections::HashSet;
+
+use knotdock_structures::molecule::{Atom, Molecule};
+use nalgebra::Point3;
+
+use super::EvaluateError;
+
+/// Backbone atom names, those of DockQ 2.1.3 (`constants.py`): the first four for proteins, the rest for nucleic acids.
+pub(super) const BACKBONE_ATOMS: [&str; 16] = [
+    "CA", "C", "N", "O", "P", "OP1", "OP2", "O2'", "O3'", "O4'", "O5'", "C1'", "C2'", "C3'", "C4'",
+    "C5'",
+];
+
+/// Smallest step in residue numbers that begins a new segment.
+const LEAP: i64 = 100;
+/// Only if this many residues stand on both sides of it: shorter pieces stay with their chain.
+const LEAST_PIECE: usize = 20;
+
+/// What a residue is called in its file: number and insertion code.
+pub(super) type Number = (i64, Option<char>);
+
+/// One residue with its heavy atoms.
+#[derive(Clone, Debug)]
+pub(super) struct Residue {
+    /// Author number and insertion code.
+    pub number: Number,
+    /// Residue name with its chemical variants folded, so that equal strings mean the same residue (see [`kind`]).
+    pub kind: String,
+    /// Coordinates of the backbone atoms, in the order of [`BACKBONE_ATOMS`], in Å; `None` where the file has none.
+    pub backbone: [Option<Point3<f64>>; BACKBONE_ATOMS.len()],
+    /// Coordinates of all heavy atoms, in Å; never empty.
+    pub heavy: Vec<Point3<f64>>,
+    /// Centre of a ball that holds all of `heavy`, in Å.
+    pub center: Point3<f64>,
+    /// Radius of that ball, in Å.
+    pub radius: f64,
+}
+
+/// Residues matched as one chain.
+#[derive(Clone, Debug)]
+pub(super) struct Segment {
+    /// Author chain name, with `/2`, `/3` ... appended for the further segments of one name.
+    pub name: String,
+    /// Indices into [`Residues::residues`], in file order.
+    pub members: Vec<usize>,
+}
+
+/// All residues of a molecule that the evaluation uses.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Residues {
+    /// The residues, segment by segment.
+    pub residues: Vec<Residue>,
+    /// The segments, in order of first appearance.
+    pub segments: Vec<Segment>,
+}
+
+impl Residues {
+    /// Reads the residues of `molecule`; `role` names it in errors, e.g. "native ligand".
+    ///
+    /// Kept: every ATOM residue with a heavy atom, and of HETATM residues those with N, CA and C, which are modified
+    /// amino acids (selenomethionine). Cofactors, ions and glycans play no part, as in DockQ.
+    ///
+    /// # Errors
+    /// [`EvaluateError::NotFinite`] and [`EvaluateError::NoResidues`].
+    pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, EvaluateError> {
+        let mut chains: Vec<(&str, Vec<&Atom>)> = Vec::new();
+        for atom in &molecule.atoms {
+            if !atom
+                .position
+                .iter()
+                .all(|coordinate| coordinate.is_finite())
+            {
+                return Err(EvaluateError::NotFinite {
+                    molecule: role,
+                    line: atom.line,
+                });
+            }
+            if atom.element.eq_ignore_ascii_case("H") || atom.element.eq_ignore_ascii_case("D") {
+                continue;
+            }
+            match chains
+                .iter_mut()
+                .rev()
+                .find(|(name, _)| *name == atom.chain)
+            {
+                Some((_, atoms)) => atoms.push(atom),
+                None => chains.push((&atom.chain, vec![atom])),
+            }
+        }
+        let mut all = Self::default();
+        for (name, atoms) in chains {
+            all.add_chain(name, &atoms);
+        }
+        if all.residues.is_empty() {
+            return Err(EvaluateError::NoResidues { molecule: role });
+        }
+        Ok(all)
+    }
+
+    /// Cuts one chain's atoms into residues and appends them as one or more segments.
+    fn add_chain(&mut self, name: &str, atoms: &[&Atom]) {
+        let found: Vec<_> = residue_runs(atoms)
+            .into_iter()
+            .filter_map(Residue::of)
+            .collect();
+        let mut left = found.len();
+        let mut seen: HashSet<Number> = HashSet::new();
+        let mut members: Vec<usize> = Vec::new();
+        let mut pieces = 1;
+        for residue in found {
+            let before = members.last().map(|&member| self.residues[member].number.0);
+            let leaps = before
+                .is_some_and(|before| residue.number.0.saturating_sub(before) >= LEAP)
+                && members.len().min(left) >= LEAST_PIECE;
+            if !seen.insert(residue.number) || leaps {
+                self.add_segment(name, pieces, std::mem::take(&mut members));
+                pieces += 1;
+                seen = HashSet::from([residue.number]);
+            }
+            members.push(self.residues.len());
+            self.residues.push(residue);
+            left -= 1;
+        }
+        self.add_segment(name, pieces, members);
+    }
+
+    fn add_segment(&mut self, name: &str, piece: usize, members: Vec<usize>) {
+        if members.is_empty() {
+            return;
+        }
+        let name = match piece {
+            1 => name.to_owned(),
+            later => format!("{name}/{later}"),
+        };
+        self.segments.push(Segment { name, members });
+    }
+
+    /// These residues and then those of `other`; the segments of `other` come after those of `self`.
+    pub fn followed_by(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        let shift = both.residues.len();
+        both.residues.extend(other.residues.iter().cloned());
+        both.segments.extend(other.segments.iter().map(|segment| {
+            Segment {
+                name: segment.name.clone(),
+                members: segment
+                    .members
+                    .iter()
+                    .map(|member| member + shift)
+                    .collect(),
+            }
+        }));
+        both
+    }
+
+    /// Only the segments with the given indices, in the order given.
+    pub fn only(&self, segments: &[usize]) -> Self {
+        let mut some = Self::default();
+        for segment in segments
+            .iter()
+            .filter_map(|&index| self.segments.get(index))
+        {
+            let first = some.residues.len();
+            some.residues
+                .extend(segment.members.iter().map(|&m| self.residues[m].clone()));
+            some.segments.push(Segment {
+                name: segment.name.clone(),
+                members: (first..some.residues.len()).collect(),
+            });
+        }
+        some
+    }
+}
+
+/// Splits a chain's atoms where the residue changes, or where an atom name comes again: merged chains may meet between
+/// two residues of the same number and name.
+fn residue_runs<'a>(atoms: &'a [&'a Atom]) -> Vec<&'a [&'a Atom]> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for index in 1..=atoms.len() {
+        let ends = match atoms.get(index) {
+            None => true,
+            Some(atom) => {
+                let first = atoms[start];
+                (
+                    first.residue_number,
+                    first.insertion_code,
+                    &first.residue_name,
+                ) != (atom.residue_number, atom.insertion_code, &atom.residue_name)
+                    || atoms[start..index]
+                        .iter()
+                        .any(|other| other.name == atom.name)
+            }
+        };
+        if ends {
+            runs.push(&atoms[start..index]);
+            start = index;
+        }
+    }
+    runs
+}
+
+impl Residue {
+    /// The residue made of these atoms, or nothing where they are no residue of a polymer.
+    fn of(atoms: &[&Atom]) -> Option<Self> {
+        let first = atoms.first()?;
+        let backbone = BACKBONE_ATOMS.map(|name| {
+            let atom = atoms.iter().find(|atom| atom.name == name)?;
+            Some(Point3::from(atom.position))
+        });
+        let [alpha_carbon, carbon, nitrogen, ..] = &backbone;
+        if first.hetero && (alpha_carbon.is_none() || carbon.is_none() || nitrogen.is_none()) {
+            return None;
+        }
+        let heavy: Vec<_> = atoms
+            .iter()
+            .map(|atom| Point3::from(atom.position))
+            .collect();
+        let sum: nalgebra::Vector3<f64> = heavy.iter().map(|point| point.coords).sum();
+        let center = Point3::from(sum / heavy.len() as f64);
+        let radius = heavy
+            .iter()
+            .map(|point| nalgebra::distance(point, &center))
+            .fold(0.0, f64::max);
+        Some(Self {
+            number: (first.residue_number, first.insertion_code),
+            kind: kind(&first.residue_name),
+            backbone,
+            heavy,
+            center,
+            radius,
+        })
+    }
+}
+
+/// The name under which residues are compared.
+///
+/// Selenomethionine counts as methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; force
+/// fields' names for protonation states and disulphides (Amber, CHARMM) count as the plain residue; deoxynucleotides
+/// as their base.
+fn kind(name: &str) -> String {
+    let plain = match name.trim() {
+        "MSE" => "MET",
+        "CME" | "CYX" | "CYM" => "CYS",
+        "HID" | "HIE" | "HIP" | "HSD" | "HSE" | "HSP" => "HIS",
+        "ASH" => "ASP",
+        "GLH" => "GLU",
+        "LYN" => "LYS",
+        "DA" | "ADE" => "A",
+        "DC" | "CYT" => "C",
+        "DG" | "GUA" => "G",
+        "DT" | "THY" => "T",
+        "DU" | "URA" => "U",
+        other => other,
+    };
+    plain.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_molecules::{atom, chain_of, molecule};
+    use super::*;
+
+    #[test]
+    fn repeated_number_begins_a_segment() {
+        // An antibody's two chains under one name: number 1 comes twice, with 2A an insertion that is no repeat.
+        let mut atoms = Vec::new();
+        for (number, code) in [(1, None), (2, None), (2, Some('A')), (1, None), (2, None)] {
+            let mut one = atom("A", number, "ALA", "CA", [0.0; 3]);
+            one.insertion_code = code;
+            atoms.push(one);
+        }
+        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
+        let sizes: Vec<_> = residues.segments.iter().map(|s| s.members.len()).collect();
+        assert_eq!(sizes, [3, 2]);
+        assert_eq!(residues.segments[1].name, "A/2");
+    }
+
+    #[test]
+    fn leaping_number_begins_a_segment() {
+        let sizes = |numbers: Vec<i64>| -> Vec<usize> {
+            let letters = "A".repeat(numbers.len());
+            let residues =
+                Residues::of(&molecule(chain_of("A", &letters, &numbers)), "receptor").unwrap();
+            let segments = residues.segments.iter();
+            segments.map(|segment| segment.members.len()).collect()
+        };
+        assert_eq!(sizes((1..=30).chain(1001..=1025).collect()), [30, 25]);
+        // A loop of 99 missing residues, and a tag of five: one chain.
+        assert_eq!(sizes((1..=30).chain(129..=150).collect()), [52]);
+        assert_eq!(sizes((1..=30).chain(501..=505).collect()), [35]);
+    }
+
+    #[test]
+    fn merged_chains_may_meet_at_the_same_number_and_name() {
+        let atoms = vec![
+            atom("A", 1, "GLY", "N", [0.0; 3]),
+            atom("A", 1, "GLY", "CA", [1.0; 3]),
+            atom("A", 1, "GLY", "N", [2.0; 3]),
+        ];
+        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
+        assert_eq!(residues.segments.len(), 2);
+    }
+
+    #[test]
+    fn hetero_groups_count_only_as_amino_acids() {
+        let mut atoms = Vec::new();
+        for (number, residue, names) in [
+            (1, "MSE", &["N", "CA", "C", "O", "SE"][..]),
+            (2, "GDP", &["PA", "C1'", "O3'"][..]),
+            (3, "CA", &["CA"][..]),
+        ] {
+            for (place, name) in names.iter().enumerate() {
+                let mut one = atom("A", number, residue, name, [place as f64, 0.0, 0.0]);
+                one.hetero = true;
+                atoms.push(one);
+            }
+        }
+        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
+        assert_eq!(residues.residues.len(), 1, "calcium is no alpha carbon");
+        assert_eq!(residues.residues[0].kind, "MET");
+    }
+
+    #[test]
+    fn hydrogens_and_nothing_at_all() {
+        let mut hydrogen = atom("A", 1, "ALA", "H", [0.0; 3]);
+        hydrogen.element = "H".into();
+        assert!(matches!(
+            Residues::of(&molecule(vec![hydrogen]), "native ligand"),
+            Err(EvaluateError::NoResidues {
+                molecule: "native ligand"
+            })
+        ));
+        let lost = atom("A", 1, "ALA", "CA", [0.0, f64::NAN, 0.0]);
+        assert!(matches!(
+            Residues::of(&molecule(vec![lost]), "receptor"),
+            Err(EvaluateError::NotFinite { .. })
+        ));
+    }
+}

@@ -1,0 +1,123 @@
+//! Unique chain names for a complex.
+
+use std::collections::HashSet;
+
+use serde::Serialize;
+
+use super::WriteError;
+use crate::molecule::report::show_chain;
+use crate::molecule::{Format, Molecule};
+
+/// One of the two molecules of a complex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Partner {
+    /// The molecule that stays.
+    Receptor,
+    /// The molecule that is placed.
+    Ligand,
+}
+
+/// One chain's name before and after.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ChainName {
+    /// The molecule that the chain belongs to.
+    pub partner: Partner,
+    /// Its author name in the input; may be empty.
+    pub original: String,
+    /// Its name in the complex.
+    pub written: String,
+}
+
+/// The chain names of a complex: (partner, original) -> written. Written names are unique.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct ChainMap {
+    /// Receptor's chains first, each in order of first appearance.
+    pub chains: Vec<ChainName>,
+}
+
+/// Names that PDB's one column offers, in the order in which they are given out.
+const SINGLE: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+
+impl ChainMap {
+    /// The name that a chain has in the complex; its own where it is not in the map.
+    pub fn written<'a>(&'a self, partner: Partner, original: &'a str) -> &'a str {
+        self.chains
+            .iter()
+            .find(|chain| chain.partner == partner && chain.original == original)
+            .map_or(original, |chain| &chain.written)
+    }
+
+    /// Gives every chain a unique name in the given format.
+    pub(super) fn assign(
+        format: Format,
+        receptor: &Molecule,
+        ligand: &Molecule,
+    ) -> Result<Self, WriteError> {
+        let mut chains: Vec<ChainName> = Vec::new();
+        for (partner, molecule) in [(Partner::Receptor, receptor), (Partner::Ligand, ligand)] {
+            let mut seen: HashSet<&str> = HashSet::new();
+            for atom in &molecule.atoms {
+                if seen.insert(&atom.chain) {
+                    chains.push(ChainName {
+                        partner,
+                        original: atom.chain.clone(),
+                        written: String::new(),
+                    });
+                }
+            }
+        }
+        let mut taken: HashSet<String> = HashSet::new();
+        for chain in &mut chains {
+            let can_stay = match format {
+                Format::Pdb => {
+                    chain.original.len() == 1
+                        && chain.original.bytes().all(|byte| byte.is_ascii_graphic())
+                }
+                Format::Mmcif => !chain.original.is_empty(),
+            };
+            if can_stay && taken.insert(chain.original.clone()) {
+                chain.written.clone_from(&chain.original);
+            }
+        }
+        let mut fresh = fresh_names(format);
+        for chain in chains.iter_mut().filter(|chain| chain.written.is_empty()) {
+            chain.written =
+                fresh
+                    .find(|name| !taken.contains(name))
+                    .ok_or_else(|| WriteError::DoesNotFit {
+                        what: "more than 62 chains".to_string(),
+                    })?;
+            taken.insert(chain.written.clone());
+        }
+        Ok(Self { chains })
+    }
+
+    /// The map as lines for people.
+    pub(super) fn remarks(&self) -> Vec<String> {
+        self.chains
+            .iter()
+            .map(|chain| {
+                let partner = match chain.partner {
+                    Partner::Receptor => "receptor",
+                    Partner::Ligand => "ligand",
+                };
+                let original = show_chain(&chain.original);
+                format!("chain {} is {partner} chain {original}", chain.written)
+            })
+            .collect()
+    }
+}
+
+/// Names to give out: the 62 single ones, and in mmCIF those of two after them.
+fn fresh_names(format: Format) -> impl Iterator<Item = String> {
+    let firsts = match format {
+        Format::Pdb => "",
+        Format::Mmcif => SINGLE,
+    };
+    let doubles = firsts
+        .chars()
+        .flat_map(|first| SINGLE.chars().map(move |second| format!("{first}{second}")));
+    SINGLE.chars().map(String::from).chain(doubles)
+}

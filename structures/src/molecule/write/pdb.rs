@@ -1,0 +1,174 @@
+//! The PDB writer: wwPDB format 3.3, "Coordinate Section", columns 1 to 80.
+
+use std::io::Write;
+
+use super::{Row, WriteError, name, rounded};
+
+/// Number of the free remarks: not one that the wwPDB reserves.
+const REMARK: &str = "REMARK  99 ";
+
+/// Whether the fixed columns can hold all of it.
+pub(super) fn check(rows: &[Row<'_>]) -> Result<(), WriteError> {
+    if rows.len() > 99_999 {
+        return Err(WriteError::DoesNotFit {
+            what: format!("{} atoms, more than 99,999", rows.len()),
+        });
+    }
+    for row in rows {
+        let atom = row.atom;
+        let is_ascii = |text: &str| text.bytes().all(|byte| (32..127).contains(&byte));
+        let faults = [
+            (atom.name.len() > 4 || !is_ascii(&atom.name), "its name"),
+            (
+                atom.residue_name.len() > 3 || !is_ascii(&atom.residue_name),
+                "its residue's name",
+            ),
+            (
+                row.chain.len() > 1 || !is_ascii(row.chain),
+                "its chain's name",
+            ),
+            (
+                !(-999..=9999).contains(&atom.residue_number),
+                "its residue's number",
+            ),
+            (
+                atom.insertion_code
+                    .is_some_and(|code| !code.is_ascii_graphic()),
+                "its insertion code",
+            ),
+            (atom.element.len() > 2, "its element"),
+            (
+                !atom.position.iter().all(|&x| fits(x, 8, 1000.0)),
+                "its coordinates",
+            ),
+            (!fits(atom.occupancy, 6, 100.0), "its occupancy"),
+            (!fits(atom.b_factor, 6, 100.0), "its temperature factor"),
+        ];
+        if let Some((_, what)) = faults.iter().find(|(is_fault, _)| *is_fault) {
+            return Err(WriteError::DoesNotFit {
+                what: format!("{what} (atom {})", name(row)),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a number, rounded, fits so many columns.
+fn fits(value: f64, width: i32, per_unit: f64) -> bool {
+    let decimals = per_unit.log10().round() as i32;
+    // The point takes a column, and so does a minus sign.
+    let highest = 10_f64.powi(width - decimals - 1);
+    let lowest = -10_f64.powi(width - decimals - 2);
+    let value = rounded(value, per_unit);
+    lowest < value && value < highest
+}
+
+/// Writes rows that [`check`] has passed.
+pub(super) fn write<W: Write>(
+    writer: &mut W,
+    rows: &[Row<'_>],
+    remarks: &[String],
+) -> Result<(), WriteError> {
+    for remark in remarks {
+        for line in wrapped(remark) {
+            writeln!(writer, "{:<80}", format!("{REMARK}{line}"))?;
+        }
+    }
+    // TER takes a serial number of its own, unless that would be the 100,000th.
+    let ends = rows.iter().filter(|row| row.ends_chain).count();
+    let numbers_ends = rows.len() + ends <= 99_999;
+    let mut serial = 0;
+    for row in rows {
+        serial += 1;
+        let atom = row.atom;
+        let [x, y, z] = atom.position.map(|x| rounded(x, 1000.0));
+        let record = if atom.hetero { "HETATM" } else { "ATOM" };
+        let chain = if row.chain.is_empty() { " " } else { row.chain };
+        let insertion = atom.insertion_code.unwrap_or(' ');
+        let residue = format!(
+            "{:>3} {chain}{:>4}{insertion}",
+            atom.residue_name, atom.residue_number
+        );
+        writeln!(
+            writer,
+            "{record:<6}{serial:>5} {} {residue}   {x:>8.3}{y:>8.3}{z:>8.3}{:>6.2}{:>6.2}          {:>2}  ",
+            name_columns(&atom.name, &atom.element),
+            rounded(atom.occupancy, 100.0),
+            rounded(atom.b_factor, 100.0),
+            atom.element.to_ascii_uppercase(),
+        )?;
+        if row.ends_chain && numbers_ends {
+            serial += 1;
+            writeln!(
+                writer,
+                "{:<80}",
+                format!("TER   {serial:>5}      {residue}")
+            )?;
+        } else if row.ends_chain {
+            writeln!(writer, "{:<80}", "TER")?;
+        }
+    }
+    writeln!(writer, "{:<80}", "END")?;
+    Ok(())
+}
+
+/// Columns 13 to 16: the element is right-justified in the first two, so that names of one-letter elements begin in the
+/// second, unless they take all four.
+fn name_columns(name: &str, element: &str) -> String {
+    let begins_with_element = name
+        .get(..element.len())
+        .is_some_and(|head| head.eq_ignore_ascii_case(element));
+    if name.len() >= 4 || (element.len() == 2 && begins_with_element) {
+        format!("{name:<4}")
+    } else {
+        format!(" {name:<3}")
+    }
+}
+
+/// A remark as lines that fit beside its number, in printable ASCII.
+fn wrapped(text: &str) -> Vec<String> {
+    let width = 80 - REMARK.len();
+    let plain: Vec<char> = text
+        .chars()
+        .map(|c| {
+            if c.is_ascii_graphic() {
+                c
+            } else if c.is_whitespace() {
+                ' '
+            } else {
+                '?'
+            }
+        })
+        .collect();
+    if plain.is_empty() {
+        return vec![String::new()];
+    }
+    plain
+        .chunks(width)
+        .map(|line| line.iter().collect())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fit_their_columns_after_rounding() {
+        assert!(fits(9999.999, 8, 1000.0) && fits(-999.999, 8, 1000.0));
+        // Rounds to 10000.000, one column too many.
+        assert!(!fits(9999.9996, 8, 1000.0) && !fits(-999.9996, 8, 1000.0));
+        assert!(fits(999.99, 6, 100.0) && !fits(999.996, 6, 100.0));
+        assert!(fits(-99.99, 6, 100.0) && !fits(-100.0, 6, 100.0));
+        assert!(!fits(1e6, 8, 1000.0));
+    }
+
+    #[test]
+    fn names_are_aligned_by_element() {
+        assert_eq!(name_columns("CA", "C"), " CA ");
+        assert_eq!(name_columns("CA", "Ca"), "CA  ");
+        assert_eq!(name_columns("FE", "Fe"), "FE  ");
+        assert_eq!(name_columns("O5'", "O"), " O5'");
+        assert_eq!(name_columns("HH11", "H"), "HH11");
+    }
+}
