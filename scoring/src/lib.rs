@@ -3,6 +3,7 @@
 pub mod affinity;
 pub mod engine;
 pub mod exact;
+pub mod field;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod se3;

@@ -45,6 +45,18 @@ impl Pose {
         }
     }
 
+    /// The pose that turns the ligand about its centre `ligand_center` and puts that centre at `place`, in Å.
+    pub fn about(
+        rotation: UnitQuaternion<f64>,
+        ligand_center: Vector3<f64>,
+        place: Vector3<f64>,
+    ) -> Self {
+        Self {
+            rotation,
+            translation: place - rotation * ligand_center,
+        }
+    }
+
     /// The image of a point, in Å.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
         (self.rotation * Point3::from(point) + self.translation)

@@ -40,3 +40,47 @@ pub struct MeasuredError {
     /// Mean share of the unfiltered score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
     pub low_pass_share: f64,
 }
+
+/// What one term of the score cost.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EffectCost {
+    /// The term.
+    pub effect: super::options::Effect,
+    /// Why it was on.
+    pub reason: &'static str,
+    /// Fields of the compressed lifted axis that it needs.
+    pub rank: usize,
+    /// CPU milliseconds a rotation, all stages of the search loop.
+    #[serde(skip)]
+    pub milliseconds_per_rotation: f64,
+}
+
+/// Time of one stage of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Name of the stage.
+    pub name: &'static str,
+    /// Wall-clock seconds.
+    pub wall_seconds: f64,
+    /// CPU seconds of the whole process, where the system tells.
+    pub cpu_seconds: Option<f64>,
+}
+
+/// All that a docking run found.
+#[derive(Clone, Debug)]
+pub struct DockOutcome {
+    /// Rows of the ranking, best first: one a cluster, or every pose where the options ask for it.
+    pub poses: Vec<RankedPose>,
+    /// Poses kept before clustering.
+    pub poses_kept: usize,
+    /// Number of clusters.
+    pub clusters: usize,
+    /// The fast path's error as measured.
+    pub error: MeasuredError,
+    /// Error of the compressed lifted axis at the probe rotations, relative to their best score.
+    pub rank_error: f64,
+    /// What each term cost.
+    pub effects: Vec<EffectCost>,
+    /// Time by stage.
+    pub timing: Vec<StageTime>,
+}

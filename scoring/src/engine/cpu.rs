@@ -122,6 +122,21 @@ impl<T: Real> Folded<T> {
         }
     }
 
+    /// H[basis function][mode], window and volume not yet divided out on the ligand's side.
+    pub fn spectra(&self) -> &[Vec<Complex<T>>] {
+        &self.spectra
+    }
+
+    /// d_j v_b(s_j) of ligand knot j.
+    pub fn ligand_weight(&self, knot: usize, function: usize) -> f64 {
+        self.ligand[(knot, function)]
+    }
+
+    /// Where the receptor's middle lies in the box, Å.
+    pub fn center(&self) -> [f64; 3] {
+        self.center
+    }
+
     /// Number of basis functions: the rank that is exact.
     pub fn full_rank(&self) -> usize {
         self.spectra.len()
@@ -185,10 +200,7 @@ impl<T: Real> CpuEngine<T> {
         let modes = Arc::clone(&plan.modes);
         let rank = rank.clamp(1, folded.full_rank());
         let (combination, coefficients, singular) = folded.factor(&modes);
-        let fine = plan.fine;
-        let extent = [0, 1, 2]
-            .map(|axis| plan.ligand_radius * fine[axis] as f64 / modes.lengths[axis] + 0.5);
-        let forward = Forward::<T>::new(Arc::clone(&modes), fine, plan.width, extent, rank);
+        let forward = ligand_forward::<T>(&plan, rank);
         let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
             (0..=modes.size[axis] as i32 / 2)
                 .map(|k| forward.deconvolution(axis, k))
@@ -279,14 +291,15 @@ impl<T: Real> CpuEngine<T> {
         }
     }
 
-    /// Bytes that a workspace takes.
-    pub fn workspace_bytes(&self) -> usize {
-        let [nx, ny, nz] = self.plan.modes.size;
-        let reals = 2 * COLUMNS * self.rank() * self.forward.line_length()
+    /// Bytes that a workspace of a plan takes at a rank, before the engine is built.
+    pub fn workspace_estimate(plan: &Plan, rank: usize) -> usize {
+        let [nx, ny, nz] = plan.modes.size;
+        let forward = ligand_forward::<T>(plan, rank);
+        let reals = 2 * COLUMNS * rank * forward.line_length()
             + 2 * PLANES * nx * ny
             + nx * ny * (nz + 2)
             + nx * ny * (nz + 1);
-        self.forward.workspace_bytes() + reals * std::mem::size_of::<T>() + 24 * self.ligand.len()
+        forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
     /// Position of the ligand's centre relative to the receptor's for a voxel, in Å, in the box centred on the receptor.
@@ -440,6 +453,14 @@ impl<T: Real> CpuEngine<T> {
                 .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a });
         }
     }
+}
+
+/// The transform of the ligand, which may lie anyhow within its radius.
+fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
+    let modes = &plan.modes;
+    let extent = [0, 1, 2]
+        .map(|axis| plan.ligand_radius * plan.fine[axis] as f64 / modes.lengths[axis] + 0.5);
+    Forward::new(Arc::clone(modes), plan.fine, plan.width, extent, rank)
 }
 
 /// sum += a conj(b), element by element.

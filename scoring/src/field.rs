@@ -1,0 +1,237 @@
+//! The receptor's field: for each function of the ligand's radius a smooth potential over space, to be read anywhere.
+//!
+//! The score of a pose is sum_j d_j phi_{s_j}(R y_j + t): the adjoint (type 2) of the nonequispaced transform evaluates phi and its
+//! gradient at every ligand knot by the same window that spreads them. O(ligand knots), whatever the receptor's size, which is what
+//! makes climbing thousands of peaks in six degrees of freedom cheap. Accuracy is that of the fast path.
+
+use crate::engine::Plan;
+use crate::engine::cpu::Folded;
+use crate::exact::PoseGradient;
+use crate::se3::Pose;
+use crate::transform::fast_size;
+use crate::transform::modes::place;
+use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use knotdock_structures::Knots;
+use nalgebra::Vector3;
+use num_complex::Complex;
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+
+/// Fine grid points per mode: the window's slope needs more room than its value.
+const OVERSAMPLING: f64 = 1.5;
+/// Window width in fine cells: about 1e-4 of the largest potential.
+const WIDTH: usize = 6;
+/// Lanes of the innermost loop, at least `WIDTH`.
+const LANES: usize = 8;
+
+/// Sampled potentials of one receptor for one ligand.
+pub struct ReceptorField {
+    size: [usize; 3],
+    /// Row length in memory: the grid's, plus `LANES` that repeat its start so that a row's window never wraps.
+    stride: usize,
+    cells_per_length: [f64; 3],
+    /// Receptor's middle, in cells.
+    center: [f64; 3],
+    /// Farthest a knot may lie from it and still be felt, Å.
+    limit: [f64; 3],
+    kernel: SpreadingKernel<f32>,
+    grids: Vec<Vec<f32>>,
+    /// Ligand knots relative to the ligand's centre (Å), with their weights for every grid they see.
+    knots: Vec<(Vector3<f64>, Vec<(usize, f64)>)>,
+    receptor_center: Vector3<f64>,
+    ligand_center: Vector3<f64>,
+}
+
+impl ReceptorField {
+    /// Bytes that the field of a plan takes.
+    pub fn bytes(plan: &Plan) -> usize {
+        let size = fine_size(plan);
+        plan.basis.sizes(&plan.axis).1 * 4 * size[0] * size[1] * (size[2] + LANES)
+    }
+
+    /// Samples the potentials from the folded spectra.
+    pub fn new(plan: &Plan, folded: &Folded<f32>, ligand: &Knots) -> Self {
+        let modes = &plan.modes;
+        let size = fine_size(plan);
+        let [mx, my, mz] = size;
+        let half = mz / 2 + 1;
+        let stride = mz + LANES;
+        let oversampling = (0..3)
+            .map(|axis| size[axis] as f64 / modes.size[axis] as f64)
+            .fold(f64::INFINITY, f64::min);
+        let kernel = SpreadingKernel::<f32>::new(WIDTH, oversampling);
+        let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
+            (0..=modes.size[axis] as i32 / 2)
+                .map(|k| 1.0 / kernel.transform(f64::from(k) / size[axis] as f64))
+                .collect()
+        });
+        let mut planner = FftPlanner::<f32>::new();
+        let along_x = planner.plan_fft_inverse(mx);
+        let along_y = planner.plan_fft_inverse(my);
+        let along_z = RealFftPlanner::<f32>::new().plan_fft_inverse(mz);
+        let zero = Complex::new(0.0f32, 0.0);
+        let mut spectrum = vec![zero; mx * my * half];
+        let mut line = vec![zero; mx.max(my)];
+        let mut row = vec![0.0f32; mz];
+        let grids = folded
+            .spectra()
+            .iter()
+            .map(|source| {
+                // [kz][ky][kx] for x, then [kz][x][y], then rows along z.
+                spectrum.fill(zero);
+                for column in &modes.columns {
+                    let outer = factors[1][column.ky.unsigned_abs() as usize]
+                        * factors[2][column.kz as usize]
+                        / modes.volume();
+                    for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
+                        let factor = (outer * factors[0][k.unsigned_abs() as usize]) as f32;
+                        let at =
+                            (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
+                        spectrum[at] = source[column.start + i].scale(factor);
+                    }
+                }
+                along_x.process(&mut spectrum);
+                let mut grid = vec![0.0f32; mx * my * stride];
+                let mut turned = vec![zero; mx * my];
+                for plane in spectrum.chunks_exact_mut(mx * my) {
+                    for x in 0..mx {
+                        for y in 0..my {
+                            line[y] = plane[y * mx + x];
+                        }
+                        along_y.process(&mut line[..my]);
+                        turned[x * my..(x + 1) * my].copy_from_slice(&line[..my]);
+                    }
+                    plane.copy_from_slice(&turned);
+                }
+                let mut along = along_z.make_input_vec();
+                for xy in 0..mx * my {
+                    for (kz, value) in along.iter_mut().enumerate() {
+                        *value = spectrum[kz * mx * my + xy];
+                    }
+                    along[0].im = 0.0;
+                    along[half - 1].im = 0.0;
+                    // Lengths are those of the plan, and the ends are real: the transform cannot fail.
+                    let _ = along_z.process(&mut along, &mut row);
+                    let out = &mut grid[xy * stride..(xy + 1) * stride];
+                    for (z, value) in out.iter_mut().enumerate() {
+                        *value = row[z % mz];
+                    }
+                }
+                grid
+            })
+            .collect();
+        let cells_per_length = [0, 1, 2].map(|axis| size[axis] as f64 / modes.lengths[axis]);
+        let knots = (0..ligand.len())
+            .map(|j| {
+                let weights = (0..folded.full_rank())
+                    .map(|b| (b, folded.ligand_weight(j, b)))
+                    .filter(|&(_, weight)| weight != 0.0)
+                    .collect();
+                (
+                    Vector3::from(ligand.centers[j]) - plan.ligand_center,
+                    weights,
+                )
+            })
+            .collect();
+        Self {
+            size,
+            stride,
+            cells_per_length,
+            center: [0, 1, 2].map(|axis| folded.center()[axis] * cells_per_length[axis]),
+            limit: plan
+                .receptor_extent
+                .map(|extent| extent + plan.kernel.reach()),
+            kernel,
+            grids,
+            knots,
+            receptor_center: plan.receptor_center,
+            ligand_center: plan.ligand_center,
+        }
+    }
+
+    /// Score of a pose and its gradient, per Å and per radian about the ligand's centre.
+    pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.gradient_inline(pose),
+        )
+    }
+
+    #[inline(always)]
+    fn gradient_inline(&self, pose: &Pose) -> (f64, PoseGradient) {
+        let rotation = pose.rotation.to_rotation_matrix();
+        let center = rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let mut score = 0.0;
+        let mut gradient = PoseGradient::default();
+        for (y, weights) in &self.knots {
+            let arm = rotation * y;
+            let x = arm + center;
+            if (0..3).any(|axis| x[axis].abs() > self.limit[axis]) {
+                continue;
+            }
+            let (value, force) = self.at(&x, weights);
+            score += value;
+            gradient.force += force;
+            gradient.torque += arm.cross(&force);
+        }
+        (score, gradient)
+    }
+
+    /// Weighted potential and its gradient (per Å) at a point relative to the receptor's middle.
+    #[inline(always)]
+    fn at(&self, x: &Vector3<f64>, weights: &[(usize, f64)]) -> (f64, Vector3<f64>) {
+        let [mx, my, mz] = self.size;
+        let mut values = [[0.0f32; MAX_WIDTH]; 3];
+        let mut slopes = [[0.0f32; MAX_WIDTH]; 3];
+        let first = [0, 1, 2].map(|axis| {
+            let u = x[axis] * self.cells_per_length[axis] + self.center[axis];
+            self.kernel
+                .place_with_slope(u, &mut values[axis], &mut slopes[axis])
+        });
+        let z = first[2].rem_euclid(mz as i64) as usize;
+        let mut score = 0.0;
+        let mut force = Vector3::zeros();
+        for &(grid, weight) in weights {
+            let grid = &self.grids[grid];
+            // Sums over x and y of the rows: plain, with the slope along x, with the slope along y.
+            let mut sums = [[0.0f32; LANES]; 3];
+            for ix in 0..WIDTH {
+                let plane = (first[0] + ix as i64).rem_euclid(mx as i64) as usize * my;
+                for iy in 0..WIDTH {
+                    let row = (plane + (first[1] + iy as i64).rem_euclid(my as i64) as usize)
+                        * self.stride
+                        + z;
+                    let Some(row) = grid.get(row..row + LANES) else {
+                        continue;
+                    };
+                    let plain = values[0][ix] * values[1][iy];
+                    let along_x = slopes[0][ix] * values[1][iy];
+                    let along_y = values[0][ix] * slopes[1][iy];
+                    for lane in 0..LANES {
+                        sums[0][lane] += plain * row[lane];
+                        sums[1][lane] += along_x * row[lane];
+                        sums[2][lane] += along_y * row[lane];
+                    }
+                }
+            }
+            let dot = |sum: &[f32; LANES], with: &[f32; MAX_WIDTH]| -> f64 {
+                (0..WIDTH)
+                    .map(|lane| f64::from(sum[lane] * with[lane]))
+                    .sum()
+            };
+            score += weight * dot(&sums[0], &values[2]);
+            force += Vector3::new(
+                weight * dot(&sums[1], &values[2]) * self.cells_per_length[0],
+                weight * dot(&sums[2], &values[2]) * self.cells_per_length[1],
+                weight * dot(&sums[0], &slopes[2]) * self.cells_per_length[2],
+            );
+        }
+        (score, force)
+    }
+}
+
+fn fine_size(plan: &Plan) -> [usize; 3] {
+    plan.modes
+        .size
+        .map(|n| fast_size((n as f64 * OVERSAMPLING).ceil() as usize))
+}

@@ -1,0 +1,114 @@
+//! Clusters of poses by the ligand's RMSD, in closed form.
+//!
+//! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')), c the images
+//! of the points' mean and C their covariance: O(1) a pair of poses.
+
+use knotdock_scoring::se3::Pose;
+use nalgebra::{Matrix3, Vector3};
+
+/// The body whose RMSD is taken: mean and covariance of its points in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    mean: Vector3<f64>,
+    covariance: Matrix3<f64>,
+}
+
+/// A pose with what its distances to others need.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedBody {
+    center: Vector3<f64>,
+    rotation: Matrix3<f64>,
+    /// R C.
+    turned: Matrix3<f64>,
+}
+
+impl RigidBody {
+    /// The body of some points (Å); without any it is a single point at the origin.
+    pub fn new(points: &[[f64; 3]]) -> Self {
+        let count = points.len().max(1) as f64;
+        let mean = points
+            .iter()
+            .fold(Vector3::zeros(), |sum, &p| sum + Vector3::from(p))
+            / count;
+        let covariance = points.iter().fold(Matrix3::zeros(), |sum, &p| {
+            let d = Vector3::from(p) - mean;
+            sum + d * d.transpose()
+        }) / count;
+        Self { mean, covariance }
+    }
+
+    /// Radius of gyration, Å.
+    pub fn gyration(&self) -> f64 {
+        self.covariance.trace().sqrt()
+    }
+
+    /// Places the body.
+    pub fn place(&self, pose: &Pose) -> PlacedBody {
+        let rotation = *pose.rotation.to_rotation_matrix().matrix();
+        PlacedBody {
+            center: rotation * self.mean + pose.translation,
+            rotation,
+            turned: rotation * self.covariance,
+        }
+    }
+
+    /// Mean square distance in Å^2 of the body's points between two poses.
+    pub fn mean_square(&self, a: &PlacedBody, b: &PlacedBody) -> f64 {
+        let between = (a.center - b.center).norm_squared();
+        // Rounding may leave a hair below zero for equal rotations.
+        (between + 2.0 * (self.covariance.trace() - a.turned.component_mul(&b.rotation).sum()))
+            .max(0.0)
+    }
+}
+
+/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
+/// founds one. Returns each pose's cluster, numbered from 0 in order of founding.
+pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
+    let mut founders: Vec<PlacedBody> = Vec::new();
+    poses
+        .iter()
+        .map(|pose| {
+            let placed = body.place(pose);
+            let near = founders
+                .iter()
+                .position(|founder| body.mean_square(founder, &placed) <= radius * radius);
+            near.unwrap_or_else(|| {
+                founders.push(placed);
+                founders.len() - 1
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_is_the_rmsd_of_the_points() {
+        let points = [
+            [1.0, 2.0, 3.0],
+            [-4.0, 0.5, 2.0],
+            [7.0, -1.0, 0.0],
+            [0.0, 3.0, -5.0],
+        ];
+        let body = RigidBody::new(&points);
+        let a = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [5.0, 6.0, -7.0]);
+        let b = Pose::from_parts([-0.2, 0.7, 0.3, 0.4], [4.0, -6.0, 1.0]);
+        let direct = points
+            .iter()
+            .map(|&p| (Vector3::from(a.apply(p)) - Vector3::from(b.apply(p))).norm_squared())
+            .sum::<f64>()
+            / 4.0;
+        assert!((body.mean_square(&body.place(&a), &body.place(&b)) - direct).abs() < 1e-10);
+        assert!(body.mean_square(&body.place(&a), &body.place(&a)) < 1e-10);
+    }
+
+    #[test]
+    fn greedy_takes_the_best_as_founder() {
+        let body = RigidBody::new(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+        let at = |x: f64| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+        let clusters = greedy(&body, &[at(0.0), at(8.0), at(4.0), at(6.0), at(20.0)], 5.0);
+        assert_eq!(clusters, [0, 1, 0, 1, 2]);
+    }
+}

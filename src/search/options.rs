@@ -1,0 +1,189 @@
+//! What a docking run may be asked, and why it may refuse.
+
+use knotdock_scoring::engine::{EngineOptions, PlanError};
+use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_structures::knots::KnotsError;
+use serde::{Deserialize, Serialize};
+
+/// A term of the score.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Effect {
+    /// Shape complementarity: the double-skin correlation of B&I.
+    Shape,
+}
+
+/// Options of a docking run. Lengths in Å.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DockOptions {
+    /// Number of rotations sampled.
+    pub rotations: usize,
+    /// Resolution: the ranking kernel's low-pass stops at 1 / resolution.
+    pub resolution: f64,
+    /// Length whose inverse is the pass frequency; `None`: `PASS_RATIO` times the resolution.
+    pub pass_length: Option<f64>,
+    /// Grid spacing; `None`: resolution / 2, or finer where the tolerance needs it.
+    pub spacing: Option<f64>,
+    /// Weight lambda of overlap against contact.
+    pub lambda: f64,
+    /// Skin offset r0.
+    pub offset: f64,
+    /// Exponent alpha of the bump function.
+    pub alpha: f64,
+    /// Error of the fast path aimed at, relative to the best score.
+    pub tolerance: f64,
+    /// Terms of the score.
+    pub effects: Vec<Effect>,
+    /// Peaks kept of each rotation.
+    pub per_rotation: usize,
+    /// Poses kept over all rotations.
+    pub poses: usize,
+    /// Best poses that are refined off the grid.
+    pub refine: usize,
+    /// Radius of clusters, ligand CA RMSD.
+    pub cluster_radius: f64,
+    /// Whether every pose is a row, rather than one a cluster.
+    pub every_pose: bool,
+    /// Threads; 0 takes all cores.
+    pub threads: usize,
+    /// Bytes that the run may take; `None`: no limit.
+    pub memory: Option<u64>,
+}
+
+/// Default pass length as a multiple of the resolution.
+pub const PASS_RATIO: f64 = 2.0;
+
+impl Default for DockOptions {
+    fn default() -> Self {
+        Self {
+            rotations: 3600,
+            resolution: 4.0,
+            pass_length: None,
+            spacing: None,
+            lambda: 10.0,
+            offset: 2.0,
+            alpha: 2.0,
+            tolerance: 1e-2,
+            effects: vec![Effect::Shape],
+            per_rotation: 3,
+            poses: 2000,
+            refine: 300,
+            cluster_radius: 5.0,
+            every_pose: false,
+            threads: 0,
+            memory: None,
+        }
+    }
+}
+
+impl DockOptions {
+    /// The engine's part of the options.
+    pub fn engine(&self) -> EngineOptions {
+        EngineOptions {
+            kernel: KernelOptions {
+                lambda: self.lambda,
+                offset: self.offset,
+                alpha: self.alpha,
+                resolution: self.resolution,
+                pass_length: self.pass_length.unwrap_or(PASS_RATIO * self.resolution),
+                trim: Trim::FlatTop,
+            },
+            spacing: self.spacing,
+            tolerance: self.tolerance,
+            rank: None,
+        }
+    }
+
+    /// Refuses what no run can do.
+    pub(super) fn check(&self) -> Result<(), SearchError> {
+        let counts = [
+            ("rotations", self.rotations, 10_000_000),
+            ("per-rotation", self.per_rotation, 10_000),
+            ("poses", self.poses, 10_000_000),
+        ];
+        for (name, value, most) in counts {
+            if value == 0 || value > most {
+                return Err(SearchError::Option {
+                    name,
+                    value: value.to_string(),
+                    bound: format!("between 1 and {most}"),
+                });
+            }
+        }
+        if !(self.cluster_radius.is_finite() && self.cluster_radius >= 0.0) {
+            return Err(SearchError::Option {
+                name: "cluster-radius",
+                value: self.cluster_radius.to_string(),
+                bound: "0 or more".to_owned(),
+            });
+        }
+        if self.tolerance < 1e-4 {
+            return Err(SearchError::Option {
+                name: "tolerance",
+                value: self.tolerance.to_string(),
+                bound: "1e-4 or more: the search runs in single precision".to_owned(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Why a docking run was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SearchError {
+    /// A molecule gives no usable knots.
+    #[error(transparent)]
+    Knots(#[from] KnotsError),
+    /// The engine cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// An option is out of its range.
+    #[error("{name} is {value}; it must be {bound}")]
+    Option {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// Its range.
+        bound: String,
+    },
+    /// Not even one rotation in flight fits into the memory allowed.
+    #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
+    Memory {
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes allowed.
+        allowed: u64,
+        /// Grid spacing in Å that would fit, if any does.
+        spacing: Option<f64>,
+    },
+    /// The threads could not be started.
+    #[error("threads could not be started: {0}")]
+    Threads(String),
+    /// No rotation has a finite score.
+    #[error("no pose has a finite score")]
+    NoPose,
+}
+
+impl SearchError {
+    /// What the user may do about it.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
+            Self::Plan(PlanError::TooLarge(_)) => {
+                "use a coarser --resolution or --spacing, or check for stray atoms far away"
+                    .to_owned()
+            }
+            Self::Plan(_) | Self::Option { .. } => {
+                "give the option a value in its range".to_owned()
+            }
+            Self::Memory {
+                spacing: Some(spacing),
+                ..
+            } => format!("use --spacing {spacing:.2}, or allow more with --memory"),
+            Self::Memory { .. } => "allow more with --memory".to_owned(),
+            Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::NoPose => "check lambda and the offset".to_owned(),
+        }
+    }
+}

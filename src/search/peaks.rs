@@ -1,0 +1,123 @@
+//! The best voxels of one rotation, kept apart from one another.
+
+/// A grid pose: rotation and voxel, with the fast path's score.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Score on the grid.
+    pub score: f32,
+    /// Index in the rotation set.
+    pub rotation: u32,
+    /// Voxel, row-major.
+    pub voxel: u32,
+}
+
+impl Peak {
+    /// Best first; ties by rotation, then voxel, so that the order never depends on threads.
+    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+        other
+            .score
+            .total_cmp(&self.score)
+            .then(self.rotation.cmp(&other.rotation))
+            .then(self.voxel.cmp(&other.voxel))
+    }
+}
+
+/// Voxels around a peak that may hold no further one, on each axis and side.
+const NEIGHBOURS: usize = 2;
+
+/// Appends the `count` best voxels of a periodic grid (nx, ny, nz), each at least `NEIGHBOURS` + 1 voxels from the others along some
+/// axis, to `found`. `row_best` holds each row's largest value; grid and row bests are overwritten around peaks.
+pub fn find_peaks(
+    size: [usize; 3],
+    grid: &mut [f32],
+    row_best: &mut [f32],
+    rotation: u32,
+    count: usize,
+    found: &mut Vec<Peak>,
+) {
+    let [nx, ny, nz] = size;
+    let side = |n: usize| NEIGHBOURS.min((n - 1) / 2) as isize;
+    for _ in 0..count {
+        let Some((row, score)) = best(row_best) else {
+            return;
+        };
+        let Some((z, _)) = best(&grid[row * nz..(row + 1) * nz]) else {
+            return;
+        };
+        found.push(Peak {
+            score,
+            rotation,
+            voxel: (row * nz + z) as u32,
+        });
+        let (x, y) = (row / ny, row % ny);
+        for dx in -side(nx)..=side(nx) {
+            for dy in -side(ny)..=side(ny) {
+                let wrap =
+                    |i: usize, d: isize, n: usize| (i as isize + d).rem_euclid(n as isize) as usize;
+                let row = wrap(x, dx, nx) * ny + wrap(y, dy, ny);
+                let values = &mut grid[row * nz..(row + 1) * nz];
+                for dz in -side(nz)..=side(nz) {
+                    values[wrap(z, dz, nz)] = f32::NEG_INFINITY;
+                }
+                row_best[row] = values.iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+            }
+        }
+    }
+}
+
+/// First of the largest finite values, with its index.
+fn best(values: &[f32]) -> Option<(usize, f32)> {
+    let mut largest = f32::NEG_INFINITY;
+    for chunk in values.chunks(64) {
+        let top = chunk
+            .iter()
+            .fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+        if top > largest {
+            largest = top;
+        }
+    }
+    if largest == f32::NEG_INFINITY {
+        return None;
+    }
+    values
+        .iter()
+        .position(|&value| value == largest)
+        .map(|index| (index, largest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peaks_are_the_best_and_apart_across_the_periodic_edge() {
+        let size = [8, 8, 8];
+        let mut grid = vec![0.0f32; 512];
+        let at = |x: usize, y: usize, z: usize| (x * 8 + y) * 8 + z;
+        grid[at(0, 0, 0)] = 9.0;
+        grid[at(7, 7, 7)] = 8.0; // a neighbour of the first through the edge
+        grid[at(4, 4, 4)] = 7.0;
+        grid[at(4, 4, 1)] = 7.0; // a tie: the lower voxel comes first
+        let mut rows: Vec<f32> = grid
+            .chunks(8)
+            .map(|r| r.iter().copied().fold(f32::MIN, f32::max))
+            .collect();
+        let mut found = Vec::new();
+        find_peaks(size, &mut grid, &mut rows, 5, 3, &mut found);
+        let voxels: Vec<u32> = found.iter().map(|p| p.voxel).collect();
+        assert_eq!(
+            voxels,
+            [at(0, 0, 0), at(4, 4, 1), at(4, 4, 4)].map(|v| v as u32)
+        );
+        assert!(found.iter().all(|p| p.rotation == 5));
+    }
+
+    #[test]
+    fn a_tiny_grid_gives_what_it_has() {
+        let mut grid = vec![1.0f32, 2.0];
+        let mut rows = vec![2.0f32];
+        let mut found = Vec::new();
+        find_peaks([1, 1, 2], &mut grid, &mut rows, 0, 5, &mut found);
+        assert_eq!(found.len(), 2);
+    }
+}

@@ -1,0 +1,180 @@
+//! The plan of a docking run: engine plan, rotations, and the memory that it will take.
+
+use super::options::{DockOptions, SearchError};
+use super::rotations::{covering_radius, rotation_set};
+use knotdock_scoring::engine::{CpuEngine, Plan};
+use knotdock_scoring::field::ReceptorField;
+use knotdock_structures::Knots;
+use knotdock_structures::molecule::Molecule;
+use nalgebra::UnitQuaternion;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// A planned docking run.
+#[derive(Clone, Debug, Serialize)]
+pub struct DockPlan {
+    /// The options it was made from.
+    #[serde(skip)]
+    pub options: DockOptions,
+    /// Number of rotations.
+    pub rotations: usize,
+    /// Name of the rotation set.
+    pub rotation_set: &'static str,
+    /// Measured covering radius of the set, degrees.
+    pub covering_radius_degrees: f64,
+    /// Grid points per axis.
+    pub grid: [usize; 3],
+    /// Grid spacing, Å.
+    pub spacing: f64,
+    /// Fine grid of the nonequispaced transforms, points per axis.
+    pub fine_grid: [usize; 3],
+    /// Width of the spreading window, fine cells.
+    pub spreading_width: usize,
+    /// Three-dimensional modes kept, conjugates not counted.
+    pub modes: usize,
+    /// Modes of the lifted axis, k = -K..K.
+    pub lifted_modes: usize,
+    /// Distance in Å at which the ranking kernel ends.
+    pub kernel_reach: f64,
+    /// Pass frequency of the low-pass, 1/Å.
+    pub pass_frequency: f64,
+    /// Stop frequency of the low-pass, 1/Å.
+    pub stop_frequency: f64,
+    /// Distinct radii of receptor and ligand.
+    pub radii: [usize; 2],
+    /// Rotations in flight at once.
+    #[serde(skip)]
+    pub in_flight: usize,
+    /// Bytes that everything but rotations in flight takes.
+    pub fixed_bytes: u64,
+    /// Bytes that a rotation in flight takes.
+    pub bytes_in_flight: u64,
+    #[serde(skip)]
+    pub(super) engine: Arc<Plan>,
+    #[serde(skip)]
+    pub(super) receptor: Knots,
+    #[serde(skip)]
+    pub(super) ligand: Knots,
+    #[serde(skip)]
+    pub(super) set: Vec<UnitQuaternion<f64>>,
+}
+
+/// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
+const EXPECTED_RANK: usize = 4;
+
+/// Plans the docking of two molecules.
+///
+/// # Errors
+/// [`SearchError`] on options out of range, unusable knots, or too little memory for a single rotation.
+pub fn plan(
+    receptor: &Molecule,
+    ligand: &Molecule,
+    options: &DockOptions,
+) -> Result<DockPlan, SearchError> {
+    options.check()?;
+    let (receptor, ligand) = (receptor.knots()?, ligand.knots()?);
+    let engine = Plan::new(&receptor, &ligand, options.engine())?;
+    let threads = match options.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    };
+    let needs = |engine: &Plan| {
+        let (_, functions) = engine.basis.sizes(&engine.axis);
+        let per_rotation =
+            CpuEngine::<f32>::workspace_estimate(engine, functions.min(EXPECTED_RANK)) as u64;
+        let fixed =
+            8 * engine.modes.count as u64 * (functions + functions.min(EXPECTED_RANK) + 1) as u64
+                + ReceptorField::bytes(engine) as u64
+                + 200 * (receptor.len() + ligand.len()) as u64
+                + 64 * options.rotations as u64
+                + 400 * options.poses as u64
+                + (16 << 20);
+        (fixed, per_rotation)
+    };
+    let (fixed, per_rotation) = needs(&engine);
+    let mut in_flight = threads.min(options.rotations);
+    if let Some(allowed) = options.memory {
+        let room = allowed.saturating_sub(fixed) / per_rotation.max(1);
+        if room == 0 {
+            let mut spacing = engine.spacing;
+            let fits = (0..40).find_map(|_| {
+                spacing *= 1.1;
+                let coarser = DockOptions {
+                    spacing: Some(spacing),
+                    ..options.clone()
+                };
+                let plan = Plan::new(&receptor, &ligand, coarser.engine()).ok()?;
+                let (fixed, per_rotation) = needs(&plan);
+                (fixed + per_rotation <= allowed).then_some((spacing * 100.0).ceil() / 100.0)
+            });
+            return Err(SearchError::Memory {
+                needed: fixed + per_rotation,
+                allowed,
+                spacing: fits,
+            });
+        }
+        in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
+    }
+    let set = rotation_set(options.rotations);
+    let (a, b) = match &engine.basis {
+        knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
+            (receptor.len(), ligand.len())
+        }
+        knotdock_scoring::lifted_axis::RadiusBasis::Modes => engine.basis.sizes(&engine.axis),
+    };
+    Ok(DockPlan {
+        rotations: options.rotations,
+        rotation_set: "super-Fibonacci (Alexa 2022)",
+        covering_radius_degrees: covering_radius(&set).to_degrees(),
+        grid: engine.size(),
+        spacing: engine.spacing,
+        fine_grid: engine.fine,
+        spreading_width: engine.width,
+        modes: engine.modes.count,
+        lifted_modes: engine.axis.modes(),
+        kernel_reach: engine.kernel.reach(),
+        pass_frequency: 1.0 / engine.options.kernel.pass_length,
+        stop_frequency: engine.kernel.stop(),
+        radii: [a, b],
+        in_flight,
+        fixed_bytes: fixed,
+        bytes_in_flight: per_rotation,
+        engine: Arc::new(engine),
+        options: options.clone(),
+        receptor,
+        ligand,
+        set,
+    })
+}
+
+impl DockPlan {
+    /// Bytes that the run is expected to take at its peak.
+    pub fn memory_bytes(&self) -> u64 {
+        self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight
+    }
+}
+
+impl std::fmt::Display for DockPlan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{} rotations ({:.1} degrees covering radius), grid {} x {} x {} at {:.2} Å, {} modes below {:.3} per Å, \
+             window of {} on {} x {} x {}, lifted axis -{K}..{K}; about {:.0} MB with {} in flight",
+            self.rotations,
+            self.covering_radius_degrees,
+            self.grid[0],
+            self.grid[1],
+            self.grid[2],
+            self.spacing,
+            self.modes,
+            self.engine.modes.cut,
+            self.spreading_width,
+            self.fine_grid[0],
+            self.fine_grid[1],
+            self.fine_grid[2],
+            self.memory_bytes() as f64 / 1e6,
+            self.in_flight,
+            K = self.lifted_modes,
+        )
+    }
+}
