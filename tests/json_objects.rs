@@ -94,6 +94,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             "options",
             "plan",
             "program",
+            "rank",
             "results",
             "schema",
             "timing",

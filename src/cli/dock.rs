@@ -5,13 +5,13 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
 use knotdock::output::complexes::write_complexes;
-use knotdock::output::manifest::{Machine, Manifest, ManifestParts, Results, Timing};
+use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
-use knotdock::search::{self, DockOptions, DockOutcome};
+use knotdock::search::{self, DockOutcome, DockPlan};
 use serde_json::json;
 
 use super::arguments::at_least_one;
@@ -46,9 +46,6 @@ pub struct Dock {
     from: Option<PathBuf>,
     #[command(flatten)]
     search: SearchArguments,
-    /// List every pose; without this, one row a cluster, its best pose.
-    #[arg(long, help_heading = RANKING)]
-    no_cluster: bool,
     /// Complexes to write to top/.
     #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
     write_top: usize,
@@ -69,7 +66,7 @@ const RECORDED: [&str; 21] = [
     "rotations",
     "angle",
     "resolution",
-    "pass",
+    "pass_length",
     "spacing",
     "lambda",
     "offset",
@@ -101,7 +98,6 @@ impl Dock {
             native: self.native.read()?,
             options: RunOptions {
                 dock: self.search.options(),
-                no_cluster: self.no_cluster,
                 write_top: self.write_top,
             },
         })
@@ -115,9 +111,7 @@ impl Dock {
             None => self.request()?,
         };
         request.options.dock.memory = self.memory.or_else(memory::default_limit);
-        if let Some(threads) = self.threads {
-            request.options.dock.threads = threads;
-        }
+        request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
         let request = request;
         let directory = self.output.unwrap_or_else(|| request.directory());
         console.say(format!(
@@ -137,12 +131,11 @@ impl Dock {
         console.say(format!("\n{plan}"));
         let staging = Staging::open(&directory, self.force)?;
         let progress = console.progress();
-        let outcome = search::dock(&plan, receptor, ligand, &progress)
+        let outcome = search::dock(&plan, ligand, &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
 
-        let ranking = request.ranking(&outcome);
-        let mut table = PoseTable::new(&ranking);
+        let mut table = PoseTable::new(&outcome.poses);
         let quality = match &evaluator {
             Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
             None => Vec::new(),
@@ -163,24 +156,24 @@ impl Dock {
             plan: &plan,
             outcome: &outcome,
             results: Results {
-                rows: ranking.len(),
-                clusters: firsts(&outcome.poses).len(),
-                poses: outcome.poses.len(),
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
             },
             chains: &written.chains,
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
             timing: clock.timing(&outcome),
-            machine: machine(&request.options.dock),
+            machine: machine(&plan),
         })
         .map_err(Failure::other)?;
         manifest.write(&staging.folder().join("run.json"))?;
         staging.commit()?;
 
         console.say(format!("\n{}", told(&outcome)));
-        console.say(format!("\n{}", best_clusters(&ranking, &quality)));
+        console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
         console.say(format!(
             "\n{} rows in {}",
-            ranking.len(),
+            outcome.poses.len(),
             directory.join("poses.csv").display()
         ));
         let complexes = written
@@ -191,29 +184,36 @@ impl Dock {
             "directory": directory.display().to_string(),
             "poses": directory.join("poses.csv").display().to_string(),
             "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "best": table.objects(firsts(&ranking).into_iter().take(BEST)),
+            "best": table.objects(firsts(&outcome.poses).into_iter().take(BEST)),
             "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
         }));
         Ok(())
     }
 }
 
-/// Which effects were on, and how far the fast path was off.
+/// Which effects were on and what they cost, and how far the fast path was off.
 fn told(outcome: &DockOutcome) -> String {
-    let effects = outcome
-        .effects
-        .iter()
-        .map(|cost| format!("{cost:?}"))
-        .collect::<Vec<_>>();
+    let effects = outcome.effects.iter().map(|cost| {
+        format!(
+            "Effect {:?} ({}): {} fields of the lifted axis, {:.2} CPU ms a rotation",
+            cost.effect, cost.reason, cost.rank, cost.milliseconds_per_rotation
+        )
+    });
+    let mut lines: Vec<String> = effects.collect();
     let error = outcome.error;
-    format!(
-        "Effects: {}\nFast path against the exact sum on {} poses: {:.1e} rms, {:.1e} worst of the best score; the low-pass took {:.1}%",
-        effects.join("; "),
-        error.poses,
-        error.rms,
-        error.worst,
+    lines.push(format!(
+        "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
+        error.poses, error.rms, error.worst
+    ));
+    lines.push(format!(
+        "The low-pass moved their scores by {:.0}% of the best on average",
         100.0 * error.low_pass_share
-    )
+    ));
+    lines.push(format!(
+        "{} poses in {} clusters",
+        outcome.poses_kept, outcome.clusters
+    ));
+    lines.join("\n")
 }
 
 /// When the run began.
@@ -239,18 +239,25 @@ impl Clock {
                 .map_or(0, |since| since.as_secs()),
             wall_seconds: self.monotonic.elapsed().as_secs_f64(),
             stages: outcome.timing.clone(),
+            effects: EffectTime::of(&outcome.effects),
             peak_memory_bytes: memory::peak(),
         }
     }
 }
 
-fn machine(options: &DockOptions) -> Machine {
+fn hardware_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, |threads| threads.get())
+}
+
+fn machine(plan: &DockPlan) -> Machine {
     Machine {
         system: std::env::consts::OS,
         architecture: std::env::consts::ARCH,
-        hardware_threads: std::thread::available_parallelism().map_or(1, |threads| threads.get()),
-        threads: options.threads,
-        memory_limit_bytes: options.memory,
+        hardware_threads: hardware_threads(),
+        threads: plan.options.threads,
+        rotations_in_flight: plan.in_flight,
+        memory_limit_bytes: plan.options.memory,
+        memory_estimate_bytes: plan.memory_bytes(),
         command: std::env::args_os()
             .map(|word| word.to_string_lossy().into_owned())
             .collect(),

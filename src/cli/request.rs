@@ -4,10 +4,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
-use knotdock::output::report::firsts;
 use knotdock::output::run_options::RunOptions;
-use knotdock::search::DockOutcome;
-use knotdock::search::outcome::RankedPose;
 
 use super::console::Console;
 use super::failure::Failure;
@@ -71,16 +68,5 @@ impl Request {
             self.receptor.label(),
             self.ligand.label()
         ))
-    }
-
-    /// The poses that are listed, best first.
-    pub fn ranking(&self, outcome: &DockOutcome) -> Vec<RankedPose> {
-        if self.options.no_cluster {
-            return outcome.poses.clone();
-        }
-        firsts(&outcome.poses)
-            .into_iter()
-            .filter_map(|index| outcome.poses.get(index).cloned())
-            .collect()
     }
 }

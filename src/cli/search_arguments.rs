@@ -1,12 +1,20 @@
 //! Options of the search, with their units and defaults.
 
 use clap::Args;
+use knotdock::search::options::PASS_RATIO;
 use knotdock::search::{DockOptions, Effect};
 
 use super::arguments::{above_zero, at_least_one, effect, not_negative, rotations_of_angle};
 
 const TRADE_OFFS: &str = "Accuracy against time";
 const SCORE: &str = "Score";
+fn pass_length_help() -> String {
+    format!(
+        "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å [default: {PASS_RATIO} \
+         times the resolution]"
+    )
+}
+
 /// Heading of the options that say what the table lists.
 pub const RANKING: &str = "Ranking";
 
@@ -20,12 +28,11 @@ pub struct SearchArguments {
     #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
     angle: Option<usize>,
     /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
-    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
-    resolution: Option<f64>,
-    /// Frequency up to which the low-pass takes nothing, in cycles per Å.
-    #[arg(long, value_name = "F", value_parser = not_negative, help_heading = TRADE_OFFS)]
-    pass: Option<f64>,
-    /// Spacing of the translation grid, in Å [default: half the resolution].
+    #[arg(long, value_name = "A", value_parser = above_zero, default_value_t = DockOptions::default().resolution, help_heading = TRADE_OFFS)]
+    resolution: f64,
+    #[arg(long, value_name = "A", value_parser = above_zero, help = pass_length_help(), help_heading = TRADE_OFFS)]
+    pass_length: Option<f64>,
+    /// Spacing of the translation grid, in Å [default: half the resolution, or finer where the tolerance needs it].
     #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
     spacing: Option<f64>,
     /// Penalty of overlap against the reward of contact (dimensionless).
@@ -53,8 +60,11 @@ pub struct SearchArguments {
     #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine, help_heading = TRADE_OFFS)]
     refine: usize,
     /// Ligand CA RMSD within which poses form a cluster, in Å.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 5.0, help_heading = RANKING)]
+    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().cluster_radius, help_heading = RANKING)]
     cluster_radius: f64,
+    /// List every pose; without this, one row a cluster, its best pose.
+    #[arg(long, help_heading = RANKING)]
+    no_cluster: bool,
 }
 
 impl SearchArguments {
@@ -63,7 +73,7 @@ impl SearchArguments {
         DockOptions {
             rotations: self.angle.unwrap_or(self.rotations),
             resolution: self.resolution,
-            pass: self.pass,
+            pass_length: self.pass_length,
             spacing: self.spacing,
             lambda: self.lambda,
             offset: self.offset,
@@ -73,7 +83,8 @@ impl SearchArguments {
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,
-            cluster_radius: Some(self.cluster_radius),
+            cluster_radius: self.cluster_radius,
+            every_pose: self.no_cluster,
             ..DockOptions::default()
         }
     }

@@ -14,7 +14,7 @@ use super::run_options::RunOptions;
 use super::staging::{StagingError, write_whole};
 use crate::evaluate::MatchReport;
 use crate::search::outcome::MeasuredError;
-use crate::search::{DockOutcome, DockPlan, StageTime};
+use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 1;
@@ -67,6 +67,26 @@ pub struct Results {
     pub poses: usize,
 }
 
+/// What an effect cost.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EffectTime {
+    /// The effect.
+    pub effect: Effect,
+    /// CPU milliseconds a rotation, over all stages of the search loop.
+    pub milliseconds_per_rotation: f64,
+}
+
+impl EffectTime {
+    /// The costs that a search measured.
+    pub fn of(costs: &[EffectCost]) -> Vec<Self> {
+        let times = costs.iter().map(|cost| Self {
+            effect: cost.effect,
+            milliseconds_per_rotation: cost.milliseconds_per_rotation,
+        });
+        times.collect()
+    }
+}
+
 /// What the run cost. Differs from run to run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Timing {
@@ -76,6 +96,8 @@ pub struct Timing {
     pub wall_seconds: f64,
     /// Stages of the search.
     pub stages: Vec<StageTime>,
+    /// What each effect cost.
+    pub effects: Vec<EffectTime>,
     /// The most memory that the process held, in bytes; `null` where the system does not say.
     pub peak_memory_bytes: Option<u64>,
 }
@@ -91,10 +113,23 @@ pub struct Machine {
     pub hardware_threads: usize,
     /// Threads that the search was given.
     pub threads: usize,
+    /// Rotations that were in flight at once.
+    pub rotations_in_flight: usize,
+    /// Memory that the search was expected to take, in bytes.
+    pub memory_estimate_bytes: u64,
     /// Memory that the search was given, in bytes; `null` for no limit.
     pub memory_limit_bytes: Option<u64>,
     /// The command line.
     pub command: Vec<String>,
+}
+
+/// The errors that a run measured, as shares of the best score.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct ErrorRecord {
+    #[serde(flatten)]
+    measured: MeasuredError,
+    /// What compressing the lifted axis to its rank took, at the best poses of a few rotations.
+    lifted_axis: f64,
 }
 
 /// `run.json`.
@@ -108,8 +143,9 @@ pub struct Manifest<'a> {
     inputs: &'a Inputs,
     options: Map<String, Value>,
     plan: &'a DockPlan,
-    effects: Value,
-    error: MeasuredError,
+    rank: usize,
+    effects: &'a [EffectCost],
+    error: ErrorRecord,
     results: Results,
     chains: &'a ChainMap,
     #[serde(rename = "match")]
@@ -155,8 +191,12 @@ impl<'a> Manifest<'a> {
             inputs: parts.inputs,
             options: parts.options.record()?,
             plan: parts.plan,
-            effects: serde_json::to_value(&parts.outcome.effects)?,
-            error: parts.outcome.error,
+            rank: parts.outcome.effects.iter().map(|cost| cost.rank).sum(),
+            effects: &parts.outcome.effects,
+            error: ErrorRecord {
+                measured: parts.outcome.error,
+                lifted_axis: parts.outcome.rank_error,
+            },
             results: parts.results,
             chains: parts.chains,
             matching: parts.matching,

@@ -12,8 +12,6 @@ const MACHINE_OPTIONS: [&str; 2] = ["threads", "memory"];
 pub struct RunOptions {
     /// Options of the search.
     pub dock: DockOptions,
-    /// Every pose is listed, not one a cluster.
-    pub no_cluster: bool,
     /// Number of complexes written to `top/`.
     pub write_top: usize,
 }
@@ -25,7 +23,6 @@ impl RunOptions {
         for name in MACHINE_OPTIONS {
             options.remove(name);
         }
-        options.insert("no_cluster".to_owned(), self.no_cluster.into());
         options.insert("write_top".to_owned(), self.write_top.into());
         Ok(options)
     }
@@ -35,17 +32,14 @@ impl RunOptions {
         let mut dock = object(
             serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?,
         );
-        let mut no_cluster = false;
         let mut write_top = 0;
         for (name, value) in record {
-            let fault = || format!("option `{name}` cannot be {value}");
             match name.as_str() {
-                "no_cluster" => no_cluster = value.as_bool().ok_or_else(fault)?,
                 "write_top" => {
                     write_top = value
                         .as_u64()
                         .and_then(|count| usize::try_from(count).ok())
-                        .ok_or_else(fault)?;
+                        .ok_or_else(|| format!("option `{name}` cannot be {value}"))?;
                 }
                 known if dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
                     dock.insert(name.clone(), value.clone());
@@ -55,7 +49,6 @@ impl RunOptions {
         }
         Ok(Self {
             dock: serde_json::from_value(Value::Object(dock)).map_err(|error| error.to_string())?,
-            no_cluster,
             write_top,
         })
     }
@@ -79,12 +72,11 @@ mod tests {
                 rotations: 17,
                 lambda: 0.1 + 0.2,
                 spacing: Some(1.0 / 3.0),
-                cluster_radius: None,
+                every_pose: true,
                 threads: 7,
                 memory: Some(99),
                 ..DockOptions::default()
             },
-            no_cluster: true,
             write_top: 3,
         };
         let text = serde_json::to_string(&options.record().unwrap()).unwrap();
