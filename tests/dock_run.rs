@@ -333,3 +333,86 @@ fn a_run_moved_with_its_inputs_still_finds_them() {
     run(&moved, "complex run --rank 1 --quiet");
     assert!(moved.join("run/top/rank_0001.pdb").exists());
 }
+
+#[test]
+fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
+    let folder = place();
+    let attempt = |memory: &str, spacing: &str| {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["dock", "receptor.pdb", "ligand.pdb", "--rotations", "20"])
+            .args([
+                "--write-top",
+                "0",
+                "-o",
+                "run",
+                "--json",
+                "--memory",
+                memory,
+            ])
+            .args(spacing.split_whitespace())
+            .output()
+            .unwrap();
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (output.status.code(), object)
+    };
+    let (code, told) = attempt("1M", "");
+    assert_eq!(code, Some(2));
+    assert!(!folder.path().join("run").exists());
+    let message = told["error"]["message"].as_str().unwrap();
+    let needed: u64 = message
+        .split(|c: char| !c.is_ascii_digit())
+        .find_map(|word| word.parse().ok())
+        .unwrap();
+    let (code, told) = attempt(&(needed * 19 / 20).to_string(), "");
+    assert_eq!(code, Some(2), "{told}");
+    let remedy = told["error"]["remedy"].as_str().unwrap();
+    let spacing = remedy.split(&[' ', ','][..]).nth(2).unwrap();
+    let (code, told) = attempt(
+        &(needed * 19 / 20).to_string(),
+        &format!("--spacing {spacing}"),
+    );
+    assert_eq!(code, Some(0), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing_that_looks_whole() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::time::{Duration, Instant};
+    let folder = place();
+    let dock = "dock receptor.pdb ligand.pdb --quiet --write-top 1 -o run";
+    run(folder.path(), &format!("{dock} --rotations 20"));
+    let run_folder = folder.path().join("run");
+    let before = files(&run_folder);
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("knotdock"))
+        .current_dir(folder.path())
+        .args(dock.split_whitespace())
+        .args(["--force", "--rotations", "40000"])
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !run_folder.join(".partial").exists() {
+        assert!(start.elapsed() < Duration::from_secs(120) && child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    std::thread::sleep(Duration::from_millis(100)); // into the search
+    std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    let asked = Instant::now();
+    let status = child.wait().unwrap();
+    assert!(
+        asked.elapsed() < Duration::from_secs(2),
+        "Ctrl-C ends at once"
+    );
+    assert_eq!(status.signal(), Some(2));
+    let mut after = files(&run_folder);
+    after.retain(|name, _| !name.starts_with(".partial"));
+    assert_eq!(after, before, "the older run stays as it was");
+    // The next run clears what is left.
+    run(folder.path(), &format!("{dock} --force --rotations 21"));
+    assert!(!run_folder.join(".partial").exists());
+    assert_eq!(files(&run_folder).len(), before.len());
+}

@@ -57,19 +57,17 @@ impl Console {
 
     /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
     pub fn progress(&self) -> ProgressLine {
-        let target = if self.quiet || !io::stderr().is_terminal() {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(None, target);
+        let bar = ProgressBar::hidden();
         // The templates are constant; should one not parse, indicatif's own style serves.
         if let Ok(style) = ProgressStyle::with_template(
             "{msg:>12} [{wide_bar}] {human_pos}/{human_len}, {elapsed} gone, {eta} left",
         ) {
             bar.set_style(style.progress_chars("=> "));
         }
-        ProgressLine(bar)
+        ProgressLine {
+            bar,
+            shown: !self.quiet && io::stderr().is_terminal(),
+        }
     }
 }
 
@@ -79,23 +77,32 @@ fn write_line(stream: &mut dyn Write, text: &str) {
 }
 
 /// The progress of a search on one line of the terminal, cleared when the search ends.
-pub struct ProgressLine(ProgressBar);
+pub struct ProgressLine {
+    bar: ProgressBar,
+    shown: bool,
+}
 
 impl Progress for ProgressLine {
     fn stage(&self, name: &str, total: u64) {
-        self.0.reset();
-        self.0.set_length(total);
-        self.0.set_message(name.to_owned());
-        self.0.enable_steady_tick(Duration::from_millis(200));
+        self.bar.finish_and_clear();
+        // Each of these would draw a line of its own that is half the old stage's and half the new one's.
+        self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        self.bar.reset();
+        self.bar.set_length(total);
+        self.bar.set_message(name.to_owned());
+        if self.shown {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.enable_steady_tick(Duration::from_millis(200));
+        }
     }
 
     fn advance(&self, by: u64) {
-        self.0.inc(by);
+        self.bar.inc(by);
     }
 }
 
 impl Drop for ProgressLine {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }

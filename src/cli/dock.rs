@@ -195,8 +195,11 @@ impl Dock {
 fn told(outcome: &DockOutcome) -> String {
     let effects = outcome.effects.iter().map(|cost| {
         format!(
-            "Effect {:?} ({}): {} fields of the lifted axis, {:.2} CPU ms a rotation",
-            cost.effect, cost.reason, cost.rank, cost.milliseconds_per_rotation
+            "Effect {} ({}): {} fields of the lifted axis, {:.2} CPU ms a rotation",
+            format!("{:?}", cost.effect).to_lowercase(),
+            cost.reason,
+            cost.rank,
+            cost.milliseconds_per_rotation
         )
     });
     let mut lines: Vec<String> = effects.collect();

@@ -31,8 +31,8 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         line.extend(appended.iter().map(|column| {
             let field = column.fields.get(index).map_or("", String::as_str);
             match field.parse::<f64>() {
-                Ok(value) if field.contains('.') => format!("{value:.2}"),
-                _ => field.to_owned(),
+                Ok(value) => format!("{value:.2}"),
+                Err(_) => field.to_owned(),
             }
         }));
         lines.push(line);
@@ -67,9 +67,10 @@ pub fn align(lines: &[Vec<String>]) -> String {
         .iter()
         .map(|line| {
             let fields = line.iter().zip(&widths);
-            fields
+            let line: String = fields
                 .map(|(field, &width)| format!("  {field:>width$}"))
-                .collect()
+                .collect();
+            line.trim_end().to_owned()
         })
         .collect();
     text.join("\n")
@@ -108,15 +109,15 @@ mod tests {
         assert_eq!(firsts(&ranking), [0, 2, 3, 4]);
         let irmsd = Column {
             name: "irmsd".to_owned(),
-            fields: ["1.234", "", "20", "3.5"].map(str::to_owned).to_vec(),
+            fields: ["1.234", "", "", "3.5"].map(str::to_owned).to_vec(),
         };
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
             "  rank  score  cluster size  unfiltered  irmsd\n\
              \x20    1    9.0             2         9.0   1.23\n\
-             \x20    3    7.0                       7.0     20\n\
+             \x20    3    7.0                       7.0\n\
              \x20    4    6.0             2         6.0   3.50\n\
-             \x20    5    5.0                       5.0       "
+             \x20    5    5.0                       5.0"
         );
     }
 }
