@@ -209,3 +209,14 @@ fn rounded(value: f64, per_unit: f64) -> f64 {
     let value = (value * per_unit).round() / per_unit;
     if value == 0.0 { 0.0 } else { value }
 }
+
+/// Free text in printable ASCII, on one line: both formats allow no more.
+fn plain(text: &str) -> String {
+    text.chars()
+        .map(|c| match c {
+            c if c.is_ascii_graphic() => c,
+            c if c.is_whitespace() => ' ',
+            _ => '?',
+        })
+        .collect()
+}

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use super::{Row, WriteError, rounded};
+use super::{Row, WriteError, plain, rounded};
 
 const COLUMNS: [&str; 20] = [
     "group_PDB",
@@ -40,10 +40,10 @@ pub(super) fn write<W: Write>(
             writer,
             "_pdbx_database_remark.id 99\n_pdbx_database_remark.text\n;"
         )?;
-        for line in remarks.iter().flat_map(|remark| remark.lines()) {
+        for remark in remarks {
             // A semicolon at the start of a line would end the text.
-            let guard = if line.starts_with(';') { " " } else { "" };
-            writeln!(writer, "{guard}{line}")?;
+            let guard = if remark.starts_with(';') { " " } else { "" };
+            writeln!(writer, "{guard}{}", plain(remark))?;
         }
         writeln!(writer, ";")?;
     }

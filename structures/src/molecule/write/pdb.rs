@@ -125,28 +125,31 @@ fn name_columns(name: &str, element: &str) -> String {
     }
 }
 
-/// A remark as lines that fit beside its number, in printable ASCII.
+/// A remark as lines that fit beside its number, broken between words where there are any, in printable ASCII.
 fn wrapped(text: &str) -> Vec<String> {
     let width = 80 - REMARK.len();
-    let plain: Vec<char> = text
-        .chars()
-        .map(|c| {
-            if c.is_ascii_graphic() {
-                c
-            } else if c.is_whitespace() {
-                ' '
+    let plain = super::plain(text);
+    let mut lines = vec![String::new()];
+    for word in plain.split_ascii_whitespace() {
+        let mut rest = word;
+        while !rest.is_empty() {
+            let Some(line) = lines.last_mut() else { break };
+            let gap = usize::from(!line.is_empty());
+            let room = width.saturating_sub(line.len() + gap);
+            if rest.len() <= room {
+                line.push_str(if gap == 1 { " " } else { "" });
+                line.push_str(rest);
+                rest = "";
+            } else if line.is_empty() {
+                let (head, tail) = rest.split_at(room);
+                line.push_str(head);
+                rest = tail;
             } else {
-                '?'
+                lines.push(String::new());
             }
-        })
-        .collect();
-    if plain.is_empty() {
-        return vec![String::new()];
+        }
     }
-    plain
-        .chunks(width)
-        .map(|line| line.iter().collect())
-        .collect()
+    lines
 }
 
 #[cfg(test)]
@@ -161,6 +164,15 @@ mod tests {
         assert!(fits(999.99, 6, 100.0) && !fits(999.996, 6, 100.0));
         assert!(fits(-99.99, 6, 100.0) && !fits(-100.0, 6, 100.0));
         assert!(!fits(1e6, 8, 1000.0));
+    }
+
+    #[test]
+    fn remarks_are_wrapped_at_words_and_at_the_edge() {
+        let long = "x".repeat(100);
+        let lines = wrapped(&format!("two words {long}"));
+        assert_eq!(lines, ["two words", &"x".repeat(69), &"x".repeat(31)]);
+        assert_eq!(wrapped("é\n1"), ["? 1"]);
+        assert_eq!(wrapped(""), [""]);
     }
 
     #[test]

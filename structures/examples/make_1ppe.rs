@@ -1,0 +1,147 @@
+//! Makes the example pair in this folder from its sources; see README.md beside it.
+//!
+//! ```text
+//! cargo run -p knotdock-structures --example make_1ppe -- RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER
+//! ```
+//!
+//! Everything goes through the crate's own reader and writer. The unbound ligand is turned by a rotation drawn once and
+//! for all from a seed, and its centroid is moved to the origin, so that its start says nothing of where it binds. The
+//! bound pair stays in its common frame; the bound receptor takes the residue numbers of the unbound one.
+
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use knotdock_structures::molecule::{
+    Atom, Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
+};
+
+/// Seed of the ligand's rotation.
+const SEED: u64 = 1;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [receptor, ligand, complex, folder] = arguments.as_slice() else {
+        return Err("usage: make_1ppe RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER".into());
+    };
+    let folder = Path::new(folder);
+    let receptor = load(receptor)?;
+    let ligand = load(ligand)?;
+    let receptor_bound = renumbered(&load(&format!("{complex}:A"))?, &receptor)?;
+    let ligand_bound = load(&format!("{complex}:B"))?;
+
+    let rotation = random_quaternion(SEED);
+    println!("ligand turned by w, x, y, z = {rotation:?}");
+    let centroid = centroid(&ligand);
+    let turned = ligand.map_positions(|x| rotate(rotation, subtract(x, centroid)));
+
+    let unbound = "coordinates of the free molecule, PDB entry";
+    let bound = "coordinates in the complex, PDB entry 1PPE";
+    let files = [
+        (
+            "1ppe_receptor_unbound.pdb",
+            receptor,
+            format!("bovine beta-trypsin, {unbound} 1BTP"),
+        ),
+        (
+            "1ppe_ligand_unbound.pdb",
+            turned,
+            format!("squash inhibitor CMTI-I, {unbound} 1LU0, turned and moved"),
+        ),
+        (
+            "1ppe_receptor_bound.pdb",
+            receptor_bound,
+            format!("bovine beta-trypsin, {bound}"),
+        ),
+        (
+            "1ppe_ligand_bound.pdb",
+            ligand_bound,
+            format!("squash inhibitor CMTI-I, {bound}"),
+        ),
+    ];
+    for (name, molecule, remark) in files {
+        let mut writer = BufWriter::new(File::create(folder.join(name))?);
+        write_molecule(&mut writer, Format::Pdb, &molecule, &[remark])?;
+    }
+    Ok(())
+}
+
+fn load(text: &str) -> Result<Molecule, Box<dyn Error>> {
+    let molecule = read(&InputSpec::parse(text)?, &ReadOptions::default())?;
+    println!("{}", molecule.report);
+    Ok(molecule)
+}
+
+/// The molecule with its residues numbered as those of another of the same sequence.
+fn renumbered(molecule: &Molecule, numbers: &Molecule) -> Result<Molecule, Box<dyn Error>> {
+    let own = residues(molecule);
+    let others = residues(numbers);
+    if own.len() != others.len() {
+        return Err("the receptors differ in length".into());
+    }
+    let mut renumbered = molecule.clone();
+    let mut atoms = renumbered.atoms.iter_mut();
+    for (own, other) in own.iter().zip(&others) {
+        let (Some(first), Some(named)) = (own.first(), other.first()) else {
+            continue;
+        };
+        if first.residue_name != named.residue_name {
+            return Err("the receptors differ in sequence".into());
+        }
+        for atom in atoms.by_ref().take(own.len()) {
+            atom.residue_number = named.residue_number;
+            atom.insertion_code = named.insertion_code;
+        }
+    }
+    Ok(renumbered)
+}
+
+/// Runs of atoms that share a residue.
+fn residues(molecule: &Molecule) -> Vec<&[Atom]> {
+    let key = |atom: &Atom| (atom.residue_number, atom.insertion_code);
+    molecule.atoms.chunk_by(|a, b| key(a) == key(b)).collect()
+}
+
+fn centroid(molecule: &Molecule) -> [f64; 3] {
+    let count = molecule.atoms.len() as f64;
+    let sum = molecule.atoms.iter().fold([0.0; 3], |sum, atom| {
+        let [x, y, z] = atom.position;
+        [sum[0] + x, sum[1] + y, sum[2] + z]
+    });
+    sum.map(|total| total / count)
+}
+
+fn subtract([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    [a - x, b - y, c - z]
+}
+
+/// Turns x by the unit quaternion (w, x, y, z): active, right-handed.
+fn rotate([w, a, b, c]: [f64; 4], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    // v + 2 w (q x v) + 2 q x (q x v), with q the vector part.
+    let cross = |[x, y, z]: [f64; 3]| [b * z - c * y, c * x - a * z, a * y - b * x];
+    let once = cross([x, y, z]);
+    let twice = cross(once);
+    [
+        x + 2.0 * (w * once[0] + twice[0]),
+        y + 2.0 * (w * once[1] + twice[1]),
+        z + 2.0 * (w * once[2] + twice[2]),
+    ]
+}
+
+/// A uniform random rotation: Shoemake, Graphics Gems III (1992) 124-132, on SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
+fn random_quaternion(seed: u64) -> [f64; 4] {
+    let mut state = seed;
+    let mut uniform = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let (u, first, second) = (uniform(), uniform(), uniform());
+    let (sin_1, cos_1) = (std::f64::consts::TAU * first).sin_cos();
+    let (sin_2, cos_2) = (std::f64::consts::TAU * second).sin_cos();
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    [b * cos_2, a * sin_1, a * cos_1, b * sin_2]
+}
