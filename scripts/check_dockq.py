@@ -12,6 +12,8 @@ Residues: DockQ aligns them by sequence alone, and where one is missing beside a
 Where the files' numbers pair at least as many equal residues as that, DockQ is given the pairs that the numbers name; if its own
 differ, what that would change in its score is printed and does not count.
 
+Not for sides of several identical chains: knotdock gives each pose the best of their orders, of which merged chains know one.
+
 Compared for every pose: dockq, fnat, irmsd, and lrmsd where DockQ takes the ligand for the smaller side (elsewhere its LRMSD
 is another quantity, which only enters dockq). Exit code 0 when all differ by at most the tolerance, 1 when one does not,
 2 when the check could not be made.
@@ -43,8 +45,9 @@ def residues_of(path):
                 break
             if not line.startswith(("ATOM  ", "HETATM")):
                 continue
-            name, element = line[12:16].strip(), line[76:78].strip()
-            if (element or name.lstrip("0123456789"))[:1] in ("H", "D") and element not in ("HG", "HO", "HF"):
+            name = line[12:16].strip()
+            # By name: element columns are not to be trusted, and no heavy atom of a residue begins so.
+            if name.lstrip("0123456789")[:1] in ("H", "D"):
                 continue
             key = line[17:20], line[21:27]
             if key != last or ((name, line[16]) in seen):
@@ -65,7 +68,7 @@ def merged(receptor, ligand, path):
             for number, (_, lines) in enumerate(residues, 1):
                 for line in lines:
                     serial += 1
-                    file.write(f"ATOM  {serial % 100000:5d} {line[12:16]} {line[17:20]} {chain}{number:4d} {line[27:].rstrip()}\n")
+                    file.write(f"ATOM  {serial % 100000:5d} {line[12:16]} {line[17:20]} {chain}{number:4d} {line[27:66].rstrip()}\n")
             file.write("TER\n")
         file.write("END\n")
     return DockQ.load_PDB(str(path))

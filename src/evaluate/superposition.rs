@@ -4,7 +4,9 @@
 //! e_k = A0 x_k + b0 - y_k its residuals, which add up to zero. For any motion A x + b, with D = A - A0 and
 //! d = A mean(x) + b - mean(y),
 //!
-//!     sum_k |A x_k + b - y_k|^2 = sum |e|^2 + 2 D : sum e x'^T + (D sum x' x'^T) : D + n |d|^2,
+//! ```text
+//! sum_k |A x_k + b - y_k|^2 = sum |e|^2 + 2 D : sum e x'^T + (D sum x' x'^T) : D + n |d|^2,
+//! ```
 //!
 //! which costs the same for any number of points. Written about the best motion it has no cancellation: equal points
 //! give zero to rounding, where sums over x and y themselves would leave the root of the rounding, 1e-6 Å.

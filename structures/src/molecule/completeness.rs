@@ -111,8 +111,9 @@ fn duplicates(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<String> {
         .map(|residue| residue.atoms.len() - names(atoms, residue).len())
         .sum();
     (repeated > 0).then(|| {
+        let atoms = if repeated == 1 { "atom repeats" } else { "atoms repeat" };
         format!(
-            "{repeated} atoms repeat the residue and name of another and are kept: two chains of one name, or two models?"
+            "{repeated} {atoms} the residue and name of another, and all are kept: two chains of one name, or two models?"
         )
     })
 }

@@ -1,0 +1,257 @@
+//! PDB files as they come: each test says in a comment which file it stands for.
+
+#![cfg(feature = "molecule")]
+
+mod pdb_text;
+
+use std::io::Write;
+
+use knotdock_structures::molecule::{Format, InputSpec, ReadError, ReadOptions, read};
+use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
+
+#[test]
+fn records_that_break_pdbtbx_are_sieved_out() {
+    // Free-form REMARK, short header, old DBREF and SEQADV, the dummy CRYST1 of NMR and model files, ANISOU without its
+    // atom, a MASTER record that does not add up: each alone makes pdbtbx 0.12 refuse or panic.
+    let mut file = String::from(
+        "HEADER    SHORT\nREMARK free text, no number\nREMARK\nDBREF  1ABC A\nSEQADV\nDBREF2 X\nSSBOND\nMODRES\n\
+         CRYST1    0.000    0.000    0.000  90.00  90.00  90.00\nANISOU\nSEQRES\nMASTER\nUSER  x\n",
+    );
+    let first = file.lines().count() + 1;
+    // Cut after the coordinates: no occupancy, no temperature factor, no element.
+    file.push_str(&ATOM.text()[..54]);
+    file.push('\n');
+    // A segment name, a chain letter in the element column and a number in the charge column.
+    let odd = Line {
+        name: " N  ",
+        ..ATOM
+    }
+    .text();
+    file.push_str(&format!("{}      A    A115\n", &odd[..66]));
+    let molecule = read_text(&file).unwrap();
+    assert_eq!(names(&molecule), ["CA", "N"]);
+    assert_eq!(molecule.atoms[0].line, first);
+    assert_eq!(molecule.atoms[0].occupancy, 1.0);
+    assert_eq!(molecule.atoms[0].b_factor, 0.0);
+    assert_eq!(molecule.atoms[0].element, "C");
+    assert_eq!(molecule.atoms[1].element, "N");
+    let altered = &molecule.report.altered;
+    assert_eq!(altered.elements_derived, 1);
+    assert_eq!(altered.elements_corrected, 1);
+    assert_eq!(altered.defaults_filled, 2);
+}
+
+#[test]
+fn atoms_keep_file_order_and_true_lines() {
+    // pdbtbx regroups by chain and residue: here residue 1 of A comes in two parts with B between.
+    let lines = [
+        Line {
+            name: " N  ",
+            x: 1.0,
+            ..ATOM
+        },
+        Line {
+            name: " N  ",
+            chain: 'B',
+            x: 2.0,
+            ..ATOM
+        },
+        Line {
+            name: " CA ",
+            x: 3.0,
+            ..ATOM
+        },
+    ];
+    let molecule = read_text(&format!("REMARK\n{}", text(&lines))).unwrap();
+    let found: Vec<_> = molecule
+        .atoms
+        .iter()
+        .map(|a| (a.line, a.position[0]))
+        .collect();
+    assert_eq!(found, [(2, 1.0), (3, 2.0), (4, 3.0)]);
+}
+
+#[test]
+fn only_the_first_model_is_read() {
+    let atom = ATOM.text();
+    let models = format!(
+        "MODEL        1\n{atom}ENDMDL\nMODEL        2\n{atom}ENDMDL\nMODEL 3\n{atom}ENDMDL\nEND\n"
+    );
+    let molecule = read_text(&models).unwrap();
+    assert_eq!(molecule.atoms.len(), 1);
+    assert_eq!(molecule.report.altered.models_ignored, 2);
+    // Trajectories by VMD have END between frames and no MODEL.
+    let frames = format!("{atom}END\n{atom}END\n");
+    assert_eq!(read_text(&frames).unwrap().report.altered.models_ignored, 1);
+    // Complexes put together by hand have END between their parts, which are no models.
+    let other = Line { chain: 'B', ..ATOM }.text();
+    let parts = read_text(&format!("{atom}END\n{other}END\n")).unwrap();
+    assert_eq!(parts.atoms.len(), 2);
+    assert_eq!(parts.report.altered.models_ignored, 0);
+}
+
+#[test]
+fn residue_numbers_and_insertion_codes_are_the_files() {
+    let mut lines = vec![
+        Line { number: -5, ..ATOM },
+        Line {
+            number: 100,
+            ..ATOM
+        },
+        Line {
+            number: 100,
+            insertion: 'A',
+            ..ATOM
+        },
+        // pdbtbx adds 10,000 to every residue after this pair, other chains included.
+        Line {
+            number: 9999,
+            ..ATOM
+        },
+        Line { number: 0, ..ATOM },
+        Line {
+            number: 1,
+            chain: 'B',
+            ..ATOM
+        },
+    ];
+    lines.push(Line {
+        number: 7,
+        chain: 'b',
+        ..ATOM
+    });
+    let molecule = read_text(&text(&lines)).unwrap();
+    let found: Vec<_> = molecule
+        .atoms
+        .iter()
+        .map(|a| (a.chain.as_str(), a.residue_number, a.insertion_code))
+        .collect();
+    let expected = [
+        ("A", -5, None),
+        ("A", 100, None),
+        ("A", 100, Some('A')),
+        ("A", 9999, None),
+        ("A", 0, None),
+        ("B", 1, None),
+        ("b", 7, None),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn bad_numbers_name_their_line() {
+    let good = ATOM.text();
+    for bad in ["     NaN", "     inf", "********", "        ", "  1.2.3 "] {
+        let mut line = good.clone();
+        line.replace_range(30..38, bad);
+        let error = read_text(&format!("{good}{line}")).unwrap_err();
+        assert!(matches!(error, ReadError::Field { .. }), "{bad}: {error:?}");
+        assert_eq!(error.line(), Some(2));
+        assert!(error.to_string().contains("x (columns 31-38)"), "{error}");
+        assert!(error.file().is_some_and(|file| file.ends_with("x.pdb")));
+        assert!(!error.remedy().is_empty());
+    }
+    // Printed with %8.3f at 1e6 Å: all three fields parse as numbers, and two of them are wrong.
+    let shifted = format!("{}1000000.0001000000.0001000000.000  1.00\n", &good[..30]);
+    let error = read_text(&shifted).unwrap_err();
+    assert!(error.to_string().contains("mmCIF"), "{error}");
+}
+
+#[test]
+fn what_is_no_structure_is_refused() {
+    let missing = read(
+        &InputSpec::whole("/no/such/file.pdb"),
+        &ReadOptions::default(),
+    );
+    assert!(matches!(missing, Err(ReadError::Missing { .. })));
+    let folder = tempfile::tempdir().unwrap();
+    let directory = read(&InputSpec::whole(folder.path()), &ReadOptions::default());
+    assert!(matches!(directory, Err(ReadError::Directory { .. })));
+    assert!(matches!(
+        read_text("hello\n"),
+        Err(ReadError::NotAStructure { .. })
+    ));
+    assert!(matches!(
+        read_text(""),
+        Err(ReadError::NotAStructure { .. })
+    ));
+    let picture = read_bytes("x.png", &[0x89, b'P', b'N', b'G', 0, 1], "");
+    assert!(matches!(picture, Err(ReadError::NotAStructure { .. })));
+    assert!(matches!(
+        read_text("HEADER    X\nEND\n"),
+        Err(ReadError::NoAtoms { .. })
+    ));
+    let water = Line {
+        residue: "HOH",
+        name: " O  ",
+        element: " O",
+        ..ATOM
+    }
+    .text();
+    let only_water = read_text(&water).unwrap_err();
+    assert!(matches!(
+        only_water,
+        ReadError::EmptySelection { dropped: 1, .. }
+    ));
+    let cut = read_text(&ATOM.text()[..50]).unwrap_err();
+    assert!(matches!(
+        cut,
+        ReadError::ShortRecord {
+            line: 1,
+            length: 50,
+            ..
+        }
+    ));
+}
+
+#[test]
+fn gzip_is_told_by_its_magic_bytes() {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    encoder.write_all(ATOM.text().as_bytes()).unwrap();
+    let packed = encoder.finish().unwrap();
+    for name in ["x.pdb.gz", "x.ent", "x"] {
+        let molecule = read_bytes(name, &packed, "").unwrap();
+        assert!(molecule.report.compressed);
+        assert_eq!(molecule.format, Format::Pdb);
+    }
+    // Two streams one after the other are one file (bgzip, cat).
+    let doubled: Vec<u8> = [packed.clone(), packed.clone()].concat();
+    assert_eq!(read_bytes("x.gz", &doubled, "").unwrap().atoms.len(), 2);
+    let cut = read_bytes("x.pdb.gz", &packed[..packed.len() - 9], "");
+    assert!(matches!(cut, Err(ReadError::Gzip { .. })));
+}
+
+#[test]
+fn bytes_that_are_not_utf8_stop_nothing_outside_the_atoms() {
+    // Latin-1 in an author's name, as old files have it.
+    let mut file = b"AUTHOR    J\xfcrgen\n".to_vec();
+    file.extend(ATOM.text().as_bytes());
+    assert_eq!(read_bytes("x.pdb", &file, "").unwrap().atoms.len(), 1);
+    let mut inside = ATOM.text().into_bytes();
+    inside[13] = 0xfc;
+    let error = read_bytes("x.pdb", &inside, "").unwrap_err();
+    assert_eq!(error.line(), Some(1));
+    // A tab in the serial number, which is not used (seen in a published test file).
+    let mut tab = ATOM.text().into_bytes();
+    tab[7] = b'\t';
+    assert!(read_bytes("x.pdb", &tab, "").is_ok());
+}
+
+#[test]
+fn more_atoms_than_serial_numbers() {
+    // Serial numbers have five columns, and pdbtbx counts on by itself after 99,999.
+    let lines: String = (0..100_003)
+        .map(|index| {
+            Line {
+                number: index / 20 % 10_000,
+                x: (index % 1000) as f64,
+                ..ATOM
+            }
+            .text()
+        })
+        .collect();
+    let molecule = read_text(&lines).unwrap();
+    assert_eq!(molecule.atoms.len(), 100_003);
+    assert_eq!(molecule.atoms[100_002].line, 100_003);
+    assert_eq!(molecule.atoms[100_002].position[0], 2.0);
+}
