@@ -1,8 +1,6 @@
 //! Each kind of bad input: exit code 2, a message that names the fault, the file and the line, and what to do; and
 //! nothing written.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on fails
-
 mod molecules;
 
 use std::fs;

@@ -1,7 +1,5 @@
 //! A run and what it leaves: the table, the complexes, the record, and the same bytes again.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on fails
-
 mod molecules;
 
 use std::collections::BTreeMap;
@@ -415,4 +413,42 @@ fn an_interrupted_run_leaves_nothing_that_looks_whole() {
     run(folder.path(), &format!("{dock} --force --rotations 21"));
     assert!(!run_folder.join(".partial").exists());
     assert_eq!(files(&run_folder).len(), before.len());
+}
+
+#[test]
+fn mmcif_and_gzip_go_in_and_mmcif_comes_out() {
+    use knotdock_structures::molecule::{Format, InputSpec, ReadOptions, read, write_molecule};
+    use std::io::Write;
+    let folder = place();
+    let of = |name: &str| {
+        let input = InputSpec::whole(folder.path().join(name));
+        read(&input, &ReadOptions::default()).unwrap()
+    };
+    let mut text = Vec::new();
+    write_molecule(&mut text, Format::Mmcif, &of("ligand.pdb"), &[]).unwrap();
+    let file = fs::File::create(folder.path().join("ligand.cif.gz")).unwrap();
+    let mut packed = flate2::write::GzEncoder::new(file, flate2::Compression::fast());
+    packed.write_all(&text).unwrap();
+    packed.finish().unwrap();
+    let dock = "--rotations 20 --write-top 1 --quiet -o";
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb {dock} pdb"),
+    );
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.cif.gz {dock} cif"),
+    );
+    assert_eq!(
+        fs::read(folder.path().join("pdb/poses.csv")).unwrap(),
+        fs::read(folder.path().join("cif/poses.csv")).unwrap(),
+        "the format of a file is no part of the answer"
+    );
+    assert!(!folder.path().join("cif/top/rank_0001.pdb").exists());
+    let complex = of("cif/top/rank_0001.cif");
+    let same = of("pdb/top/rank_0001.pdb");
+    assert_eq!(complex.atoms.len(), same.atoms.len());
+    for (a, b) in complex.atoms.iter().zip(&same.atoms) {
+        assert_eq!((&a.name, a.residue_number), (&b.name, b.residue_number));
+    }
 }

@@ -1,7 +1,5 @@
 //! The JSON object of each command, and who hears what on which stream.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on fails
-
 mod molecules;
 
 use std::fs;
