@@ -373,6 +373,25 @@ fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
     assert_eq!(code, Some(0), "{told}");
 }
 
+#[cfg(target_os = "linux")] // elsewhere such names cannot be made
+#[test]
+fn a_folder_whose_name_is_not_unicode_is_no_hindrance() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = place();
+    // JSON cannot hold the inputs' absolute paths; the run must not fail on that when all is done.
+    let inner = folder.path().join(std::ffi::OsStr::from_bytes(b"runs\xff"));
+    fs::create_dir(&inner).unwrap();
+    for file in ["receptor.pdb", "ligand.pdb"] {
+        fs::rename(folder.path().join(file), inner.join(file)).unwrap();
+    }
+    run(
+        &inner,
+        "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 -o run --json",
+    );
+    // Not under its recorded name, but beside the run.
+    run(&inner, "complex run --rank 1 --quiet");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_nothing_that_looks_whole() {

@@ -31,10 +31,12 @@ pub fn write_complexes(
     rows: &[PoseRow],
     folder: &Path,
 ) -> Result<Written, StagingError> {
-    std::fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
-        directory: folder.to_owned(),
-        source,
-    })?;
+    if !rows.is_empty() {
+        std::fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
+            directory: folder.to_owned(),
+            source,
+        })?;
+    }
     // Placed ligands are made twice, once to see whether they fit and once to be written: many at once may not fit
     // into the memory.
     let placed = |row: &PoseRow| ligand.map_positions(|position| row.pose.apply(position));

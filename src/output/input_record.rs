@@ -57,8 +57,10 @@ impl InputRecord {
     /// # Errors
     /// [`InputRecordError::Read`].
     pub fn new(input: &InputSpec) -> Result<Self, InputRecordError> {
+        let path = std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone());
         Ok(Self {
-            path: std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone()),
+            // JSON holds no bytes that are not Unicode: such a path is recorded for people, not to be found again.
+            path: PathBuf::from(path.to_string_lossy().into_owned()),
             chains: input.chains.clone(),
             sha256: sha256(&input.path)?,
         })
