@@ -1,4 +1,5 @@
 //! knotdock: the pipeline from two structures to a ranked list of poses.
 
 pub mod evaluate;
+pub mod output;
 pub mod search;

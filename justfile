@@ -1,0 +1,30 @@
+# The commands that people repeat. `just` lists them.
+
+default:
+    @just --list
+
+# Everything that must pass before a change lands
+ci:
+    .ci/run
+
+# All tests
+test:
+    cargo test --workspace
+
+# Layout and lints
+lint:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets -- -D warnings
+
+# Documentation of the crates
+doc:
+    RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
+
+# Dock the example pair into ./example
+example:
+    cargo run --release -- dock structures/examples/1ppe_receptor_unbound.pdb structures/examples/1ppe_ligand_unbound.pdb -o example --force
+
+# Dock a benchmark folder; options of the script follow
+benchmark dir *options:
+    cargo build --release
+    python3 scripts/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}

@@ -1,0 +1,77 @@
+//! Values of options, checked as they are read.
+
+use knotdock::search::Effect;
+
+/// The field's count of rotations at an angle of 15 degrees.
+const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
+
+/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3).
+///
+/// # Errors
+/// When the angle is not above 0.1 (12 thousand million rotations) and at most 180 degrees.
+pub fn rotations_of_angle(text: &str) -> Result<usize, String> {
+    let angle = above_zero(text)?;
+    if !(0.1..=180.0).contains(&angle) {
+        return Err("the angle must lie between 0.1 and 180 degrees".to_owned());
+    }
+    let rotations = (ROTATIONS_AT_15_DEGREES * (15.0 / angle).powi(3)).round();
+    Ok((rotations as usize).max(1))
+}
+
+/// A finite number above zero.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("a finite number above zero is needed".to_owned()),
+    }
+}
+
+/// A finite number, zero or above.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value + 0.0),
+        _ => Err("a finite number, zero or above, is needed".to_owned()),
+    }
+}
+
+/// A whole number above zero.
+pub fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(value) if value > 0 => Ok(value),
+        _ => Err("a whole number above zero is needed".to_owned()),
+    }
+}
+
+/// An effect by the name that it has in `run.json`.
+pub fn effect(text: &str) -> Result<Effect, String> {
+    serde_json::from_value(serde_json::Value::String(text.to_owned()))
+        .map_err(|_| "there is no such effect; there is `shape`".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_give_the_counts_of_the_field() {
+        assert_eq!(rotations_of_angle("15"), Ok(3600));
+        assert_eq!(rotations_of_angle("6"), Ok(56_250));
+        assert_eq!(rotations_of_angle("180"), Ok(2));
+        for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
+            assert!(rotations_of_angle(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_no_option_can_take_are_refused() {
+        for text in ["nan", "inf", "-1", "", "1e999"] {
+            assert!(above_zero(text).is_err(), "{text}");
+            assert!(not_negative(text).is_err(), "{text}");
+        }
+        assert!(above_zero("0").is_err());
+        assert_eq!(not_negative("-0").map(f64::to_bits), Ok(0));
+        assert!(at_least_one("0").is_err());
+        assert_eq!(effect("shape"), Ok(Effect::Shape));
+        assert!(effect("gravity").is_err());
+    }
+}

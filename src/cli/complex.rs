@@ -1,0 +1,65 @@
+//! `knotdock complex`: further complexes from a finished run.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use knotdock::output::complexes::write_complexes;
+use knotdock::output::poses::{PoseRow, PoseTable};
+use knotdock::output::recorded_run::RecordedRun;
+use serde_json::json;
+
+use super::console::Console;
+use super::failure::Failure;
+use super::input::Input;
+use super::ranks::Ranks;
+
+/// Write complexes of chosen ranks of a run, receptor and placed ligand in one file.
+#[derive(Args, Debug)]
+pub struct Complex {
+    /// Directory of the run.
+    #[arg(value_name = "DIR")]
+    run: PathBuf,
+    /// Ranks in poses.csv, such as 37,40-45.
+    #[arg(long, value_name = "RANKS")]
+    rank: Ranks,
+    /// Directory to write to [default: DIR/top].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+impl Complex {
+    /// Writes the complexes.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let run_path = self.run.join("run.json");
+        let run = RecordedRun::read(&run_path)?;
+        let table_path = self.run.join("poses.csv");
+        let table = PoseTable::read(&table_path)?;
+        let of_rank: HashMap<usize, PoseRow> =
+            table.rows().iter().map(|row| (row.rank, *row)).collect();
+        let rows = self.rank.0.iter().map(|rank| {
+            of_rank.get(rank).copied().ok_or_else(|| {
+                Failure::input(format!("there is no rank {rank} among the {} rows", table.rows().len()))
+                    .at(&table_path)
+                    .remedy("choose ranks that the table lists; `knotdock dock --no-cluster` lists every pose")
+            })
+        });
+        let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
+        let receptor = Input::recorded(&run.receptor, &run_path)?;
+        let ligand = Input::recorded(&run.ligand, &run_path)?;
+        let folder = self.output.unwrap_or_else(|| self.run.join("top"));
+        let written = write_complexes(&receptor.molecule, &ligand.molecule, &rows, &folder)?;
+        let paths: Vec<String> = written
+            .names
+            .iter()
+            .map(|name| folder.join(name).display().to_string())
+            .collect();
+        console.say(paths.join("\n"));
+        let files = rows.iter().zip(&paths);
+        console.result(&json!({
+            "files": files.map(|(row, path)| json!({ "rank": row.rank, "path": path })).collect::<Vec<_>>(),
+            "chains": written.chains,
+        }));
+        Ok(())
+    }
+}

@@ -1,0 +1,108 @@
+//! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
+//! output and every word on standard error; under `--quiet` no words but errors.
+//!
+//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not written.
+
+use std::io::{self, IsTerminal, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use knotdock::search::Progress;
+
+use super::failure::Failure;
+
+/// The terminal as a command sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Console {
+    /// Results as one JSON object.
+    pub json: bool,
+    /// No words but errors.
+    pub quiet: bool,
+}
+
+impl Console {
+    /// Writes a paragraph of the report.
+    pub fn say(&self, text: impl ToString) {
+        if self.quiet {
+            return;
+        }
+        if self.json {
+            write_line(&mut io::stderr(), &text.to_string());
+        } else {
+            write_line(&mut io::stdout(), &text.to_string());
+        }
+    }
+
+    /// Writes a warning on standard error.
+    pub fn warn(&self, text: impl ToString) {
+        if !self.quiet {
+            write_line(&mut io::stderr(), &format!("warning: {}", text.to_string()));
+        }
+    }
+
+    /// Writes the command's JSON object, if that was asked for.
+    pub fn result(&self, object: &serde_json::Value) {
+        if self.json {
+            write_line(&mut io::stdout(), &object.to_string());
+        }
+    }
+
+    /// Writes a failure: for a person on standard error, for a program on standard output as well.
+    pub fn fail(&self, failure: &Failure) {
+        if self.json {
+            write_line(&mut io::stdout(), &failure.json().to_string());
+        }
+        write_line(&mut io::stderr(), &failure.text());
+    }
+
+    /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
+    pub fn progress(&self) -> ProgressLine {
+        let bar = ProgressBar::hidden();
+        // The templates are constant; should one not parse, indicatif's own style serves.
+        if let Ok(style) = ProgressStyle::with_template(
+            "{msg:>12} [{wide_bar}] {human_pos}/{human_len}, {elapsed} gone, {eta} left",
+        ) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        ProgressLine {
+            bar,
+            shown: !self.quiet && io::stderr().is_terminal(),
+        }
+    }
+}
+
+/// Writes a line; a closed pipe or a full disk behind the stream is not this program's to report.
+fn write_line(stream: &mut dyn Write, text: &str) {
+    let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
+}
+
+/// The progress of a search on one line of the terminal, cleared when the search ends.
+pub struct ProgressLine {
+    bar: ProgressBar,
+    shown: bool,
+}
+
+impl Progress for ProgressLine {
+    fn stage(&self, name: &str, total: u64) {
+        self.bar.finish_and_clear();
+        // Each of these would draw a line of its own that is half the old stage's and half the new one's.
+        self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        self.bar.reset();
+        self.bar.set_length(total);
+        self.bar.set_message(name.to_owned());
+        if self.shown {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.enable_steady_tick(Duration::from_millis(200));
+        }
+    }
+
+    fn advance(&self, by: u64) {
+        self.bar.inc(by);
+    }
+}
+
+impl Drop for ProgressLine {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,268 @@
+//! `knotdock dock`: from two structures to a ranked list of poses and complexes.
+
+use std::path::PathBuf;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use clap::Args;
+use knotdock::output::complexes::write_complexes;
+use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
+use knotdock::output::poses::PoseTable;
+use knotdock::output::quality;
+use knotdock::output::report::{BEST, best_clusters, firsts};
+use knotdock::output::run_options::RunOptions;
+use knotdock::output::staging::Staging;
+use knotdock::search::{self, DockOutcome, DockPlan};
+use serde_json::json;
+
+use super::arguments::at_least_one;
+use super::console::Console;
+use super::failure::Failure;
+use super::input::Input;
+use super::memory;
+use super::native::{NativeArguments, match_text, measure};
+use super::request::Request;
+use super::search_arguments::{RANKING, SearchArguments};
+
+/// Dock a ligand to a receptor and rank the poses.
+///
+/// Writes poses.csv, top/rank_0001.pdb ... and run.json into a directory of the run. The same input and options give the
+/// same bytes for any number of threads.
+#[derive(Args, Debug)]
+pub struct Dock {
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
+    receptor: Option<String>,
+    /// The molecule that moves, likewise.
+    #[arg(required_unless_present = "from", value_name = "LIGAND")]
+    ligand: Option<String>,
+    /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the run in the directory, once the new one is done.
+    #[arg(long)]
+    force: bool,
+    /// Repeat the run that wrote this run.json: its inputs, checked by SHA-256, and its options.
+    #[arg(long, value_name = "RUN.JSON", conflicts_with_all = RECORDED)]
+    from: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArguments,
+    /// Complexes to write to top/.
+    #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
+    write_top: usize,
+    #[command(flatten)]
+    native: NativeArguments,
+    /// Threads [default: all hardware threads].
+    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
+    threads: Option<usize>,
+    /// Memory that the search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size, help_heading = MACHINE)]
+    memory: Option<u64>,
+}
+
+/// What run.json records, so that none of it goes with --from.
+const RECORDED: [&str; 21] = [
+    "receptor",
+    "ligand",
+    "rotations",
+    "angle",
+    "resolution",
+    "pass_length",
+    "spacing",
+    "lambda",
+    "offset",
+    "alpha",
+    "tolerance",
+    "effects",
+    "per_rotation",
+    "poses",
+    "refine",
+    "cluster_radius",
+    "no_cluster",
+    "write_top",
+    "native",
+    "native_receptor",
+    "native_ligand",
+];
+
+const MACHINE: &str = "Machine";
+
+impl Dock {
+    /// What the command line asks for.
+    fn request(&self) -> Result<Request, Failure> {
+        let (Some(receptor), Some(ligand)) = (&self.receptor, &self.ligand) else {
+            return Err(Failure::input("a receptor and a ligand are needed"));
+        };
+        Ok(Request {
+            receptor: Input::read(receptor)?,
+            ligand: Input::read(ligand)?,
+            native: self.native.read()?,
+            options: RunOptions {
+                dock: self.search.options(),
+                write_top: self.write_top,
+            },
+        })
+    }
+
+    /// Docks.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let clock = Clock::start();
+        let mut request = match &self.from {
+            Some(path) => Request::recorded(path, console)?,
+            None => self.request()?,
+        };
+        request.options.dock.memory = self.memory.or_else(memory::default_limit);
+        request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
+        let request = request;
+        let directory = self.output.unwrap_or_else(|| request.directory());
+        console.say(format!(
+            "Receptor: {}\nLigand: {}",
+            request.receptor.molecule.report, request.ligand.molecule.report
+        ));
+        let (receptor, ligand) = (&request.receptor.molecule, &request.ligand.molecule);
+        let evaluator = match &request.native {
+            Some(native) => Some(native.evaluator(receptor, ligand)?),
+            None => None,
+        };
+        if let Some(evaluator) = &evaluator {
+            console.say(match_text(evaluator));
+        }
+        let plan = search::plan(receptor, ligand, &request.options.dock)
+            .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+        console.say(format!("\n{plan}"));
+        let staging = Staging::open(&directory, self.force)?;
+        let progress = console.progress();
+        let outcome = search::dock(&plan, ligand, &progress)
+            .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
+        drop(progress);
+
+        let mut table = PoseTable::new(&outcome.poses);
+        let quality = match &evaluator {
+            Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
+            None => Vec::new(),
+        };
+        for column in &quality {
+            table.set_column(column);
+        }
+        table.write(&staging.folder().join("poses.csv"))?;
+        let top = table
+            .rows()
+            .get(..request.options.write_top)
+            .unwrap_or(table.rows());
+        let written = write_complexes(receptor, ligand, top, &staging.folder().join("top"))?;
+        let inputs = request.inputs()?;
+        let manifest = Manifest::new(ManifestParts {
+            inputs: &inputs,
+            options: &request.options,
+            plan: &plan,
+            outcome: &outcome,
+            results: Results {
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
+            },
+            chains: &written.chains,
+            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            timing: clock.timing(&outcome),
+            machine: machine(&plan),
+        })
+        .map_err(Failure::other)?;
+        manifest.write(&staging.folder().join("run.json"))?;
+        staging.commit()?;
+
+        console.say(format!("\n{}", told(&outcome)));
+        console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
+        console.say(format!(
+            "\n{} rows in {}",
+            outcome.poses.len(),
+            directory.join("poses.csv").display()
+        ));
+        let complexes = written
+            .names
+            .iter()
+            .map(|name| directory.join("top").join(name));
+        console.result(&json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": table.objects(firsts(&outcome.poses).into_iter().take(BEST)),
+            "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
+        }));
+        Ok(())
+    }
+}
+
+/// Which effects were on and what they cost, and how far the fast path was off.
+fn told(outcome: &DockOutcome) -> String {
+    let effects = outcome.effects.iter().map(|cost| {
+        format!(
+            "Effect {} ({}): {} fields of the lifted axis, {:.2} CPU ms a rotation",
+            format!("{:?}", cost.effect).to_lowercase(),
+            cost.reason,
+            cost.rank,
+            cost.milliseconds_per_rotation
+        )
+    });
+    let mut lines: Vec<String> = effects.collect();
+    let error = outcome.error;
+    lines.push(format!(
+        "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
+        error.poses, error.rms, error.worst
+    ));
+    lines.push(format!(
+        "The low-pass moved their scores by {:.0}% of the best on average",
+        100.0 * error.low_pass_share
+    ));
+    lines.push(format!(
+        "{} poses in {} clusters",
+        outcome.poses_kept, outcome.clusters
+    ));
+    lines.join("\n")
+}
+
+/// When the run began.
+struct Clock {
+    wall: SystemTime,
+    monotonic: Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self {
+            wall: SystemTime::now(),
+            monotonic: Instant::now(),
+        }
+    }
+
+    fn timing(&self, outcome: &DockOutcome) -> Timing {
+        Timing {
+            // A clock set before 1970 says nothing.
+            started_unix_seconds: self
+                .wall
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |since| since.as_secs()),
+            wall_seconds: self.monotonic.elapsed().as_secs_f64(),
+            stages: outcome.timing.clone(),
+            effects: EffectTime::of(&outcome.effects),
+            peak_memory_bytes: memory::peak(),
+        }
+    }
+}
+
+fn hardware_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, |threads| threads.get())
+}
+
+fn machine(plan: &DockPlan) -> Machine {
+    Machine {
+        system: std::env::consts::OS,
+        architecture: std::env::consts::ARCH,
+        hardware_threads: hardware_threads(),
+        threads: plan.options.threads,
+        rotations_in_flight: plan.in_flight,
+        memory_limit_bytes: plan.options.memory,
+        memory_estimate_bytes: plan.memory_bytes(),
+        command: std::env::args_os()
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect(),
+    }
+}

@@ -1,0 +1,148 @@
+//! `knotdock evaluate`: how near the poses of a table are to a known complex.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use knotdock::evaluate::{Capri, PoseQuality};
+use knotdock::output::poses::{PoseRow, PoseTable};
+use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::{quality, report};
+use serde_json::json;
+
+use super::console::Console;
+use super::failure::Failure;
+use super::input::Input;
+use super::native::{NativeArguments, NativeFiles, match_text, measure};
+
+/// Measure the poses of a run against a known complex.
+///
+/// Gives interface and ligand RMSD (Å), the fraction of native contacts, DockQ and the CAPRI class of every pose.
+#[derive(Args, Debug)]
+pub struct Evaluate {
+    /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz.
+    #[arg(value_name = "DIR|POSES.CSV")]
+    poses: PathBuf,
+    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json].
+    #[arg(long, value_name = "FILE")]
+    receptor: Option<String>,
+    /// The ligand that was docked, likewise.
+    #[arg(long, value_name = "FILE")]
+    ligand: Option<String>,
+    #[command(flatten)]
+    native: NativeArguments,
+    /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Evaluate {
+    /// Evaluates.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let table_path = if self.poses.is_dir() {
+            self.poses.join("poses.csv")
+        } else {
+            self.poses.clone()
+        };
+        let mut table = PoseTable::read(&table_path)?;
+        let run_path = table_path.with_file_name("run.json");
+        let (receptor, ligand, native) = self.inputs(&run_path)?;
+        let evaluator = native.evaluator(&receptor.molecule, &ligand.molecule)?;
+        console.say(match_text(&evaluator));
+
+        let qualities = measure(&evaluator, table.rows());
+        if let Some(path) = &self.output {
+            for column in quality::columns(&qualities) {
+                table.set_column(&column);
+            }
+            table.write(path)?;
+            console.say(format!("\n{}", firsts(table.rows(), &qualities)));
+            console.say(format!("{} rows in {}", qualities.len(), path.display()));
+        } else if !console.json {
+            console.say(format!("\n{}", listing(table.rows(), &qualities)));
+            console.say(format!("\n{}", firsts(table.rows(), &qualities)));
+        }
+        let poses = table.rows().iter().zip(&qualities).map(|(row, quality)| {
+            json!({
+                "rank": row.rank,
+                "irmsd": quality.irmsd,
+                "lrmsd": quality.lrmsd,
+                "fnat": quality.fnat,
+                "dockq": quality.dockq,
+                "capri": quality.capri.name(),
+            })
+        });
+        let matched = serde_json::to_value(evaluator.report()).map_err(Failure::other)?;
+        console.result(&json!({ "poses": poses.collect::<Vec<_>>(), "match": matched }));
+        Ok(())
+    }
+
+    /// The molecules docked and the known complex: those named, or else those of the run.
+    fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Failure> {
+        let native = self.native.read()?;
+        if let (Some(receptor), Some(ligand), Some(native)) = (&self.receptor, &self.ligand, native)
+        {
+            return Ok((Input::read(receptor)?, Input::read(ligand)?, native));
+        }
+        let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
+                      --native or with --native-receptor and --native-ligand";
+        let run =
+            RecordedRun::read(run_path).map_err(|error| Failure::from(error).remedy(needed))?;
+        let part = |named: &Option<String>, record| match named {
+            Some(text) => Input::read(text),
+            None => Input::recorded(record, run_path),
+        };
+        let native = match (self.native.read()?, &run.native) {
+            (Some(native), _) => native,
+            (None, Some(record)) => NativeFiles::recorded(record, run_path)?,
+            (None, None) => {
+                return Err(Failure::input("no known complex is named").remedy(
+                    "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
+                ));
+            }
+        };
+        Ok((
+            part(&self.receptor, &run.receptor)?,
+            part(&self.ligand, &run.ligand)?,
+            native,
+        ))
+    }
+}
+
+/// Every pose's quality as a table.
+fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
+    let mut lines = vec![
+        ["rank", "irmsd", "lrmsd", "fnat", "dockq", "capri"]
+            .map(str::to_owned)
+            .to_vec(),
+    ];
+    lines.extend(rows.iter().zip(qualities).map(|(row, quality)| {
+        vec![
+            row.rank.to_string(),
+            format!("{:.2}", quality.irmsd),
+            format!("{:.2}", quality.lrmsd),
+            format!("{:.3}", quality.fnat),
+            format!("{:.3}", quality.dockq),
+            quality.capri.name().to_owned(),
+        ]
+    }));
+    report::align(&lines)
+}
+
+/// The first rank of each CAPRI class or better.
+fn firsts(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
+    let classes = [Capri::Acceptable, Capri::Medium, Capri::High];
+    let parts = classes.map(|class| {
+        let first = rows
+            .iter()
+            .zip(qualities)
+            .find(|(_, quality)| quality.capri >= class);
+        match first {
+            Some((row, _)) => format!("{} at rank {}", class.name(), row.rank),
+            None => format!("{} nowhere", class.name()),
+        }
+    });
+    format!(
+        "First pose of each CAPRI class or better: {}",
+        parts.join(", ")
+    )
+}

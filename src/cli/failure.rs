@@ -1,0 +1,130 @@
+//! What went wrong, as a person or a program is told it, and the exit code that goes with it.
+
+use std::path::{Path, PathBuf};
+
+use knotdock::output::poses_reader::PoseTableError;
+use knotdock::output::recorded_run::RecordedRunError;
+use knotdock::output::staging::StagingError;
+
+/// Whose fault it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// The input's or the command line's: exit code 2.
+    Input,
+    /// Anything else: exit code 1.
+    Other,
+}
+
+/// A failure of a command.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    kind: Kind,
+    file: Option<PathBuf>,
+    line: Option<u64>,
+    message: String,
+    remedy: Option<String>,
+}
+
+impl Failure {
+    /// A fault of the input or the command line (exit code 2).
+    pub fn input(message: impl ToString) -> Self {
+        Self {
+            kind: Kind::Input,
+            file: None,
+            line: None,
+            message: message.to_string(),
+            remedy: None,
+        }
+    }
+
+    /// Any other fault (exit code 1).
+    pub fn other(message: impl ToString) -> Self {
+        Self {
+            kind: Kind::Other,
+            ..Self::input(message)
+        }
+    }
+
+    /// Names the file in question.
+    pub fn at(self, file: &Path) -> Self {
+        Self {
+            file: Some(file.to_owned()),
+            ..self
+        }
+    }
+
+    /// Names the 1-based line in question, where there is one.
+    pub fn on_line(self, line: Option<u64>) -> Self {
+        Self { line, ..self }
+    }
+
+    /// Says what the user can do.
+    pub fn remedy(self, remedy: impl ToString) -> Self {
+        Self {
+            remedy: Some(remedy.to_string()),
+            ..self
+        }
+    }
+
+    /// 2 for bad input, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self.kind {
+            Kind::Input => 2,
+            Kind::Other => 1,
+        }
+    }
+
+    /// The lines for a person.
+    pub fn text(&self) -> String {
+        let mut text = format!("error: {}", self.message);
+        if let Some(file) = &self.file {
+            text += &format!("\n  in {}", file.display());
+            if let Some(line) = self.line {
+                text += &format!(", line {line}");
+            }
+        }
+        if let Some(remedy) = &self.remedy {
+            text += &format!("\n  help: {remedy}");
+        }
+        text
+    }
+
+    /// The object for a program: `{"error": {"file", "line", "message", "remedy"}}`.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::json!({ "error": {
+            "file": self.file.as_ref().map(|file| file.display().to_string()),
+            "line": self.line,
+            "message": self.message,
+            "remedy": self.remedy,
+        }})
+    }
+}
+
+impl From<StagingError> for Failure {
+    fn from(error: StagingError) -> Self {
+        let failure = if error.is_input() {
+            Self::input(&error)
+        } else {
+            Self::other(&error)
+        };
+        failure.at(error.path()).remedy(error.remedy())
+    }
+}
+
+impl From<PoseTableError> for Failure {
+    fn from(error: PoseTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy(error.remedy())
+    }
+}
+
+impl From<RecordedRunError> for Failure {
+    fn from(error: RecordedRunError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy("give a run that `knotdock dock` of this version wrote")
+    }
+}

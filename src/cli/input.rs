@@ -1,0 +1,133 @@
+//! Structures named on the command line or in a run.json: read, recorded, described.
+
+use std::path::Path;
+
+use knotdock::output::input_record::{InputRecord, InputRecordError};
+use knotdock::output::manifest::InputEntry;
+use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
+
+use super::failure::Failure;
+
+/// A structure as read.
+pub struct Input {
+    /// File, chains and checksum.
+    pub record: InputRecord,
+    /// Its atoms, with the report of what was kept, dropped and altered.
+    pub molecule: Molecule,
+}
+
+impl Input {
+    /// Reads `FILE` or `FILE:H,L`.
+    pub fn read(text: &str) -> Result<Self, Failure> {
+        Self::of(&InputSpec::parse(text)?)
+    }
+
+    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
+    /// above which inputs are looked for that are no longer where they were.
+    pub fn recorded(record: &InputRecord, run: &Path) -> Result<Self, Failure> {
+        let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
+        Self::of(&record.locate(&folders)?.spec())
+    }
+
+    fn of(spec: &InputSpec) -> Result<Self, Failure> {
+        Ok(Self {
+            molecule: read(spec, &ReadOptions::default())?,
+            record: InputRecord::new(spec)?,
+        })
+    }
+
+    /// The structure for run.json.
+    pub fn entry(&self) -> Result<InputEntry, Failure> {
+        let mut report = serde_json::to_value(&self.molecule.report).map_err(Failure::other)?;
+        if let Some(report) = report.as_object_mut() {
+            // The record has the path, and absolute: the one typed would differ when --from repeats the run.
+            report.remove("file");
+        }
+        Ok(InputEntry {
+            record: self.record.clone(),
+            atoms: self.molecule.atoms.len(),
+            report,
+        })
+    }
+
+    /// A name for directories: the file's without its endings, and the chains that were picked.
+    pub fn label(&self) -> String {
+        let name = self.record.path.file_name().unwrap_or_default();
+        let mut label = stem(&name.to_string_lossy()).to_owned();
+        for chain in self.record.chains.iter().flatten() {
+            label.push('_');
+            label.push_str(chain);
+        }
+        label
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "._-".contains(c) {
+                    c
+                } else {
+                    '-'
+                }
+            })
+            .collect()
+    }
+}
+
+/// A file's name without the endings of structure files.
+fn stem(name: &str) -> &str {
+    let lower = name.to_ascii_lowercase();
+    let mut end = name.len();
+    for ending in [".gz", ".pdb", ".ent", ".cif", ".mmcif"] {
+        if let Some(rest) = lower
+            .get(..end)
+            .and_then(|lower| lower.strip_suffix(ending))
+            && !rest.is_empty()
+        {
+            end = rest.len();
+        }
+    }
+    name.get(..end).unwrap_or(name)
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        let failure = Self::input(&error)
+            .on_line(error.line().and_then(|line| u64::try_from(line).ok()))
+            .remedy(error.remedy());
+        match error.file() {
+            Some(file) => failure.at(file),
+            None => failure,
+        }
+    }
+}
+
+impl From<InputRecordError> for Failure {
+    fn from(error: InputRecordError) -> Self {
+        let remedy = match &error {
+            InputRecordError::Read { .. } => {
+                "put the file where the run found it, or beside the directory of the run"
+            }
+            InputRecordError::Changed { .. } => {
+                "put back the file that the run was made from, or dock again"
+            }
+        };
+        Self::input(&error).at(error.path()).remedy(remedy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_of_structure_files_go_and_others_stay() {
+        for (name, expected) in [
+            ("1ppe.pdb", "1ppe"),
+            ("1ppe.CIF.gz", "1ppe"),
+            ("pdb1ppe.ent.gz", "pdb1ppe"),
+            ("model.v2", "model.v2"),
+            (".pdb", ".pdb"),
+            ("é.pdb", "é"),
+        ] {
+            assert_eq!(stem(name), expected);
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
+//! [`knotdock::output`] and the [`console`].
+
+mod arguments;
+mod complex;
+mod console;
+mod dock;
+mod evaluate;
+mod failure;
+mod input;
+mod memory;
+mod native;
+mod ranks;
+mod request;
+mod search_arguments;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use console::Console;
+use failure::Failure;
+
+/// Docks two structures by correlating their spherical decompositions, and evaluates and writes the poses.
+///
+/// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, angles in degrees.
+/// Exit codes: 0 done, 2 bad input, 1 any other failure.
+#[derive(Debug, Parser)]
+#[command(name = "knotdock", version = version())]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Write one JSON object on standard output, every word on standard error.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Write no words but errors.
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Dock(Box<dock::Dock>),
+    Complex(complex::Complex),
+    Evaluate(evaluate::Evaluate),
+}
+
+fn version() -> &'static str {
+    use knotdock::output::manifest::VERSION_WITH_COMMIT;
+    VERSION_WITH_COMMIT
+}
+
+/// Runs the program on the process's arguments.
+pub fn main() -> ExitCode {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error, &arguments),
+    };
+    let console = Console {
+        json: cli.json,
+        quiet: cli.quiet,
+    };
+    let done = match cli.command {
+        Command::Dock(command) => command.run(console),
+        Command::Complex(command) => command.run(console),
+        Command::Evaluate(command) => command.run(console),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            console.fail(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// Answers a command line that is not one to run: asks for help or the version, or is wrong.
+fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+    let asked = matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    );
+    let json = arguments
+        .iter()
+        .take_while(|argument| *argument != "--")
+        .any(|argument| argument == "--json");
+    if json && !asked {
+        // clap's text is the message with usage lines; its first paragraph is the message.
+        let text = error.render().to_string();
+        let message = text.split("\n\n").next().unwrap_or(&text);
+        let failure = Failure::input(message.trim_start_matches("error: ").trim())
+            .remedy("see `knotdock --help` and `knotdock COMMAND --help`");
+        let console = Console { json, quiet: false };
+        console.fail(&failure);
+    } else {
+        // Nobody to tell when the terminal is gone.
+        let _ = error.print();
+    }
+    if asked {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    }
+}

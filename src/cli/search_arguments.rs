@@ -1,0 +1,91 @@
+//! Options of the search, with their units and defaults.
+
+use clap::Args;
+use knotdock::search::options::PASS_RATIO;
+use knotdock::search::{DockOptions, Effect};
+
+use super::arguments::{above_zero, at_least_one, effect, not_negative, rotations_of_angle};
+
+const TRADE_OFFS: &str = "Accuracy against time";
+const SCORE: &str = "Score";
+fn pass_length_help() -> String {
+    format!(
+        "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å [default: {PASS_RATIO} \
+         times the resolution]"
+    )
+}
+
+/// Heading of the options that say what the table lists.
+pub const RANKING: &str = "Ranking";
+
+/// Options of the search.
+#[derive(Args, Debug)]
+pub struct SearchArguments {
+    /// Rotations of the ligand, near uniform over all.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations, help_heading = TRADE_OFFS)]
+    rotations: usize,
+    /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
+    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
+    angle: Option<usize>,
+    /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
+    #[arg(long, value_name = "A", value_parser = above_zero, default_value_t = DockOptions::default().resolution, help_heading = TRADE_OFFS)]
+    resolution: f64,
+    #[arg(long, value_name = "A", value_parser = above_zero, help = pass_length_help(), help_heading = TRADE_OFFS)]
+    pass_length: Option<f64>,
+    /// Spacing of the translation grid, in Å [default: half the resolution, or finer where the tolerance needs it].
+    #[arg(long, value_name = "A", value_parser = above_zero, help_heading = TRADE_OFFS)]
+    spacing: Option<f64>,
+    /// Penalty of overlap against the reward of contact (dimensionless).
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().lambda, help_heading = SCORE)]
+    lambda: f64,
+    /// Depth r0 of the skin, in Å.
+    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().offset, help_heading = SCORE)]
+    offset: f64,
+    /// Exponent of the bump kernel (dimensionless); large values harden the balls.
+    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha, help_heading = SCORE)]
+    alpha: f64,
+    /// Error of the fast path that is allowed, as a share of the best score.
+    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
+    tolerance: f64,
+    /// Effects to score.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = effect, default_value = "shape", help_heading = SCORE)]
+    effects: Vec<Effect>,
+    /// Peaks kept of each rotation.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation, help_heading = TRADE_OFFS)]
+    per_rotation: usize,
+    /// Poses kept of all rotations.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().poses, help_heading = TRADE_OFFS)]
+    poses: usize,
+    /// Best poses to refine off the grid.
+    #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine, help_heading = TRADE_OFFS)]
+    refine: usize,
+    /// Ligand CA RMSD within which poses form a cluster, in Å.
+    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().cluster_radius, help_heading = RANKING)]
+    cluster_radius: f64,
+    /// List every pose; without this, one row a cluster, its best pose.
+    #[arg(long, help_heading = RANKING)]
+    no_cluster: bool,
+}
+
+impl SearchArguments {
+    /// The options as the search takes them; the machine's are at their defaults.
+    pub fn options(&self) -> DockOptions {
+        DockOptions {
+            rotations: self.angle.unwrap_or(self.rotations),
+            resolution: self.resolution,
+            pass_length: self.pass_length,
+            spacing: self.spacing,
+            lambda: self.lambda,
+            offset: self.offset,
+            alpha: self.alpha,
+            tolerance: self.tolerance,
+            effects: self.effects.clone(),
+            per_rotation: self.per_rotation,
+            poses: self.poses,
+            refine: self.refine,
+            cluster_radius: self.cluster_radius,
+            every_pose: self.no_cluster,
+            ..DockOptions::default()
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Input files as a run records them: where they are and how to know them again.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use knotdock_structures::molecule::InputSpec;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// An input file as recorded: what to read and how to know it again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputRecord {
+    /// Absolute path.
+    pub path: PathBuf,
+    /// Names of the chains that were picked; `null` for all.
+    pub chains: Option<Vec<String>>,
+    /// SHA-256 of the file as it lies on the disk, in hexadecimal.
+    pub sha256: String,
+}
+
+/// Why a recorded file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum InputRecordError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not the one that the run read.
+    #[error("{} has changed since the run: its SHA-256 is {found}, the run's was {expected}", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The checksum recorded.
+        expected: String,
+        /// The checksum now.
+        found: String,
+    },
+}
+
+impl InputRecordError {
+    /// The file in question.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Read { path, .. } | Self::Changed { path, .. } => path,
+        }
+    }
+}
+
+impl InputRecord {
+    /// Records a file.
+    ///
+    /// # Errors
+    /// [`InputRecordError::Read`].
+    pub fn new(input: &InputSpec) -> Result<Self, InputRecordError> {
+        Ok(Self {
+            path: std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone()),
+            chains: input.chains.clone(),
+            sha256: sha256(&input.path)?,
+        })
+    }
+
+    /// What to read.
+    pub fn spec(&self) -> InputSpec {
+        InputSpec {
+            path: self.path.clone(),
+            chains: self.chains.clone(),
+        }
+    }
+
+    /// The same record with the path at which the file is found: where it was, or under its name in one of `folders`,
+    /// for runs that were moved or copied together with their inputs.
+    ///
+    /// # Errors
+    /// [`InputRecordError`] of the recorded path when no file with the recorded checksum is there or in the folders.
+    pub fn locate(&self, folders: &[&Path]) -> Result<Self, InputRecordError> {
+        let first = match self.verify(&self.path) {
+            Ok(()) => return Ok(self.clone()),
+            Err(error) => error,
+        };
+        let name = self.path.file_name().unwrap_or_default();
+        folders
+            .iter()
+            .map(|folder| folder.join(name))
+            .find(|path| self.verify(path).is_ok())
+            .map(|path| Self {
+                path,
+                ..self.clone()
+            })
+            .ok_or(first)
+    }
+
+    /// Checks that a file is the one recorded.
+    fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
+        let found = sha256(path)?;
+        if found == self.sha256 {
+            Ok(())
+        } else {
+            Err(InputRecordError::Changed {
+                path: path.to_owned(),
+                expected: self.sha256.clone(),
+                found,
+            })
+        }
+    }
+}
+
+/// SHA-256 of a file's bytes, in hexadecimal.
+fn sha256(path: &Path) -> Result<String, InputRecordError> {
+    let bytes = fs::read(path).map_err(|source| InputRecordError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(Sha256::digest(&bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
+}
+
+/// The native complex that the poses were measured against.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NativeRecord {
+    /// One file with both partners.
+    Complex(InputRecord),
+    /// A file for each partner.
+    Partners {
+        /// File and chains of the receptor.
+        receptor: InputRecord,
+        /// File and chains of the ligand.
+        ligand: InputRecord,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_changed_input_is_noticed() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("input.pdb");
+        fs::write(&path, "abc").unwrap();
+        let record = InputRecord::new(&InputSpec::whole(&path)).unwrap();
+        // FIPS 180-2, appendix B.1
+        assert_eq!(
+            record.sha256,
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+        assert_eq!(record.locate(&[]).unwrap(), record);
+        let moved = root.path().join("moved");
+        fs::create_dir(&moved).unwrap();
+        fs::rename(&path, moved.join("input.pdb")).unwrap();
+        assert!(matches!(
+            record.locate(&[root.path()]),
+            Err(InputRecordError::Read { .. })
+        ));
+        assert_eq!(
+            record.locate(&[root.path(), &moved]).unwrap().path,
+            moved.join("input.pdb")
+        );
+        fs::write(&path, "abd").unwrap();
+        assert!(matches!(
+            record.locate(&[root.path()]),
+            Err(InputRecordError::Changed { .. })
+        ));
+    }
+}

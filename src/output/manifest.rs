@@ -1,0 +1,236 @@
+//! `run.json`: what was run, on what, by which program, and how well: enough to run it again.
+//!
+//! `docs/formats.md` describes each entry. Everything outside the objects `timing` and `machine` is the same, byte for
+//! byte, for the same input, options and CPU feature level.
+
+use std::path::Path;
+
+use knotdock_structures::molecule::ChainMap;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::input_record::{InputRecord, NativeRecord};
+use super::run_options::RunOptions;
+use super::staging::{StagingError, write_whole};
+use crate::evaluate::MatchReport;
+use crate::search::outcome::MeasuredError;
+use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
+
+/// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
+pub const SCHEMA: u32 = 1;
+
+/// The program's version.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The git commit that the program was built from, or `unknown`.
+pub const COMMIT: &str = env!("KNOTDOCK_COMMIT");
+
+/// Version and commit as `--version` shows them.
+pub const VERSION_WITH_COMMIT: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (",
+    env!("KNOTDOCK_COMMIT"),
+    ")"
+);
+
+/// An input with what its reader made of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct InputEntry {
+    /// The file.
+    #[serde(flatten)]
+    pub record: InputRecord,
+    /// Atoms kept.
+    pub atoms: usize,
+    /// What was kept, dropped and altered.
+    pub report: Value,
+}
+
+/// The inputs of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Inputs {
+    /// The molecule that stays.
+    pub receptor: InputEntry,
+    /// The molecule that moves.
+    pub ligand: InputEntry,
+    /// The known answer, if one was given.
+    pub native: Option<NativeRecord>,
+}
+
+/// Counts of what came out.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Results {
+    /// Rows of `poses.csv`.
+    pub rows: usize,
+    /// Clusters among all poses that were kept.
+    pub clusters: usize,
+    /// Poses that were kept.
+    pub poses: usize,
+}
+
+/// What an effect cost.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EffectTime {
+    /// The effect.
+    pub effect: Effect,
+    /// CPU milliseconds a rotation, over all stages of the search loop.
+    pub milliseconds_per_rotation: f64,
+}
+
+impl EffectTime {
+    /// The costs that a search measured.
+    pub fn of(costs: &[EffectCost]) -> Vec<Self> {
+        let times = costs.iter().map(|cost| Self {
+            effect: cost.effect,
+            milliseconds_per_rotation: cost.milliseconds_per_rotation,
+        });
+        times.collect()
+    }
+}
+
+/// What the run cost. Differs from run to run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Timing {
+    /// Start of the run, in seconds since 1970-01-01 UTC.
+    pub started_unix_seconds: u64,
+    /// Time on the clock from the first read to the last write, in seconds.
+    pub wall_seconds: f64,
+    /// Stages of the search.
+    pub stages: Vec<StageTime>,
+    /// What each effect cost.
+    pub effects: Vec<EffectTime>,
+    /// The most memory that the process held, in bytes; `null` where the system does not say.
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// Where and how the run was carried out. Differs from machine to machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Machine {
+    /// Operating system.
+    pub system: &'static str,
+    /// Processor architecture.
+    pub architecture: &'static str,
+    /// Hardware threads that the process may use.
+    pub hardware_threads: usize,
+    /// Threads that the search was given.
+    pub threads: usize,
+    /// Rotations that were in flight at once.
+    pub rotations_in_flight: usize,
+    /// Memory that the search was expected to take, in bytes.
+    pub memory_estimate_bytes: u64,
+    /// Memory that the search was given, in bytes; `null` for no limit.
+    pub memory_limit_bytes: Option<u64>,
+    /// The command line.
+    pub command: Vec<String>,
+}
+
+/// The errors that a run measured, as shares of the best score.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct ErrorRecord {
+    #[serde(flatten)]
+    measured: MeasuredError,
+    /// What compressing the lifted axis to its rank took, at the best poses of a few rotations.
+    lifted_axis: f64,
+}
+
+/// `run.json`.
+#[derive(Debug, Serialize)]
+pub struct Manifest<'a> {
+    schema: u32,
+    program: &'static str,
+    version: &'static str,
+    commit: &'static str,
+    cpu_features: String,
+    inputs: &'a Inputs,
+    options: Map<String, Value>,
+    plan: &'a DockPlan,
+    rank: usize,
+    effects: &'a [EffectCost],
+    error: ErrorRecord,
+    results: Results,
+    chains: &'a ChainMap,
+    #[serde(rename = "match")]
+    matching: Option<&'a MatchReport>,
+    timing: Timing,
+    machine: Machine,
+}
+
+/// What [`Manifest::new`] puts together.
+pub struct ManifestParts<'a> {
+    /// The input files.
+    pub inputs: &'a Inputs,
+    /// What was asked for.
+    pub options: &'a RunOptions,
+    /// What was planned.
+    pub plan: &'a DockPlan,
+    /// What came out.
+    pub outcome: &'a DockOutcome,
+    /// Counts of it.
+    pub results: Results,
+    /// Chain names in the complexes.
+    pub chains: &'a ChainMap,
+    /// How the native was matched, if there is one.
+    pub matching: Option<&'a MatchReport>,
+    /// What it cost.
+    pub timing: Timing,
+    /// Where it ran.
+    pub machine: Machine,
+}
+
+impl<'a> Manifest<'a> {
+    /// The manifest of a finished run.
+    ///
+    /// # Errors
+    /// When a part cannot be put into JSON, which would be a fault of this program.
+    pub fn new(parts: ManifestParts<'a>) -> serde_json::Result<Self> {
+        Ok(Self {
+            schema: SCHEMA,
+            program: "knotdock",
+            version: VERSION,
+            commit: COMMIT,
+            cpu_features: cpu_features(),
+            inputs: parts.inputs,
+            options: parts.options.record()?,
+            plan: parts.plan,
+            rank: parts.outcome.effects.iter().map(|cost| cost.rank).sum(),
+            effects: &parts.outcome.effects,
+            error: ErrorRecord {
+                measured: parts.outcome.error,
+                lifted_axis: parts.outcome.rank_error,
+            },
+            results: parts.results,
+            chains: parts.chains,
+            matching: parts.matching,
+            timing: parts.timing,
+            machine: parts.machine,
+        })
+    }
+
+    /// Writes the manifest, whole or not at all.
+    ///
+    /// # Errors
+    /// [`StagingError`].
+    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+        write_whole(path, |file| {
+            serde_json::to_writer_pretty(&mut *file, self)?;
+            writeln!(file)
+        })
+    }
+}
+
+/// The instruction sets on which the transforms' code paths turn, which the last bits of a score can depend on.
+pub fn cpu_features() -> String {
+    #[cfg(target_arch = "x86_64")]
+    let found = [
+        ("sse4.1", std::arch::is_x86_feature_detected!("sse4.1")),
+        ("avx", std::arch::is_x86_feature_detected!("avx")),
+        ("fma", std::arch::is_x86_feature_detected!("fma")),
+        ("avx2", std::arch::is_x86_feature_detected!("avx2")),
+    ];
+    #[cfg(not(target_arch = "x86_64"))]
+    let found: [(&str, bool); 0] = [];
+    let names = found.iter().filter(|(_, on)| *on).map(|(name, _)| *name);
+    std::iter::once(std::env::consts::ARCH)
+        .chain(names)
+        .collect::<Vec<_>>()
+        .join(" ")
+}

@@ -1,0 +1,21 @@
+//! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` ..., `run.json`, and the words on the terminal.
+//!
+//! # Conventions
+//!
+//! - Every file is written whole under a `.partial` name and then renamed, so that a run that fails or is killed never
+//!   leaves part of a file where a whole one is looked for. See [`staging`].
+//! - Coordinates are in Å. A pose carries the ligand from its own file's frame to the receptor's.
+//! - Numbers are printed in the shortest digits that read back to the same f64; a value that does not exist is an empty
+//!   field in CSV and `null` in JSON, never NaN.
+//! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
+
+pub mod complexes;
+pub mod input_record;
+pub mod manifest;
+pub mod poses;
+pub mod poses_reader;
+pub mod quality;
+pub mod recorded_run;
+pub mod report;
+pub mod run_options;
+pub mod staging;

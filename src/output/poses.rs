@@ -1,0 +1,299 @@
+//! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
+//!
+//! Columns are found by name, and later ones are appended after those of [`COLUMNS`]. Quaternions are Hamilton's, active,
+//! right-handed, unit, `qw >= 0`; a ligand atom at x in its own file goes to R(q) x + t, in Å, in the receptor's file
+//! frame. Numbers are in the shortest digits that read back to the same f64; a missing value is an empty field.
+
+use std::io;
+use std::path::Path;
+
+use csv::StringRecord;
+use knotdock_scoring::se3::Pose;
+use serde_json::Value;
+
+use super::staging::{StagingError, write_whole};
+use crate::search::outcome::RankedPose;
+
+/// The columns that every run writes, in order.
+pub const COLUMNS: [&str; 19] = [
+    "rank",
+    "score",
+    "cluster",
+    "cluster_size",
+    "qw",
+    "qx",
+    "qy",
+    "qz",
+    "tx",
+    "ty",
+    "tz",
+    "refined",
+    "rotation",
+    "score_grid",
+    "score_unfiltered",
+    "shape",
+    "slice_0",
+    "slice_r0",
+    "slice_2r0",
+];
+
+/// A column to append: its name and one field a row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name in the header.
+    pub name: String,
+    /// The fields, in the order of the rows.
+    pub fields: Vec<String>,
+}
+
+/// A number as a field: the shortest digits that read back to the same f64, empty when it is not a finite number.
+pub fn number(value: f64) -> String {
+    if value.is_finite() {
+        (value + 0.0).to_string() // + 0.0 prints a negative zero as 0
+    } else {
+        String::new()
+    }
+}
+
+fn count(value: Option<usize>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}
+
+/// The fields of a pose under [`COLUMNS`].
+fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
+    let [qw, qx, qy, qz] = row.pose.quaternion();
+    let translation = row.pose.translation;
+    let [slice_0, slice_r0, slice_2r0] = row.slices;
+    [
+        rank.to_string(),
+        number(row.score),
+        count(row.cluster),
+        count(row.cluster_size),
+        number(qw),
+        number(qx),
+        number(qy),
+        number(qz),
+        number(translation.x),
+        number(translation.y),
+        number(translation.z),
+        row.refined.to_string(),
+        row.rotation.to_string(),
+        number(row.score_grid),
+        number(row.score_unfiltered),
+        number(row.shape),
+        number(slice_0),
+        number(slice_r0),
+        number(slice_2r0),
+    ]
+}
+
+/// A table of poses as text, with the pose of each row made out: what `evaluate` and `complex` read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseTable {
+    pub(super) header: StringRecord,
+    pub(super) records: Vec<StringRecord>,
+    pub(super) rows: Vec<PoseRow>,
+}
+
+/// What a row says of where the ligand goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseRow {
+    /// 1-based rank.
+    pub rank: usize,
+    /// From the ligand's file frame to the receptor's.
+    pub pose: Pose,
+}
+
+impl PoseTable {
+    /// The table of a search's poses in the order given, ranked from 1.
+    pub fn new(poses: &[RankedPose]) -> Self {
+        let rows = poses.iter().enumerate().map(|(index, row)| PoseRow {
+            rank: index + 1,
+            pose: row.pose,
+        });
+        let records = poses.iter().enumerate();
+        Self {
+            header: StringRecord::from(COLUMNS.to_vec()),
+            records: records
+                .map(|(index, row)| StringRecord::from(fields(index + 1, row).to_vec()))
+                .collect(),
+            rows: rows.collect(),
+        }
+    }
+
+    /// The poses, in the table's order.
+    pub fn rows(&self) -> &[PoseRow] {
+        &self.rows
+    }
+
+    /// Rows as JSON objects with the columns' names: numbers, truth values and text, `null` for empty fields. Indices
+    /// past the end are skipped.
+    pub fn objects(&self, indices: impl IntoIterator<Item = usize>) -> Vec<Value> {
+        let records = indices
+            .into_iter()
+            .filter_map(|index| self.records.get(index));
+        records
+            .map(|record| {
+                let fields = self.header.iter().zip(record);
+                fields
+                    .map(|(name, field)| (name.to_owned(), value(field)))
+                    .collect::<serde_json::Map<_, _>>()
+                    .into()
+            })
+            .collect()
+    }
+
+    /// Puts a column at the end, or in the place of the one that has its name.
+    ///
+    /// A row for which `column` has no field gets an empty one.
+    pub fn set_column(&mut self, column: &Column) {
+        let place = self.header.iter().position(|name| name == column.name);
+        if place.is_none() {
+            self.header.push_field(&column.name);
+        }
+        for (index, record) in self.records.iter_mut().enumerate() {
+            let field = column.fields.get(index).map_or("", String::as_str);
+            match place {
+                None => record.push_field(field),
+                Some(place) => {
+                    *record = record
+                        .iter()
+                        .enumerate()
+                        .map(|(at, old)| if at == place { field } else { old })
+                        .collect();
+                }
+            }
+        }
+    }
+
+    /// Writes the table, whole or not at all.
+    ///
+    /// # Errors
+    /// [`StagingError`] when the file cannot be made or written.
+    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+        write_whole(path, |file| self.write_to(file))
+    }
+
+    /// Writes the table to a stream.
+    ///
+    /// # Errors
+    /// Those of the stream.
+    pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
+        let mut writer = csv::Writer::from_writer(stream);
+        writer.write_record(&self.header)?;
+        for record in &self.records {
+            writer.write_record(record)?;
+        }
+        writer.flush()
+    }
+}
+
+/// A field as JSON.
+fn value(field: &str) -> Value {
+    if field.is_empty() {
+        return Value::Null;
+    }
+    // Numbers and truth values are written in CSV as in JSON; what is neither is text.
+    match serde_json::from_str(field) {
+        Ok(value @ (Value::Bool(_) | Value::Number(_))) => value,
+        _ => field.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(quaternion: [f64; 4], translation: [f64; 3]) -> RankedPose {
+        RankedPose {
+            pose: Pose::from_parts(quaternion, translation),
+            score: 1.0 / 3.0,
+            cluster: None,
+            cluster_size: Some(4),
+            refined: true,
+            rotation: 17,
+            score_grid: f64::NAN,
+            score_unfiltered: 1e-7,
+            shape: 0.1,
+            slices: [-0.0, 2.0, 1e21],
+        }
+    }
+
+    fn text(table: &PoseTable) -> String {
+        let mut bytes = Vec::new();
+        table.write_to(&mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn numbers_are_shortest_and_missing_ones_empty() {
+        let table = PoseTable::new(&[pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])]);
+        assert_eq!(
+            text(&table),
+            "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
+             shape,slice_0,slice_r0,slice_2r0\n\
+             1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
+             1000000000000000000000\n"
+        );
+    }
+
+    #[test]
+    fn rows_as_objects_carry_types() {
+        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])]);
+        let objects = table.objects([0, 7]);
+        assert_eq!(objects.len(), 1);
+        assert_eq!(objects[0]["rank"], 1);
+        assert_eq!(objects[0]["score"], 1.0 / 3.0);
+        assert_eq!(objects[0]["refined"], true);
+        assert_eq!(objects[0]["cluster"], Value::Null);
+    }
+
+    #[test]
+    fn poses_read_back_bit_for_bit() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("poses.csv");
+        let poses = [
+            pose([0.1, 0.2, -0.3, 0.4], [1e6 + 0.1, -1.0 / 3.0, 5e-324]),
+            pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
+        ];
+        PoseTable::new(&poses).write(&path).unwrap();
+        let read = PoseTable::read(&path).unwrap();
+        for (row, expected) in read.rows().iter().zip(&poses) {
+            assert_eq!(row.pose.translation, expected.pose.translation);
+            // Normalising a unit quaternion again may move its last bit.
+            assert!(row.pose.angle_to(&expected.pose) < 1e-15);
+        }
+        assert_eq!(
+            read.rows().iter().map(|row| row.rank).collect::<Vec<_>>(),
+            [1, 2]
+        );
+    }
+
+    #[test]
+    fn columns_are_found_by_name_and_replaced_in_place() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("poses.csv");
+        std::fs::write(
+            &path,
+            "note,tz,ty,tx,qz,qy,qx,qw,irmsd,rank\r\n\"a, b\",3,2,1,0,0,0,1,9,5\r\n",
+        )
+        .unwrap();
+        let mut table = PoseTable::read(&path).unwrap();
+        let row = table.rows()[0];
+        assert_eq!(row.rank, 5);
+        assert_eq!(
+            row.pose,
+            Pose::from_parts([1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0])
+        );
+        for (name, value) in [("irmsd", "0.5"), ("fnat", "1")] {
+            table.set_column(&Column {
+                name: name.to_owned(),
+                fields: vec![value.to_owned()],
+            });
+        }
+        assert_eq!(
+            text(&table),
+            "note,tz,ty,tx,qz,qy,qx,qw,irmsd,rank,fnat\n\"a, b\",3,2,1,0,0,0,1,0.5,5,1\n"
+        );
+    }
+}

@@ -1,0 +1,236 @@
+//! Reading `poses.csv`, and any table with its columns for the rank and the pose.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use csv::StringRecord;
+use knotdock_scoring::se3::Pose;
+
+use super::poses::{PoseRow, PoseTable};
+
+/// Why a table of poses cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum PoseTableError {
+    /// The file cannot be opened.
+    #[error("cannot read {}: {source}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not CSV, or a row has more or fewer fields than the header.
+    #[error("{} is not a table: {message}", path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// 1-based line, where known.
+        line: Option<u64>,
+        /// What is wrong.
+        message: String,
+    },
+    /// A column that places the ligand is missing.
+    #[error("{} has no column `{column}`", path.display())]
+    MissingColumn {
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: &'static str,
+    },
+    /// A field is not what its column holds.
+    #[error("`{field}` in column `{column}` is not {expected}")]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// 1-based line.
+        line: u64,
+        /// The column.
+        column: &'static str,
+        /// The field as it stands.
+        field: String,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A quaternion is too far from unit length to be a rotation.
+    #[error("the quaternion of rank {rank} has length {length}; a rotation has 1")]
+    Quaternion {
+        /// The file.
+        path: PathBuf,
+        /// 1-based line.
+        line: u64,
+        /// The row's rank.
+        rank: usize,
+        /// The quaternion's length.
+        length: f64,
+    },
+}
+
+impl PoseTableError {
+    /// The file in question.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Open { path, .. }
+            | Self::Csv { path, .. }
+            | Self::MissingColumn { path, .. }
+            | Self::Field { path, .. }
+            | Self::Quaternion { path, .. } => path,
+        }
+    }
+
+    /// The 1-based line in question, where there is one.
+    pub fn line(&self) -> Option<u64> {
+        match self {
+            Self::Open { .. } => None,
+            Self::Csv { line, .. } => *line,
+            Self::MissingColumn { .. } => Some(1),
+            Self::Field { line, .. } | Self::Quaternion { line, .. } => Some(*line),
+        }
+    }
+
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Open { .. } => "give the directory of a run, or its poses.csv",
+            Self::Csv { .. } => "give the poses.csv of a run as `knotdock dock` wrote it",
+            Self::MissingColumn { .. } => {
+                "the columns rank, qw, qx, qy, qz, tx, ty and tz are needed, in any order"
+            }
+            Self::Field { .. } => "correct the field",
+            Self::Quaternion { .. } => "give unit quaternions with at least four digits",
+        }
+    }
+}
+
+impl PoseTable {
+    /// Reads a table, finding its columns by name; columns that are not needed are kept as they stand.
+    ///
+    /// # Errors
+    /// [`PoseTableError`], with file and line.
+    pub fn read(path: &Path) -> Result<Self, PoseTableError> {
+        let bytes = std::fs::read(path).map_err(|source| PoseTableError::Open {
+            path: path.to_owned(),
+            source,
+        })?;
+        let malformed = |error: csv::Error| PoseTableError::Csv {
+            path: path.to_owned(),
+            line: error.position().map(csv::Position::line),
+            message: error.to_string(),
+        };
+        let mut reader = csv::Reader::from_reader(bytes.as_slice());
+        let header = reader.headers().map_err(malformed)?.clone();
+        let columns = PoseColumns::find(path, &header)?;
+        let mut records = Vec::new();
+        let mut rows = Vec::new();
+        for record in reader.into_records() {
+            let record = record.map_err(malformed)?;
+            rows.push(columns.row(path, &record)?);
+            records.push(record);
+        }
+        Ok(Self {
+            header,
+            records,
+            rows,
+        })
+    }
+}
+
+/// Where the columns that place the ligand stand in a header.
+struct PoseColumns {
+    rank: usize,
+    quaternion: [(&'static str, usize); 4],
+    translation: [(&'static str, usize); 3],
+}
+
+impl PoseColumns {
+    fn find(path: &Path, header: &StringRecord) -> Result<Self, PoseTableError> {
+        let place = |column: &'static str| {
+            header
+                .iter()
+                .position(|name| name == column)
+                .map(|place| (column, place))
+                .ok_or_else(|| PoseTableError::MissingColumn {
+                    path: path.to_owned(),
+                    column,
+                })
+        };
+        Ok(Self {
+            rank: place("rank")?.1,
+            quaternion: [place("qw")?, place("qx")?, place("qy")?, place("qz")?],
+            translation: [place("tx")?, place("ty")?, place("tz")?],
+        })
+    }
+
+    fn row(&self, path: &Path, record: &StringRecord) -> Result<PoseRow, PoseTableError> {
+        let line = record.position().map_or(0, csv::Position::line);
+        let fault = |column, field: &str, expected| PoseTableError::Field {
+            path: path.to_owned(),
+            line,
+            column,
+            field: field.to_owned(),
+            expected,
+        };
+        let float = |(column, place): (&'static str, usize)| {
+            let field = record.get(place).unwrap_or("");
+            match field.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value),
+                _ => Err(fault(column, field, "a finite number")),
+            }
+        };
+        let rank_field = record.get(self.rank).unwrap_or("");
+        let rank = rank_field
+            .parse::<usize>()
+            .ok()
+            .filter(|&rank| rank > 0)
+            .ok_or_else(|| fault("rank", rank_field, "a whole number above zero"))?;
+        let [w, x, y, z] = self.quaternion;
+        let quaternion = [float(w)?, float(x)?, float(y)?, float(z)?];
+        let [x, y, z] = self.translation;
+        let translation = [float(x)?, float(y)?, float(z)?];
+        let length = quaternion
+            .iter()
+            .map(|part| part * part)
+            .sum::<f64>()
+            .sqrt();
+        // Three digits a component keep the length within 1e-3; more is no rotation that was rounded.
+        if (length - 1.0).abs() > 1e-3 {
+            return Err(PoseTableError::Quaternion {
+                path: path.to_owned(),
+                line,
+                rank,
+                length,
+            });
+        }
+        Ok(PoseRow {
+            rank,
+            pose: Pose::from_parts(quaternion, translation),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_name_file_and_line() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("poses.csv");
+        let header = "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n";
+        for (rows, line) in [
+            ("2,1,0,0,0,0,0,nan\n", 3),
+            ("x,1,0,0,0,0,0,0\n", 3),
+            ("2,0,0,0,0,0,0,0\n", 3),
+            ("2,1,0,0\n", 3),
+        ] {
+            std::fs::write(&path, format!("{header}{rows}")).unwrap();
+            let error = PoseTable::read(&path).unwrap_err();
+            assert_eq!(error.line(), Some(line), "{error}");
+            assert_eq!(error.path(), path);
+        }
+        std::fs::write(&path, "rank,qw,qx,qy,qz,tx,ty\n").unwrap();
+        assert!(matches!(
+            PoseTable::read(&path),
+            Err(PoseTableError::MissingColumn { column: "tz", .. })
+        ));
+    }
+}

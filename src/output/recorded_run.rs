@@ -1,0 +1,128 @@
+//! What later commands take from a `run.json`.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use super::input_record::{InputRecord, NativeRecord};
+use super::manifest::SCHEMA;
+use super::run_options::RunOptions;
+
+/// What later commands take from a `run.json`.
+#[derive(Debug)]
+pub struct RecordedRun {
+    /// Version of the program that wrote it.
+    pub version: String,
+    /// Commit of the program that wrote it.
+    pub commit: String,
+    /// CPU feature level of the run.
+    pub cpu_features: String,
+    /// The receptor's file.
+    pub receptor: InputRecord,
+    /// The ligand's file.
+    pub ligand: InputRecord,
+    /// The native's files, if there was one.
+    pub native: Option<NativeRecord>,
+    /// The options.
+    pub options: RunOptions,
+}
+
+/// Why a `run.json` cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordedRunError {
+    /// The file cannot be opened.
+    #[error("cannot read {}: {source}", path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is no manifest that this version understands.
+    #[error("{} is not a run.json that this version can read: {message}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// 1-based line, where known.
+        line: Option<u64>,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl RecordedRunError {
+    /// The file in question.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Open { path, .. } | Self::Content { path, .. } => path,
+        }
+    }
+
+    /// The 1-based line in question, where there is one.
+    pub fn line(&self) -> Option<u64> {
+        match self {
+            Self::Open { .. } => None,
+            Self::Content { line, .. } => *line,
+        }
+    }
+}
+
+impl RecordedRun {
+    /// Reads a `run.json`.
+    ///
+    /// # Errors
+    /// [`RecordedRunError`].
+    pub fn read(path: &Path) -> Result<Self, RecordedRunError> {
+        #[derive(Deserialize)]
+        struct File {
+            schema: u32,
+            program: String,
+            version: String,
+            commit: String,
+            cpu_features: String,
+            inputs: FileInputs,
+            options: Map<String, Value>,
+        }
+        #[derive(Deserialize)]
+        struct FileInputs {
+            receptor: InputRecord,
+            ligand: InputRecord,
+            native: Option<NativeRecord>,
+        }
+        let text = fs::read(path).map_err(|source| RecordedRunError::Open {
+            path: path.to_owned(),
+            source,
+        })?;
+        let content = |line, message| RecordedRunError::Content {
+            path: path.to_owned(),
+            line,
+            message,
+        };
+        let file: File = serde_json::from_slice(&text).map_err(|error| {
+            let line = u64::try_from(error.line()).ok().filter(|&line| line > 0);
+            content(line, error.to_string())
+        })?;
+        if file.program != "knotdock" {
+            return Err(content(None, format!("it was written by {}", file.program)));
+        }
+        if file.schema != SCHEMA {
+            return Err(content(
+                None,
+                format!("its schema is {}, this version's is {SCHEMA}", file.schema),
+            ));
+        }
+        Ok(Self {
+            version: file.version,
+            commit: file.commit,
+            cpu_features: file.cpu_features,
+            receptor: file.inputs.receptor,
+            ligand: file.inputs.ligand,
+            native: file.inputs.native,
+            options: RunOptions::from_record(&file.options)
+                .map_err(|message| content(None, message))?,
+        })
+    }
+}

@@ -1,0 +1,123 @@
+//! The tables of the terminal.
+
+use crate::search::outcome::RankedPose;
+
+use super::poses::Column;
+
+/// Rows of the table of best clusters.
+pub const BEST: usize = 10;
+
+/// The best clusters as a table: rank, score, size of the cluster, and whatever columns are appended to the poses.
+///
+/// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
+pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
+    let mut header: Vec<String> = ["rank", "score", "cluster size", "unfiltered"]
+        .map(str::to_owned)
+        .to_vec();
+    header.extend(appended.iter().map(|column| column.name.clone()));
+    let mut lines = vec![header];
+    for index in firsts(ranking).into_iter().take(BEST) {
+        let Some(row) = ranking.get(index) else {
+            continue;
+        };
+        let mut line = vec![
+            (index + 1).to_string(),
+            format!("{:.1}", row.score),
+            row.cluster_size
+                .map(|size| size.to_string())
+                .unwrap_or_default(),
+            format!("{:.1}", row.score_unfiltered),
+        ];
+        line.extend(appended.iter().map(|column| {
+            let field = column.fields.get(index).map_or("", String::as_str);
+            match field.parse::<f64>() {
+                Ok(value) => format!("{value:.2}"),
+                Err(_) => field.to_owned(),
+            }
+        }));
+        lines.push(line);
+    }
+    align(&lines)
+}
+
+/// Places of the poses that stand for their clusters: the first of each, and each pose that belongs to none.
+pub fn firsts(ranking: &[RankedPose]) -> Vec<usize> {
+    let mut seen = std::collections::HashSet::new();
+    ranking
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| row.cluster.is_none_or(|cluster| seen.insert(cluster)))
+        .map(|(index, _)| index)
+        .collect()
+}
+
+/// Lines of fields as text, each column flush right.
+pub fn align(lines: &[Vec<String>]) -> String {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        lines
+            .iter()
+            .filter_map(|line| line.get(column))
+            .map(|field| field.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let text: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            let fields = line.iter().zip(&widths);
+            let line: String = fields
+                .map(|(field, &width)| format!("  {field:>width$}"))
+                .collect();
+            line.trim_end().to_owned()
+        })
+        .collect();
+    text.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::se3::Pose;
+
+    fn pose(score: f64, cluster: Option<usize>) -> RankedPose {
+        RankedPose {
+            pose: Pose::identity(),
+            score,
+            cluster,
+            cluster_size: cluster.map(|_| 2),
+            refined: false,
+            rotation: 0,
+            score_grid: score,
+            score_unfiltered: score,
+            shape: score,
+            slices: [0.0; 3],
+        }
+    }
+
+    #[test]
+    fn one_row_a_cluster_under_the_rank_of_its_best_pose() {
+        let ranking = [
+            pose(9.0, Some(1)),
+            pose(8.0, Some(1)),
+            pose(7.0, None),
+            pose(6.0, Some(2)),
+            pose(5.0, None),
+            pose(4.0, Some(2)),
+        ];
+        assert_eq!(firsts(&ranking), [0, 2, 3, 4]);
+        let irmsd = Column {
+            name: "irmsd".to_owned(),
+            fields: ["1.234", "", "", "3.5"].map(str::to_owned).to_vec(),
+        };
+        assert_eq!(
+            best_clusters(&ranking, &[irmsd]),
+            "  rank  score  cluster size  unfiltered  irmsd\n\
+             \x20    1    9.0             2         9.0   1.23\n\
+             \x20    3    7.0                       7.0\n\
+             \x20    4    6.0             2         6.0   3.50\n\
+             \x20    5    5.0                       5.0"
+        );
+    }
+}

@@ -1,0 +1,336 @@
+//! Whole files or none.
+//!
+//! A run is built in `DIR/.partial/` and its entries are renamed into `DIR` when all of them are written, `run.json`
+//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names, which
+//! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Name of the folder in which a run is built, and ending of single files that are being written.
+pub const PARTIAL: &str = ".partial";
+
+/// What a run puts into its directory, in the order in which it is moved there.
+const ENTRIES: [&str; 3] = ["top", "poses.csv", "run.json"];
+
+/// Why output could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum StagingError {
+    /// The directory holds a run and overwriting it was not asked for.
+    #[error("{} already holds a run", .0.display())]
+    ExistingRun(PathBuf),
+    /// Overwriting was asked for, but the directory's files are not those of a run.
+    #[error("{} holds {entry} but no run.json of knotdock, so it is not a run that may be overwritten", directory.display())]
+    NotARun {
+        /// The directory.
+        directory: PathBuf,
+        /// The file or folder in it that a run would replace.
+        entry: &'static str,
+    },
+    /// The directory cannot be made or written to.
+    #[error("cannot write to {}: {source}", directory.display())]
+    Unwritable {
+        /// The directory.
+        directory: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file could not be written although its directory could: a full disk, for instance.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+impl StagingError {
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::ExistingRun(_) => {
+                "choose another directory with -o, or pass --force to replace the run"
+            }
+            Self::NotARun { .. } => "choose another directory with -o",
+            Self::Unwritable { .. } => "choose with -o a directory that you may write to",
+            Self::Write { .. } => "check the free space and the permissions there",
+        }
+    }
+
+    /// The file or directory in question.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::ExistingRun(directory)
+            | Self::NotARun { directory, .. }
+            | Self::Unwritable { directory, .. } => directory,
+            Self::Write { path, .. } => path,
+        }
+    }
+
+    /// Whether the request was at fault (exit code 2) and not the writing (exit code 1).
+    pub fn is_input(&self) -> bool {
+        !matches!(self, Self::Write { .. })
+    }
+}
+
+/// A run's directory while the run goes on: files are written under [`Staging::folder`] and appear all together on
+/// [`Staging::commit`]. Dropped before that, it leaves the directory as it was.
+#[derive(Debug)]
+pub struct Staging {
+    directory: PathBuf,
+    folder: PathBuf,
+    made_directory: bool,
+    state: State,
+}
+
+/// How far a staging has come, which says what its end has to tidy up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Being filled: the folder goes, and the directory if it was made for it.
+    Open,
+    /// Moved into place: the folder with the replaced run goes.
+    Committed,
+    /// Holds what could not be moved back: everything stays.
+    Kept,
+}
+
+impl Staging {
+    /// Makes `directory` if there is none and the staging folder in it, which also shows that it can be written to.
+    ///
+    /// # Errors
+    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when `force`
+    /// would replace what no run has written, [`StagingError::Unwritable`] when nothing can be written there.
+    pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
+        let folder = directory.join(PARTIAL);
+        // A staging folder here means that a run was killed, possibly between its renames: what it left is ours.
+        let interrupted = folder.is_dir();
+        if let Some(entry) = ENTRIES
+            .into_iter()
+            .find(|entry| directory.join(entry).symlink_metadata().is_ok())
+        {
+            if !force {
+                return Err(StagingError::ExistingRun(directory.to_owned()));
+            }
+            if !interrupted && !is_run(directory) {
+                return Err(StagingError::NotARun {
+                    directory: directory.to_owned(),
+                    entry,
+                });
+            }
+        }
+        let unwritable = |source| StagingError::Unwritable {
+            directory: directory.to_owned(),
+            source,
+        };
+        if interrupted {
+            fs::remove_dir_all(&folder).map_err(unwritable)?;
+        }
+        let made_directory = !directory.exists();
+        fs::create_dir_all(&folder).map_err(unwritable)?;
+        Ok(Self {
+            directory: directory.to_owned(),
+            folder,
+            made_directory,
+            state: State::Open,
+        })
+    }
+
+    /// The folder to write into.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Moves what was written into the run's directory, in place of an older run.
+    ///
+    /// # Errors
+    /// [`StagingError::Write`] when a rename fails; the older run's entries are put back.
+    pub fn commit(mut self) -> Result<(), StagingError> {
+        let replaced = self.folder.join("replaced");
+        fs::create_dir(&replaced).map_err(|source| write_error(&replaced, source))?;
+        let outward = ENTRIES
+            .into_iter()
+            .rev()
+            .map(|entry| (self.directory.join(entry), replaced.join(entry)));
+        let inward = ENTRIES
+            .into_iter()
+            .map(|entry| (self.folder.join(entry), self.directory.join(entry)));
+        let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
+        for (from, to) in outward.chain(inward) {
+            if from.symlink_metadata().is_err() {
+                continue;
+            }
+            if let Err(source) = fs::rename(&from, &to) {
+                for (from, to) in done.iter().rev() {
+                    if fs::rename(to, from).is_err() {
+                        // The staging folder now holds something of the older run: leave it for the user.
+                        self.state = State::Kept;
+                    }
+                }
+                return Err(write_error(&to, source));
+            }
+            done.push((from, to));
+        }
+        self.state = State::Committed;
+        Ok(())
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // A failure to tidy up has nobody to report to; the next run clears what is left.
+        if self.state == State::Kept {
+            return;
+        }
+        let _ = fs::remove_dir_all(&self.folder);
+        if self.made_directory && self.state == State::Open {
+            let _ = fs::remove_dir(&self.directory);
+        }
+    }
+}
+
+/// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file
+/// (`/dev/stdout`, a pipe) is written to as it stands.
+///
+/// # Errors
+/// [`StagingError::Unwritable`] when the file cannot be made, [`StagingError::Write`] when writing to it fails.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+) -> Result<(), StagingError> {
+    let in_place = fs::metadata(path).is_ok_and(|found| !found.is_file());
+    let target = if in_place {
+        path.to_owned()
+    } else {
+        let mut name = path.as_os_str().to_owned();
+        name.push(PARTIAL);
+        PathBuf::from(name)
+    };
+    let file = fs::OpenOptions::new()
+        .write(true)
+        .create(!in_place)
+        .truncate(!in_place)
+        .open(&target)
+        .map_err(|source| StagingError::Unwritable {
+            directory: path.to_owned(),
+            source,
+        })?;
+    let mut buffer = io::BufWriter::new(file);
+    let written = fill(&mut buffer).and_then(|()| io::Write::flush(&mut buffer));
+    if in_place {
+        return written.map_err(|source| write_error(path, source));
+    }
+    written
+        .and_then(|()| fs::rename(&target, path))
+        .map_err(|source| {
+            let _ = fs::remove_file(&target);
+            write_error(path, source)
+        })
+}
+
+fn write_error(path: &Path, source: io::Error) -> StagingError {
+    StagingError::Write {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+/// Whether a directory's `run.json` is one of ours.
+fn is_run(directory: &Path) -> bool {
+    fs::read(directory.join("run.json"))
+        .ok()
+        .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok())
+        .is_some_and(|run| run.get("program").and_then(|name| name.as_str()) == Some("knotdock"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fill(staging: &Staging, text: &str) {
+        fs::create_dir(staging.folder().join("top")).unwrap();
+        fs::write(staging.folder().join("top/rank_0001.pdb"), text).unwrap();
+        fs::write(staging.folder().join("poses.csv"), text).unwrap();
+        fs::write(
+            staging.folder().join("run.json"),
+            format!(r#"{{"program":"knotdock","text":"{text}"}}"#),
+        )
+        .unwrap();
+    }
+
+    #[test]
+    fn a_failed_run_loses_nothing_and_leaves_nothing() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        drop(Staging::open(&directory, false).unwrap());
+        assert!(!directory.exists(), "a directory made for nothing must go");
+
+        let first = Staging::open(&directory, false).unwrap();
+        fill(&first, "first");
+        first.commit().unwrap();
+        fs::write(directory.join("notes.txt"), "mine").unwrap();
+
+        let second = Staging::open(&directory, true).unwrap();
+        fill(&second, "second");
+        drop(second); // the run failed before its end
+        assert_eq!(
+            fs::read_to_string(directory.join("poses.csv")).unwrap(),
+            "first"
+        );
+        assert!(!directory.join(PARTIAL).exists());
+
+        let third = Staging::open(&directory, true).unwrap();
+        fill(&third, "third");
+        third.commit().unwrap();
+        for file in ["poses.csv", "top/rank_0001.pdb"] {
+            assert_eq!(fs::read_to_string(directory.join(file)).unwrap(), "third");
+        }
+        assert_eq!(
+            fs::read_to_string(directory.join("notes.txt")).unwrap(),
+            "mine"
+        );
+        assert!(!directory.join(PARTIAL).exists());
+    }
+
+    #[test]
+    fn an_older_run_is_replaced_on_request_only_and_a_stranger_never() {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join("poses.csv"), "not ours").unwrap();
+        assert!(matches!(
+            Staging::open(root.path(), false),
+            Err(StagingError::ExistingRun(_))
+        ));
+        assert!(matches!(
+            Staging::open(root.path(), true),
+            Err(StagingError::NotARun { .. })
+        ));
+        assert_eq!(
+            fs::read_to_string(root.path().join("poses.csv")).unwrap(),
+            "not ours"
+        );
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_cleared() {
+        let root = tempfile::tempdir().unwrap();
+        fs::create_dir_all(root.path().join(".partial/top")).unwrap();
+        fs::write(root.path().join(".partial/poses.csv"), "half").unwrap();
+        let staging = Staging::open(root.path(), false).unwrap();
+        assert!(!staging.folder().join("poses.csv").exists());
+    }
+
+    #[test]
+    fn a_file_whose_writing_fails_leaves_the_old_one() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("table.csv");
+        fs::write(&path, "old").unwrap();
+        let failed = write_whole(&path, |file| {
+            file.write_all(b"half")?;
+            Err(io::Error::other("disk full"))
+        });
+        assert!(matches!(failed, Err(StagingError::Write { .. })));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,197 @@
+//! Each kind of bad input: exit code 2, a message that names the fault, the file and the line, and what to do; and
+//! nothing written.
+
+mod molecules;
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+
+struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("receptor.pdb"), molecules::receptor()).unwrap();
+        fs::write(folder.path().join("ligand.pdb"), molecules::ligand()).unwrap();
+        Self { folder }
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path().join(name), text).unwrap();
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = cargo_bin_cmd!("knotdock");
+        command.current_dir(self.path()).args(arguments);
+        command
+    }
+
+    /// Runs what must be refused, and returns the JSON error after checking that people are told the same.
+    fn refused(&self, arguments: &[&str]) -> Value {
+        let before = self.files();
+        let output = self.command(arguments).arg("--json").output().unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = &object["error"];
+        assert_eq!(
+            error.as_object().unwrap().keys().collect::<Vec<_>>(),
+            ["file", "line", "message", "remedy"]
+        );
+        let message = error["message"].as_str().unwrap();
+        let remedy = error["remedy"].as_str().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(told.contains(message) && told.contains(remedy), "{told}");
+        assert_eq!(self.files(), before, "a refused run must leave nothing");
+        error.clone()
+    }
+
+    fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(self.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn dock(&self, receptor: &str) -> Value {
+        self.refused(&["dock", receptor, "ligand.pdb"])
+    }
+}
+
+fn says(error: &Value, words: &str) {
+    let message = error["message"].as_str().unwrap();
+    assert!(message.contains(words), "{message}");
+}
+
+#[test]
+fn a_missing_file() {
+    let error = Place::new().dock("nowhere.pdb");
+    says(&error, "no such file");
+    assert_eq!(error["file"], "nowhere.pdb");
+    assert_eq!(error["line"], Value::Null);
+}
+
+#[test]
+fn no_atoms() {
+    let place = Place::new();
+    place.write("empty.pdb", "HEADER    NOTHING\nREMARK   1\nEND\n");
+    says(&place.dock("empty.pdb"), "no atoms");
+}
+
+#[test]
+fn an_empty_selection() {
+    let place = Place::new();
+    place.write(
+        "water.pdb",
+        "HETATM    1  O   HOH A   1       0.000   0.000   0.000  1.00 10.00           O\nEND\n",
+    );
+    says(&place.dock("water.pdb"), "no atom is left");
+}
+
+#[test]
+fn an_unknown_chain_lists_those_present() {
+    let error = Place::new().dock("receptor.pdb:A,X");
+    says(&error, "'X'");
+    says(&error, "A, B");
+    says(&Place::new().dock("receptor.pdb:"), "no chain");
+}
+
+#[test]
+fn coordinates_that_are_not_numbers_name_their_line() {
+    let place = Place::new();
+    for number in ["     nan", "     inf", "   x.yz1"] {
+        let text = molecules::receptor();
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        lines[6].replace_range(38..46, number);
+        place.write("broken.pdb", &lines.join("\n"));
+        let error = place.dock("broken.pdb");
+        assert_eq!(error["line"], 7);
+        assert_eq!(error["file"], "broken.pdb");
+    }
+}
+
+#[test]
+fn what_is_not_a_structure() {
+    let place = Place::new();
+    place.write("letter.pdb", "Dear all,\nthis is not a protein.\n");
+    says(&place.dock("letter.pdb"), "not a structure");
+    fs::create_dir(place.path().join("folder")).unwrap();
+    says(&place.dock("folder"), "directory");
+}
+
+#[test]
+fn a_directory_that_cannot_be_written_to() {
+    let place = Place::new();
+    // A file in the way stops even root, whom permissions do not.
+    place.write("file", "");
+    for directory in ["file", "file/run"] {
+        let error = place.refused(&["dock", "receptor.pdb", "ligand.pdb", "-o", directory]);
+        says(&error, "cannot write");
+    }
+}
+
+#[test]
+fn options_out_of_range() {
+    let place = Place::new();
+    for option in [
+        ["--rotations", "0"],
+        ["--angle", "0"],
+        ["--spacing", "-1"],
+        ["--offset", "nan"],
+        ["--effects", "gravity"],
+        ["--memory", "lots"],
+        ["--threads", "0"],
+        ["--native-receptor", "receptor.pdb"],
+        ["--from", "run.json"],
+        ["--no-such-option", "1"],
+    ] {
+        place.refused(&["dock", "receptor.pdb", "ligand.pdb", option[0], option[1]]);
+    }
+    place.refused(&["dock", "receptor.pdb"]);
+    place.refused(&["dock"]);
+    place.refused(&["fold", "receptor.pdb"]);
+    place.refused(&["complex", "run", "--rank", "0"]);
+}
+
+#[test]
+fn a_run_that_is_not_one() {
+    let place = Place::new();
+    place.write("run.json", "{\n \"schema\": 1,\n");
+    let error = place.refused(&["dock", "--from", "run.json"]);
+    says(&error, "run.json");
+    assert_eq!(error["line"], 3);
+    place.write("run.json", "{\"schema\":1}");
+    place.refused(&["dock", "--from", "run.json"]);
+    place.refused(&["complex", "nowhere", "--rank", "1"]);
+    place.refused(&["evaluate", "nowhere", "--native", "receptor.pdb"]);
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let place = Place::new();
+    for arguments in [
+        ["--version", "--json"],
+        ["--help", "--json"],
+        ["dock", "--help"],
+    ] {
+        let output = place.command(&arguments).output().unwrap();
+        assert!(output.status.success());
+        assert!(output.stderr.is_empty());
+    }
+}

@@ -1,0 +1,73 @@
+//! The example pair end to end, as the README's first command docks it.
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock::output::poses::PoseTable;
+use knotdock::search::DockOptions;
+use knotdock_scoring::engine::Plan;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
+use serde_json::Value;
+
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("structures/examples/1ppe_{name}.pdb"))
+}
+
+#[test]
+fn a_near_native_pose_is_among_the_first_ten() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("example");
+    let output = cargo_bin_cmd!("knotdock")
+        .arg("dock")
+        .args([example("receptor_unbound"), example("ligand_unbound")])
+        .arg("--native-receptor")
+        .arg(example("receptor_bound"))
+        .arg("--native-ligand")
+        .arg(example("ligand_bound"))
+        .arg("-o")
+        .arg(&run)
+        .args(["--json", "--quiet"])
+        .output()
+        .unwrap();
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let best = told["best"].as_array().unwrap();
+    assert_eq!(best.len(), 10);
+    assert!(
+        best.iter().any(|row| row["irmsd"].as_f64().unwrap() <= 2.5),
+        "{best:?}"
+    );
+
+    // The printed poses score what is printed: to 1e-6 of the score, by the pair sum alone.
+    let knots = |name: &str| {
+        let input = InputSpec::whole(example(name));
+        read(&input, &ReadOptions::default())
+            .unwrap()
+            .knots()
+            .unwrap()
+    };
+    let (receptor, ligand) = (knots("receptor_unbound"), knots("ligand_unbound"));
+    let plan = Plan::new(&receptor, &ligand, DockOptions::default().engine()).unwrap();
+    let scorer = ExactScorer::new(&plan.kernel, &receptor, &ligand).unwrap();
+    let path = run.join("poses.csv");
+    let table = PoseTable::read(&path).unwrap();
+    let mut scores = csv::Reader::from_path(&path).unwrap();
+    let column = scores
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|name| name == "score")
+        .unwrap();
+    let mut checked = 0;
+    for (row, record) in table.rows().iter().zip(scores.records()).step_by(7) {
+        let printed: f64 = record.unwrap()[column].parse().unwrap();
+        let again = scorer.score(&row.pose).score;
+        assert!(
+            (again - printed).abs() <= 1e-6 * printed.abs().max(1.0),
+            "rank {}: {again} is not {printed}",
+            row.rank
+        );
+        checked += 1;
+    }
+    assert!(checked >= 50);
+}

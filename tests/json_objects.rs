@@ -1,0 +1,218 @@
+//! The JSON object of each command, and who hears what on which stream.
+
+mod molecules;
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Output, Stdio};
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+
+fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("receptor.pdb"), molecules::receptor()).unwrap();
+    fs::write(folder.path().join("ligand.pdb"), molecules::ligand()).unwrap();
+    let native = molecules::receptor().replace("END\n", "")
+        + &molecules::ligand().replace(" ALA A", " ALA C");
+    fs::write(folder.path().join("native.pdb"), native).unwrap();
+    folder
+}
+
+fn run(folder: &Path, arguments: &str) -> Output {
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{arguments}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+fn object(output: &Output) -> Value {
+    let text = std::str::from_utf8(&output.stdout).unwrap();
+    assert_eq!(text.lines().count(), 1, "one object on one line");
+    serde_json::from_str(text).unwrap()
+}
+
+fn keys(object: &Value) -> Vec<&str> {
+    object
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect()
+}
+
+#[test]
+fn dock_tells_where_the_run_is_and_what_is_best() {
+    let folder = place();
+    let output = run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 40 --write-top 2 --native native.pdb -o run --json",
+    );
+    let object = object(&output);
+    assert_eq!(
+        keys(&object),
+        ["best", "complexes", "directory", "poses", "run"]
+    );
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("receptor.pdb"),
+        "words go to standard error"
+    );
+    let best = object["best"].as_array().unwrap();
+    assert!(!best.is_empty() && best.len() <= 10);
+    assert_eq!(best[0]["rank"], 1);
+    assert!(best[0]["score"].is_number() && best[0]["irmsd"].is_number());
+    assert!(best[0]["refined"].is_boolean() && best[0]["capri"].is_string());
+    let complexes = object["complexes"].as_array().unwrap();
+    assert_eq!(complexes.len(), 2);
+    for path in complexes {
+        assert!(folder.path().join(path.as_str().unwrap()).is_file());
+    }
+    let recorded: Value =
+        serde_json::from_slice(&fs::read(folder.path().join("run/run.json")).unwrap()).unwrap();
+    assert_eq!(object["run"], recorded);
+    assert_eq!(
+        keys(&recorded),
+        [
+            "chains",
+            "commit",
+            "cpu_features",
+            "effects",
+            "error",
+            "inputs",
+            "machine",
+            "match",
+            "options",
+            "plan",
+            "program",
+            "rank",
+            "results",
+            "schema",
+            "timing",
+            "version"
+        ]
+    );
+    assert!(
+        recorded["options"].get("threads").is_none(),
+        "threads are the machine's"
+    );
+    let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
+    assert!(
+        columns
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("slice_2r0,irmsd,lrmsd,fnat,dockq,capri")
+    );
+}
+
+#[test]
+fn evaluate_gives_every_pose_and_the_match() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
+    );
+    // The ligand where it stands in the native: nothing to measure but zeros and ones.
+    fs::write(
+        folder.path().join("truth.csv"),
+        "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n2,1,0,0,0,0,0,50\n",
+    )
+    .unwrap();
+    let told = object(&run(
+        folder.path(),
+        "evaluate truth.csv --receptor receptor.pdb --ligand ligand.pdb --native native.pdb --json",
+    ));
+    assert_eq!(keys(&told), ["match", "poses"]);
+    let poses = told["poses"].as_array().unwrap();
+    assert_eq!(
+        keys(&poses[0]),
+        ["capri", "dockq", "fnat", "irmsd", "lrmsd", "rank"]
+    );
+    assert!(poses[0]["irmsd"].as_f64().unwrap() < 1e-3);
+    assert_eq!(poses[0]["fnat"], 1.0);
+    assert_eq!(poses[0]["capri"], "high");
+    assert!((poses[1]["lrmsd"].as_f64().unwrap() - 50.0).abs() < 1e-3);
+    assert_eq!(poses[1]["capri"], "incorrect");
+
+    // From a run's directory, and into a table.
+    let of_run = object(&run(
+        folder.path(),
+        "evaluate run --native native.pdb --json -o measured.csv",
+    ));
+    let table = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
+    assert_eq!(
+        of_run["poses"].as_array().unwrap().len(),
+        table.lines().count() - 1
+    );
+    let measured = fs::read_to_string(folder.path().join("measured.csv")).unwrap();
+    for (before, after) in table.lines().zip(measured.lines()) {
+        assert!(
+            after.starts_with(before),
+            "the run's own columns stay as they are"
+        );
+        assert_eq!(after.split(',').count(), before.split(',').count() + 5);
+    }
+}
+
+#[test]
+fn complex_lists_files_by_rank() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
+    );
+    let told = object(&run(folder.path(), "complex run --rank 3,1 --json"));
+    assert_eq!(keys(&told), ["chains", "files"]);
+    let files = told["files"].as_array().unwrap();
+    assert_eq!(
+        files
+            .iter()
+            .map(|file| file["rank"].as_u64().unwrap())
+            .collect::<Vec<_>>(),
+        [3, 1]
+    );
+    for file in files {
+        assert!(folder.path().join(file["path"].as_str().unwrap()).is_file());
+    }
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let folder = place();
+    let output = run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 20 -o run --quiet",
+    );
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+}
+
+#[test]
+fn a_reader_that_goes_away_does_not_stop_the_run() {
+    let folder = place();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("knotdock"))
+        .current_dir(folder.path())
+        .args("dock receptor.pdb ligand.pdb --rotations 20 -o run".split_whitespace())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let mut told = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut told)
+        .unwrap();
+    assert!(child.wait().unwrap().success());
+    assert!(!told.contains("panic"), "{told}");
+    assert!(folder.path().join("run/run.json").is_file());
+}
