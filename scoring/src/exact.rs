@@ -33,15 +33,40 @@ pub struct PoseGradient {
 /// A pair of knot sets prepared for exact scoring.
 pub struct ExactScorer {
     kernel: RankingKernel,
-    /// Tables of the distinct radius sums, and the table of each (receptor class, ligand class).
+    /// Tables of the distinct radius sums.
     tables: Vec<Table<4>>,
-    table_of: Vec<Vec<usize>>,
+    /// [ligand class][receptor class].
+    pairs: Vec<Vec<RadiusPair>>,
     receptor: Cells,
-    receptor_radii: Vec<f64>,
     receptor_center: Vector3<f64>,
     ligand: Vec<LigandKnot>,
-    ligand_radii: Vec<f64>,
     ligand_center: Vector3<f64>,
+}
+
+/// Receptor knots collected per turn of the inner loop.
+const NEAR: usize = 256;
+
+/// Squared distances and indices of receptor knots within reach. Whether a knot is within reach is a coin toss that no branch
+/// predictor wins, so candidates are stored always and counted only when near.
+struct Near {
+    pairs: [(f64, u32); NEAR],
+    count: usize,
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Self {
+            pairs: [(0.0, 0); NEAR],
+            count: 0,
+        }
+    }
+}
+
+/// What two radii share: their sum in Å and the table that serves it.
+#[derive(Clone, Copy)]
+struct RadiusPair {
+    radius_sum: f64,
+    table: usize,
 }
 
 #[derive(Clone, Copy)]
@@ -179,12 +204,15 @@ impl ExactScorer {
             .collect();
         sums.sort_by(f64::total_cmp);
         sums.dedup();
-        let table_of = receptor_radii
+        let pairs = ligand_radii
             .iter()
-            .map(|r| {
-                ligand_radii
+            .map(|s| {
+                receptor_radii
                     .iter()
-                    .map(|s| sums.partition_point(|&sum| sum < r + s))
+                    .map(|r| RadiusPair {
+                        radius_sum: r + s,
+                        table: sums.partition_point(|&sum| sum < r + s),
+                    })
                     .collect()
             })
             .collect();
@@ -196,9 +224,8 @@ impl ExactScorer {
         let weights: Vec<f64> = receptor.weights.iter().map(|c| c.re).collect();
         Ok(Self {
             tables: sums.iter().map(|&sum| kernel.distance_table(sum)).collect(),
-            table_of,
+            pairs,
             receptor: Cells::new(&points, &weights, &receptor_class, kernel.reach() / 4.0),
-            receptor_radii,
             receptor_center,
             ligand: (0..ligand.len())
                 .map(|j| LigandKnot {
@@ -207,7 +234,6 @@ impl ExactScorer {
                     class: ligand_class[j],
                 })
                 .collect(),
-            ligand_radii,
             ligand_center,
             kernel: kernel.clone(),
         })
@@ -233,8 +259,17 @@ impl ExactScorer {
 
     /// Score, slices and unfiltered score of one pose.
     pub fn score(&self, pose: &Pose) -> ExactScore {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.score_inline(pose),
+        )
+    }
+
+    #[inline(always)]
+    fn score_inline(&self, pose: &Pose) -> ExactScore {
         let (rotation, center) = self.placed(pose);
         let reach = self.kernel.reach();
+        let square_reach = reach * reach;
         let mut sums = [0.0; 4];
         let mut plain = [0.0; 3];
         let cone = self.kernel.cone();
@@ -242,32 +277,50 @@ impl ExactScorer {
         for knot in &self.ligand {
             let x = rotation * knot.position + center;
             let mut own = [0.0; 4];
-            self.receptor.runs(&x, reach, |run| {
-                for i in run {
-                    let p = &self.receptor.positions[i];
-                    let (dx, dy, dz) = (x[0] - p[0], x[1] - p[1], x[2] - p[2]);
-                    let square = dx * dx + dy * dy + dz * dz;
-                    if square >= reach * reach {
-                        continue;
-                    }
+            let mut own_plain = [0.0; 3];
+            let tables = &self.pairs[knot.class];
+            let mut near = Near::default();
+            let mut flush = |near: &mut Near| {
+                for &(square, index) in &near.pairs[..near.count] {
+                    let index = index as usize;
                     let distance = square.sqrt();
-                    let class = self.receptor.classes[i] as usize;
-                    let weight = self.receptor.weights[i];
-                    let values = self.tables[self.table_of[class][knot.class]].value(distance);
+                    let weight = self.receptor.weights[index];
+                    let pair = &tables[self.receptor.classes[index] as usize];
+                    let values = self.tables[pair.table].value(distance);
                     for lane in 0..4 {
                         own[lane] += weight * values[lane];
                     }
-                    let sum = self.receptor_radii[class] + self.ligand_radii[knot.class];
-                    if distance < sum + offsets[2] {
+                    if distance < pair.radius_sum + offsets[2] {
                         for (slice, offset) in offsets.into_iter().enumerate() {
-                            plain[slice] +=
-                                weight * knot.weight * cone.value(distance, sum + offset);
+                            let sigma = pair.radius_sum + offset;
+                            if distance < sigma {
+                                own_plain[slice] += weight * cone.value(distance, sigma);
+                            }
                         }
                     }
                 }
+                near.count = 0;
+            };
+            self.receptor.runs(&x, reach, |run| {
+                for start in run.clone().step_by(NEAR / 2) {
+                    let end = run.end.min(start + NEAR / 2);
+                    for (p, index) in self.receptor.positions[start..end].iter().zip(start..) {
+                        let (dx, dy, dz) = (x[0] - p[0], x[1] - p[1], x[2] - p[2]);
+                        let square = dx * dx + dy * dy + dz * dz;
+                        near.pairs[near.count] = (square, index as u32);
+                        near.count += usize::from(square < square_reach);
+                    }
+                    if near.count >= NEAR / 2 {
+                        flush(&mut near);
+                    }
+                }
             });
+            flush(&mut near);
             for lane in 0..4 {
                 sums[lane] += knot.weight * own[lane];
+            }
+            for slice in 0..3 {
+                plain[slice] += knot.weight * own_plain[slice];
             }
         }
         let weights = self.kernel.options().slice_weights();
@@ -301,7 +354,7 @@ impl ExactScorer {
                     let distance = square.sqrt();
                     let class = self.receptor.classes[i] as usize;
                     let weight = self.receptor.weights[i] * knot.weight;
-                    let table = &self.tables[self.table_of[class][knot.class]];
+                    let table = &self.tables[self.pairs[knot.class][class].table];
                     let (value, slope) = table.value_and_derivative(distance);
                     score += weight * value[3];
                     // Coincident knots: the kernel is even and smooth there, so its force is zero.

@@ -24,6 +24,9 @@ const WIDTH: usize = 6;
 /// Lanes of the innermost loop, at least `WIDTH`.
 const LANES: usize = 8;
 
+/// A ligand knot relative to the ligand's centre (Å), with its weight for every grid that it sees.
+type FieldKnot = (Vector3<f64>, Vec<(usize, f64)>);
+
 /// Sampled potentials of one receptor for one ligand.
 pub struct ReceptorField {
     size: [usize; 3],
@@ -36,8 +39,7 @@ pub struct ReceptorField {
     limit: [f64; 3],
     kernel: SpreadingKernel<f32>,
     grids: Vec<Vec<f32>>,
-    /// Ligand knots relative to the ligand's centre (Å), with their weights for every grid they see.
-    knots: Vec<(Vector3<f64>, Vec<(usize, f64)>)>,
+    knots: Vec<FieldKnot>,
     receptor_center: Vector3<f64>,
     ligand_center: Vector3<f64>,
 }

@@ -467,7 +467,7 @@ fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
 #[inline(always)]
 fn multiply_add<T: Real>(sum: &mut [Complex<T>], a: &[Complex<T>], b: &[Complex<T>]) {
     for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
-        sum.re = sum.re + (a.re * b.re + a.im * b.im);
-        sum.im = sum.im + (a.im * b.re - a.re * b.im);
+        sum.re += a.re * b.re + a.im * b.im;
+        sum.im += a.im * b.re - a.re * b.im;
     }
 }

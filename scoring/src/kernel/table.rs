@@ -94,15 +94,13 @@ fn interpolation() -> ([f64; TERMS], [[f64; TERMS]; TERMS]) {
     for node in 0..TERMS {
         let mut polynomial = [0.0; TERMS];
         polynomial[0] = 1.0;
-        let mut degree = 0;
-        for other in (0..TERMS).filter(|&other| other != node) {
+        for (degree, other) in (0..TERMS).filter(|&other| other != node).enumerate() {
             let scale = 1.0 / (nodes[node] - nodes[other]);
             for power in (0..=degree).rev() {
                 let value = polynomial[power] * scale;
                 polynomial[power + 1] += value;
                 polynomial[power] = -nodes[other] * value;
             }
-            degree += 1;
         }
         for power in 0..TERMS {
             inverse[power][node] = polynomial[power];

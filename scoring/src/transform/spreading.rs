@@ -33,6 +33,7 @@ impl<T: Real> SpreadingKernel<T> {
             .map(|i| (PI * (i as f64 + 0.5) / terms as f64).cos())
             .collect();
         let mut coefficients = vec![[T::zero(); MAX_WIDTH]; terms];
+        #[allow(clippy::needless_range_loop)] // `point` is the lane of every row
         for point in 0..width {
             let values: Vec<f64> = nodes
                 .iter()
