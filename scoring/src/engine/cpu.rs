@@ -12,7 +12,6 @@ use crate::transform::nfft::{Forward, ForwardWorkspace};
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
 use num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner};
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
@@ -35,7 +34,7 @@ pub struct CpuEngine<T: Real> {
     origin: [f64; 3],
     inverse_x: Arc<dyn Fft<T>>,
     inverse_y: Arc<dyn Fft<T>>,
-    inverse_z: Arc<dyn ComplexToReal<T>>,
+    inverse_z: Arc<dyn Fft<T>>,
     /// Singular values of the lifted axis in use, as shares of the largest.
     singular: Vec<f64>,
 }
@@ -49,7 +48,7 @@ pub struct Workspace<T> {
     scratch: Vec<Complex<T>>,
     /// [kz in block][x][y].
     planes: Vec<Complex<T>>,
-    /// [x][y][kz].
+    /// [x][pair of y][kz]: two rows' spectra as one, A + iB.
     rows: Vec<Complex<T>>,
     /// Scores, (nx, ny, nz) row-major.
     pub grid: Vec<T>,
@@ -248,7 +247,7 @@ impl<T: Real> CpuEngine<T> {
             origin,
             inverse_x: planner.plan_fft_inverse(modes.size[0]),
             inverse_y: planner.plan_fft_inverse(modes.size[1]),
-            inverse_z: RealFftPlanner::new().plan_fft_inverse(modes.size[2]),
+            inverse_z: planner.plan_fft_inverse(modes.size[2]),
             singular: singular.iter().map(|value| value / largest).collect(),
             plan,
         }
@@ -277,7 +276,7 @@ impl<T: Real> CpuEngine<T> {
             .inverse_x
             .get_inplace_scratch_len()
             .max(self.inverse_y.get_inplace_scratch_len())
-            .max(self.inverse_z.get_scratch_len());
+            .max(self.inverse_z.get_inplace_scratch_len());
         Workspace {
             forward: self.forward.workspace(),
             points: vec![[0.0; 3]; self.ligand.len()],
@@ -285,7 +284,7 @@ impl<T: Real> CpuEngine<T> {
             product: vec![zero; COLUMNS * nx],
             scratch: vec![zero; scratch],
             planes: vec![zero; PLANES * nx * ny],
-            rows: vec![zero; nx * ny * (nz / 2 + 1)],
+            rows: vec![zero; nx * ny / 2 * nz],
             grid: vec![T::zero(); nx * ny * nz],
             row_best: vec![T::zero(); nx * ny],
         }
@@ -297,7 +296,7 @@ impl<T: Real> CpuEngine<T> {
         let forward = ligand_forward::<T>(plan, rank);
         let reals = 2 * COLUMNS * rank * forward.line_length()
             + 2 * PLANES * nx * ny
-            + nx * ny * (nz + 2)
+            + nx * ny * nz
             + nx * ny * (nz + 1);
         forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
@@ -414,45 +413,93 @@ impl<T: Real> CpuEngine<T> {
                         &mut work.product[..(end - start) * nx],
                         &mut work.scratch,
                     );
-                    for (index, column) in modes.columns[start..end].iter().enumerate() {
-                        let y = place(column.ky, ny);
-                        let product = &work.product[index * nx..(index + 1) * nx];
-                        for (row, value) in plane.chunks_exact_mut(ny).zip(product) {
-                            row[y] = *value;
+                    // Columns side by side in y make each write a run.
+                    let first = place(modes.columns[start].ky, ny);
+                    let count = end - start;
+                    if place(modes.columns[end - 1].ky, ny) == first + count - 1 {
+                        for (x, row) in plane.chunks_exact_mut(ny).enumerate() {
+                            for (index, value) in row[first..first + count].iter_mut().enumerate() {
+                                *value = work.product[index * nx + x];
+                            }
+                        }
+                    } else {
+                        for (index, column) in modes.columns[start..end].iter().enumerate() {
+                            let y = place(column.ky, ny);
+                            let product = &work.product[index * nx..(index + 1) * nx];
+                            for (row, value) in plane.chunks_exact_mut(ny).zip(product) {
+                                row[y] = *value;
+                            }
                         }
                     }
                 }
                 self.inverse_y
                     .process_with_scratch(plane, &mut work.scratch);
             }
-            for (row, values) in work.rows.chunks_exact_mut(half).enumerate() {
-                for (level, value) in values[block..block + depth].iter_mut().enumerate() {
-                    *value = work.planes[level * nx * ny + row];
+            for (pair, row) in work.rows.chunks_exact_mut(nz).enumerate() {
+                for level in 0..depth {
+                    let at = level * nx * ny + 2 * pair;
+                    let (a, b) = (work.planes[at], work.planes[at + 1]);
+                    let kz = block + level;
+                    // A + iB at kz, and A* + iB* at -kz; the mean of a real row is real, and the Nyquist plane is empty.
+                    if kz == 0 {
+                        row[0] = Complex::new(a.re, b.re);
+                    } else {
+                        row[kz] = Complex::new(a.re - b.im, a.im + b.re);
+                        row[nz - kz] = Complex::new(a.re + b.im, b.re - a.im);
+                    }
                 }
             }
         }
     }
 
-    /// Rows: complex to real along z, and the best of each row.
+    /// Rows: complex to real along z, two at a time, and the best of each row.
     #[inline(always)]
     fn rows_to_grid(&self, work: &mut Workspace<T>) {
-        let nz = self.plan.modes.size[2];
-        for ((values, row), best) in work
+        let [_, ny, nz] = self.plan.modes.size;
+        let planes = work
             .rows
-            .chunks_exact_mut(nz / 2 + 1)
-            .zip(work.grid.chunks_exact_mut(nz))
-            .zip(&mut work.row_best)
-        {
-            values[0].im = T::zero();
-            // Lengths are those of the plan, and the ends are real: the transform cannot fail.
-            let _ = self
-                .inverse_z
-                .process_with_scratch(values, row, &mut work.scratch);
-            *best = row
-                .iter()
-                .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a });
+            .chunks_exact_mut(ny / 2 * nz)
+            .zip(work.grid.chunks_exact_mut(ny * nz))
+            .zip(work.row_best.chunks_exact_mut(ny));
+        for ((pairs, grid), best) in planes {
+            self.inverse_z
+                .process_with_scratch(pairs, &mut work.scratch);
+            for ((pair, rows), best) in pairs
+                .chunks_exact(nz)
+                .zip(grid.chunks_exact_mut(2 * nz))
+                .zip(best.chunks_exact_mut(2))
+            {
+                let (even, odd) = rows.split_at_mut(nz);
+                for ((value, even), odd) in pair.iter().zip(even.iter_mut()).zip(odd.iter_mut()) {
+                    *even = value.re;
+                    *odd = value.im;
+                }
+                best[0] = largest(even);
+                best[1] = largest(odd);
+            }
         }
     }
+}
+
+/// Largest of some values, in lanes so that it vectorises.
+#[inline(always)]
+fn largest<T: Real>(values: &[T]) -> T {
+    let mut lanes = [T::neg_infinity(); 16];
+    let chunks = values.chunks_exact(16);
+    let rest = chunks.remainder();
+    for chunk in chunks {
+        for lane in 0..16 {
+            lanes[lane] = if chunk[lane] > lanes[lane] {
+                chunk[lane]
+            } else {
+                lanes[lane]
+            };
+        }
+    }
+    lanes
+        .iter()
+        .chain(rest)
+        .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
 }
 
 /// The transform of the ligand, which may lie anyhow within its radius.

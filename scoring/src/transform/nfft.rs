@@ -9,7 +9,6 @@ use super::Real;
 use super::modes::{ModeSet, place};
 use super::spreading::{MAX_WIDTH, SpreadingKernel};
 use num_complex::Complex;
-use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
@@ -25,15 +24,15 @@ pub struct Forward<T: Real> {
     kernel: SpreadingKernel<T>,
     along_x: Arc<dyn Fft<T>>,
     along_y: Arc<dyn Fft<T>>,
-    along_z: Arc<dyn RealToComplex<T>>,
+    along_z: Arc<dyn Fft<T>>,
 }
 
 /// Buffers of one transform in flight.
 pub struct ForwardWorkspace<T> {
     /// [field][x][y][z], z padded by `MAX_WIDTH`.
     block: Vec<T>,
-    row: Vec<T>,
-    row_spectrum: Vec<Complex<T>>,
+    /// [pair of rows][z]: two real rows as one complex row.
+    pairs: Vec<Complex<T>>,
     /// [x in group][kz][y].
     lines: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
@@ -56,8 +55,9 @@ impl<T: Real> Forward<T> {
             .fold(f64::INFINITY, f64::min);
         let kernel = SpreadingKernel::new(width, oversampling);
         let block = [0, 1, 2].map(|axis| {
+            // Even, so that rows along z pair up along y.
             let points = 2 * extent[axis].ceil() as usize + kernel.width() + 2;
-            points.min(fine[axis])
+            points.next_multiple_of(2).min(fine[axis])
         });
         let mut planner = FftPlanner::new();
         Self {
@@ -67,7 +67,7 @@ impl<T: Real> Forward<T> {
             kernel,
             along_x: planner.plan_fft_forward(fine[0]),
             along_y: planner.plan_fft_forward(fine[1]),
-            along_z: RealFftPlanner::new().plan_fft_forward(fine[2]),
+            along_z: planner.plan_fft_forward(fine[2]),
             modes,
         }
     }
@@ -106,11 +106,10 @@ impl<T: Real> Forward<T> {
             .along_x
             .get_inplace_scratch_len()
             .max(self.along_y.get_inplace_scratch_len())
-            .max(self.along_z.get_scratch_len());
+            .max(self.along_z.get_inplace_scratch_len());
         ForwardWorkspace {
             block: vec![T::zero(); self.fields * bx * by * (bz + MAX_WIDTH)],
-            row: self.along_z.make_input_vec(),
-            row_spectrum: self.along_z.make_output_vec(),
+            pairs: vec![zero; by / 2 * self.fine[2]],
             lines: vec![zero; GROUP * planes * self.fine[1]],
             scratch: vec![zero; scratch],
             planes: vec![zero; self.modes.columns.len() * self.fields * bx],
@@ -189,26 +188,34 @@ impl<T: Real> Forward<T> {
         let [bx, by, bz] = self.block;
         let stride = bz + MAX_WIDTH;
         let count = self.modes.planes.len();
-        let my = self.fine[1];
+        let [_, my, mz] = self.fine;
         let zero = Complex::new(T::zero(), T::zero());
+        let half = T::of(0.5);
         for field in 0..self.fields {
             for group in (0..bx).step_by(GROUP) {
                 let members = GROUP.min(bx - group);
                 for member in 0..members {
                     let lines = &mut work.lines[member * count * my..(member + 1) * count * my];
                     let plane = (field * bx + group + member) * by;
-                    for y in 0..by {
-                        let row = &work.block[(plane + y) * stride..(plane + y) * stride + bz];
-                        work.row[..bz].copy_from_slice(row);
-                        work.row[bz..].fill(T::zero());
-                        // Lengths are those of the plan: the transform cannot fail.
-                        let _ = self.along_z.process_with_scratch(
-                            &mut work.row,
-                            &mut work.row_spectrum,
-                            &mut work.scratch,
-                        );
-                        for (kz, value) in work.row_spectrum[..count].iter().enumerate() {
-                            lines[kz * my + y] = *value;
+                    for (pair, out) in work.pairs.chunks_exact_mut(mz).enumerate() {
+                        let start = (plane + 2 * pair) * stride;
+                        let (even, odd) = (&work.block[start..], &work.block[start + stride..]);
+                        for ((value, &re), &im) in out[..bz].iter_mut().zip(even).zip(odd) {
+                            *value = Complex::new(re, im);
+                        }
+                        out[bz..].fill(zero);
+                    }
+                    self.along_z
+                        .process_with_scratch(&mut work.pairs, &mut work.scratch);
+                    // X = A + iB with A, B Hermitian: A = (X(k) + X*(-k)) / 2, B = (X(k) - X*(-k)) / 2i.
+                    for (pair, out) in work.pairs.chunks_exact(mz).enumerate() {
+                        for kz in 0..count {
+                            let (x, mirror) = (out[kz], out[(mz - kz) % mz]);
+                            let line = &mut lines[kz * my + 2 * pair..kz * my + 2 * pair + 2];
+                            line[0] =
+                                Complex::new(half * (x.re + mirror.re), half * (x.im - mirror.im));
+                            line[1] =
+                                Complex::new(half * (x.im + mirror.im), half * (mirror.re - x.re));
                         }
                     }
                     for kz in 0..count {
