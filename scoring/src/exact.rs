@@ -26,7 +26,7 @@ pub struct ExactScore {
 pub struct PoseGradient {
     /// dG / dt.
     pub force: Vector3<f64>,
-    /// dG / d omega, for R -> exp([omega]x) R about the ligand's centre.
+    /// dG / d omega, for R -> `exp([omega]x)` R about the ligand's centre.
     pub torque: Vector3<f64>,
 }
 

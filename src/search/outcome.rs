@@ -10,7 +10,7 @@ pub struct RankedPose {
     pub pose: Pose,
     /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
     pub score: f64,
-    /// 1-based cluster number, best cluster first; `None` when clustering is off.
+    /// 1-based cluster number, best cluster first.
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,

@@ -56,7 +56,7 @@ pub struct Workspace<T> {
     pub row_best: Vec<T>,
 }
 
-/// The receptor's side, uncompressed: H[basis function][mode], and the ligand's basis values.
+/// The receptor's side, uncompressed: `H[basis function][mode]`, and the ligand's basis values.
 pub struct Folded<T> {
     spectra: Vec<Vec<Complex<T>>>,
     /// d_j v_b(s_j): (knots, basis functions).
@@ -121,7 +121,7 @@ impl<T: Real> Folded<T> {
         }
     }
 
-    /// H[basis function][mode], window and volume not yet divided out on the ligand's side.
+    /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
     pub fn spectra(&self) -> &[Vec<Complex<T>>] {
         &self.spectra
     }

@@ -125,7 +125,7 @@ impl<T: Real> Forward<T> {
                 + 2 * self.modes.columns.len() * self.fields * bx)
     }
 
-    /// Spreads knots onto the block: `points` in Å relative to the block's centre, `weights` as [knot][field].
+    /// Spreads knots onto the block: `points` in Å relative to the block's centre, `weights` as `[knot][field]`.
     ///
     /// Knots farther from the centre than the planned extent are not allowed (debug builds panic).
     #[inline(always)]
@@ -236,7 +236,7 @@ impl<T: Real> Forward<T> {
         }
     }
 
-    /// Transforms columns `range` along x into `lines`, laid out [column][field][kx place in 0..fine_x].
+    /// Transforms columns `range` along x into `lines`, laid out `[column][field][kx place in 0..fine_x]`.
     #[inline(always)]
     pub fn columns(
         &self,
@@ -268,7 +268,7 @@ impl<T: Real> Forward<T> {
         self.fields
     }
 
-    /// The whole transform with the window divided out, for one set-up call: `output` is [field][mode].
+    /// The whole transform with the window divided out, for one set-up call: `output` is `[field][mode]`.
     pub fn transform(
         &self,
         points: &[[f64; 3]],
