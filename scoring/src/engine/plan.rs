@@ -151,7 +151,7 @@ impl Plan {
                 } else {
                     (0..100)
                         .map(|i| stop * (1.0 + 0.02 * f64::from(i)))
-                        .find(|&f| kernel.leak_beyond(widest, f) <= 3.0 * tolerance * rim)
+                        .find(|&f| kernel.leak_beyond(widest, f) <= tolerance * rim)
                         .unwrap_or(2.0 * stop)
                 };
                 0.5 / cut

@@ -1,0 +1,107 @@
+//! Time of one rotation of the example pair beside bare Fourier transforms of the planned sizes, in the same run.
+//!
+//! `cargo bench --bench rotation` prints, as medians over rotations: each stage; the whole rotation; and the stock transforms it
+//! is held against: q forward real transforms of the fine grid and one inverse of the mode grid, unpruned, out of place, by
+//! realfft and rustfft with the `transpose` crate between axes.
+
+use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::{CpuEngine, Plan};
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
+use num_complex::Complex32;
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+use std::error::Error;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+const ROTATIONS: usize = 101;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    let load = |name: &str| -> Result<_, Box<dyn Error>> {
+        let spec = InputSpec::whole(folder.join(name));
+        Ok(read(&spec, &ReadOptions::default())?.knots()?)
+    };
+    let receptor = load("1ppe_receptor_unbound.pdb")?;
+    let ligand = load("1ppe_ligand_unbound.pdb")?;
+    let options = knotdock::search::DockOptions::default().engine();
+    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
+    let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);
+    for rank in [2, 3] {
+        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
+        let mut work = engine.workspace();
+        let mut stages: [Vec<f64>; 5] = Default::default();
+        for rotation in knotdock::search::rotations::rotation_set(ROTATIONS) {
+            let seconds = engine.stage_seconds(&rotation, &mut work);
+            for (times, value) in stages.iter_mut().zip(seconds) {
+                times.push(value);
+            }
+            stages[4].push(seconds.iter().sum());
+        }
+        let [spread, planes, columns, rows, whole] = stages.map(median);
+        let forward = stock(plan.fine);
+        let inverse = stock(plan.size());
+        let bare = rank as f64 * forward + inverse;
+        println!(
+            "rank {rank}: grid {:?}, fine grid {:?}, {} modes",
+            plan.size(),
+            plan.fine,
+            plan.modes.count
+        );
+        println!(
+            "  ms a rotation: spreading {:.3}, forward z and y {:.3}, x with product and inverse x and y {:.3}, inverse z {:.3}; whole {:.3}",
+            1e3 * spread,
+            1e3 * planes,
+            1e3 * columns,
+            1e3 * rows,
+            1e3 * whole
+        );
+        println!(
+            "  stock real transforms: {rank} x {:.3} + {:.3} = {:.3} ms; ratio {:.2}, without spreading {:.2}",
+            1e3 * forward,
+            1e3 * inverse,
+            1e3 * bare,
+            whole / bare,
+            (whole - spread) / bare
+        );
+    }
+    Ok(())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Median seconds of one three-dimensional real transform, unpruned and out of place.
+fn stock([nx, ny, nz]: [usize; 3]) -> f64 {
+    let half = nz / 2 + 1;
+    let along_z = RealFftPlanner::<f32>::new().plan_fft_forward(nz);
+    let mut planner = FftPlanner::<f32>::new();
+    let (along_y, along_x) = (planner.plan_fft_forward(ny), planner.plan_fft_forward(nx));
+    let mut input: Vec<f32> = (0..nx * ny * nz).map(|i| (i % 17) as f32).collect();
+    let zero = Complex32::default();
+    let (mut a, mut b) = (vec![zero; nx * ny * half], vec![zero; nx * ny * half]);
+    let mut scratch = vec![zero; 4 * nx.max(ny).max(nz)];
+    let mut row = along_z.make_output_vec();
+    let times = (0..ROTATIONS)
+        .map(|_| {
+            let start = Instant::now();
+            for (values, out) in input.chunks_exact_mut(nz).zip(a.chunks_exact_mut(half)) {
+                let _ = along_z.process_with_scratch(values, &mut row, &mut scratch);
+                out.copy_from_slice(&row);
+            }
+            // (x, y, z) -> (x, z, y) plane by plane, then (x, zy) -> (zy, x).
+            for (from, to) in a.chunks_exact(ny * half).zip(b.chunks_exact_mut(ny * half)) {
+                transpose::transpose(from, to, half, ny);
+            }
+            along_y.process_with_scratch(&mut b, &mut scratch);
+            transpose::transpose(&b, &mut a, ny * half, nx);
+            along_x.process_with_scratch(&mut a, &mut scratch);
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    median(times)
+}

@@ -1,0 +1,216 @@
+//! The fast path against the exact pair sum and the 4D direct transform, over swept tolerances.
+//!
+//! Errors of G are relative to the best exact score, errors of a slice to its largest value.
+
+use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::Real;
+use knotdock_scoring::transform::ndft::ndft_4d;
+use knotdock_structures::Knots;
+use nalgebra::Vector3;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Knots strewn over a ball, radii cycling through `radii`, by a fixed linear congruence.
+fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
+    let mut state = seed;
+    let mut next = move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let mut centers = Vec::new();
+    while centers.len() < count {
+        let p: [f64; 3] = std::array::from_fn(|_| 2.0 * size * next());
+        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
+            centers.push(p);
+        }
+    }
+    let radii = (0..count).map(|i| radii[i % radii.len()]).collect();
+    Knots::new(centers, radii).unwrap()
+}
+
+fn options(tolerance: f64) -> EngineOptions {
+    EngineOptions {
+        kernel: KernelOptions {
+            lambda: 10.0,
+            offset: 2.0,
+            alpha: 2.0,
+            resolution: 4.0,
+            pass_length: 8.0,
+            trim: Trim::FlatTop,
+        },
+        spacing: None,
+        tolerance,
+        rank: None,
+    }
+}
+
+const RADII: [f64; 3] = [1.5, 1.7, 1.9];
+
+/// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
+fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Fold) -> f64 {
+    let plan = Arc::new(Plan::new(a, b, options(tolerance)).unwrap());
+    let scorer = ExactScorer::new(&plan.kernel, a, b).unwrap();
+    let folded = Folded::<T>::new(&plan, a, b, fold);
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let mut work = engine.workspace();
+    let rotation = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
+    engine.correlate(&rotation, &mut work);
+    let mut order: Vec<usize> = (0..work.grid.len()).collect();
+    order.sort_by(|&x, &y| work.grid[y].partial_cmp(&work.grid[x]).unwrap());
+    let sweep = order.iter().copied().step_by(order.len() / 150);
+    let (mut error, mut best) = (0.0f64, 0.0f64);
+    for voxel in order[..100].iter().copied().chain(sweep) {
+        let place = plan.receptor_center + engine.position(voxel);
+        let exact = scorer.score(&Pose::about(rotation, plan.ligand_center, place));
+        let value = match fold {
+            Fold::Score => exact.score,
+            Fold::Slice(slice) => exact.slices[slice],
+        };
+        error = error.max((value - work.grid[voxel].wide()).abs());
+        best = best.max(value);
+    }
+    error / best
+}
+
+#[test]
+fn scores_meet_the_tolerance_asked() {
+    let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
+        let error = worst::<f64>(&a, &b, tolerance, Fold::Score);
+        println!("f64 {tolerance:e}: {error:.2e}");
+        assert!(error <= tolerance, "f64 at {tolerance:e}: {error:e}");
+    }
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let error = worst::<f32>(&a, &b, tolerance, Fold::Score);
+        println!("f32 {tolerance:e}: {error:.2e}");
+        assert!(error <= tolerance, "f32 at {tolerance:e}: {error:e}");
+    }
+}
+
+#[test]
+fn slices_meet_the_tolerance_asked() {
+    let (a, b) = (cloud(160, 12.0, &RADII, 3), cloud(60, 8.0, &RADII, 4));
+    for tolerance in [1e-2, 1e-4, 1e-6] {
+        for slice in 0..3 {
+            let error = worst::<f64>(&a, &b, tolerance, Fold::Slice(slice));
+            assert!(
+                error <= tolerance,
+                "slice {slice} at {tolerance:e}: {error:e}"
+            );
+        }
+    }
+}
+
+/// Every knot its own radius: the lifted modes themselves carry the radii.
+#[test]
+fn continuous_radii_go_through_the_lifted_modes() {
+    let many: Vec<f64> = (0..90).map(|i| 1.5 + 0.4 * f64::from(i) / 89.0).collect();
+    let (a, b) = (cloud(90, 10.0, &many, 5), cloud(40, 6.0, &many, 6));
+    for tolerance in [1e-2, 1e-3] {
+        let error = worst::<f64>(&a, &b, tolerance, Fold::Score);
+        assert!(error <= tolerance, "at {tolerance:e}: {error:e}");
+    }
+}
+
+/// G^(w) by the uncompressed 4D direct transform of design: sum_k K C rhoA conj(rhoB), and G at poses by summing its modes.
+#[test]
+fn grid_equals_the_4d_direct_transform() {
+    let (a, b) = (cloud(40, 6.0, &RADII, 7), cloud(20, 4.0, &RADII, 8));
+    let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
+    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let mut work = engine.workspace();
+    let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
+    engine.correlate(&rotation, &mut work);
+    let centred = |knots: &Knots, center: Vector3<f64>| -> Vec<[f64; 3]> {
+        let relative = knots.centers.iter().map(|&x| Vector3::from(x) - center);
+        relative.map(|x| x.into()).collect()
+    };
+    let x = centred(&a, plan.receptor_center);
+    let y: Vec<[f64; 3]> = centred(&b, plan.ligand_center)
+        .into_iter()
+        .map(|y| (rotation * Vector3::from(y)).into())
+        .collect();
+    // The r-mirrored ligand: radii enter with the other sign.
+    let mirrored: Vec<f64> = b.radii.iter().map(|s| -s).collect();
+    let modes = plan.axis.modes() as i64;
+    let mut spectrum = Vec::new();
+    plan.modes.for_each(|_, w, multiplicity| {
+        let length = w.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut sum = Complex64::new(0.0, 0.0);
+        for k in -modes..=modes {
+            let eta = plan.axis.eta(k);
+            sum += plan.axis.coefficient(&plan.kernel, length, k)
+                * plan.axis.fold_factor(&plan.kernel, Fold::Score, k)
+                * ndft_4d(&x, &a.radii, &a.weights, w, eta)
+                * ndft_4d(&y, &mirrored, &b.weights, w, eta).conj();
+        }
+        spectrum.push((w, sum * multiplicity / plan.modes.volume()));
+    });
+    let best = work.grid.iter().copied().fold(0.0, f64::max);
+    for voxel in (0..work.grid.len()).step_by(work.grid.len() / 60) {
+        let t = engine.position(voxel);
+        let direct: f64 = spectrum
+            .iter()
+            .map(|(w, value)| {
+                let turns = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+                (value * Complex64::cis(2.0 * PI * turns)).re
+            })
+            .sum();
+        let error = (direct - work.grid[voxel]).abs() / best;
+        assert!(
+            error <= 1e-3,
+            "voxel {voxel}: {direct} against {}",
+            work.grid[voxel]
+        );
+    }
+}
+
+/// Turning or moving an input must leave the fast score at the carried pose within the tolerance: the grid falls elsewhere on
+/// the molecules, so any dependence on it would show.
+#[test]
+fn moved_inputs_keep_their_fast_scores() {
+    let (a, b) = (cloud(100, 9.0, &RADII, 9), cloud(40, 6.0, &RADII, 10));
+    let motion = Pose::from_parts([0.5, 0.1, -0.7, 0.3], [1e4, -300.0, 77.7]);
+    let mut moved = a.clone();
+    for x in &mut moved.centers {
+        *x = motion.apply(*x);
+    }
+    let error = worst::<f64>(&moved, &b, 1e-3, Fold::Score);
+    assert!(error <= 1e-3, "{error:e}");
+}
+
+/// No pose may score through the periodic image: beside the box's far face both the receptor and its image are near, and the
+/// exact sum, which has no image, must agree there too.
+#[test]
+fn nothing_scores_through_the_periodic_image() {
+    let (a, b) = (cloud(80, 8.0, &RADII, 11), cloud(60, 9.0, &RADII, 12));
+    let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
+    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let scorer = ExactScorer::new(&plan.kernel, &a, &b).unwrap();
+    let mut work = engine.workspace();
+    let rotation = Pose::identity().rotation;
+    engine.correlate(&rotation, &mut work);
+    let best = work.grid.iter().copied().fold(0.0, f64::max);
+    let mut checked = 0;
+    for voxel in 0..work.grid.len() {
+        let t = engine.position(voxel);
+        let far = (0..3).any(|axis| 0.5 * plan.modes.lengths[axis] - t[axis].abs() < plan.spacing);
+        if far && voxel % 7 == 0 {
+            let pose = Pose::about(rotation, plan.ligand_center, plan.receptor_center + t);
+            let error = (work.grid[voxel] - scorer.score(&pose).score).abs() / best;
+            assert!(error <= 1e-2, "at {t:?}: {error:e}");
+            checked += 1;
+        }
+    }
+    assert!(checked > 100);
+}
