@@ -53,9 +53,10 @@ impl LiftedAxis {
     }
 
     /// The fewest modes whose series reproduces the kernel at all radius sums in use to `tolerance`, relative to the largest
-    /// transform value among them; at most 64. Returns them with the error reached.
+    /// transform value among them; at most 64, or 128 for a tolerance below 1e-7. Returns them with the error reached.
     pub fn for_tolerance(kernel: &RankingKernel, tolerance: f64) -> (Self, f64) {
-        let full = Self::new(kernel, 64);
+        let most = if tolerance < 1e-7 { 128 } else { 64 };
+        let full = Self::new(kernel, most);
         let cone = kernel.cone();
         let checks: Vec<f64> = (0..=12)
             .map(|i| cone.low + (cone.high - cone.low) * f64::from(i) / 12.0)
@@ -69,7 +70,7 @@ impl LiftedAxis {
             .map(|profile| kernel.spectrum_of(profile, 0.0).abs())
             .fold(f64::MIN_POSITIVE, f64::max);
         let mut error = f64::INFINITY;
-        for modes in 2..=64 {
+        for modes in 2..=most {
             let axis = Self {
                 period: full.period,
                 profiles: full.profiles[..=modes].to_vec(),

@@ -169,7 +169,10 @@ impl Plan {
             .fold(0.0, f64::max);
         let ratio = oversampling(tolerance);
         // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
-        let width = SpreadingKernel::<f64>::width_for(0.1 * tolerance, ratio * 1.2).min(MAX_WIDTH);
+        // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
+        let share = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
+        let width =
+            SpreadingKernel::<f64>::width_for(share * tolerance, ratio * 1.2).min(MAX_WIDTH);
         let mut points = 1.0;
         let size = [0, 1, 2].map(|axis| {
             let length = 2.0 * (receptor_extent[axis] + ligand_radius + effective_reach);
