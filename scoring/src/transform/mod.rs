@@ -43,7 +43,7 @@ impl Real for f64 {
 /// Smallest size not below `least` that the fast Fourier transform does well.
 ///
 /// rustfft's vector kernels serve few lengths whole; next to them a 7-smooth length such as 50 or 70 costs four times as much
-/// a point (5.2 and 4.8 ns against 1.1 to 1.6 ns for 48, 54, 64, 72 in f32 on AVX2: `cargo bench --bench rotation`). Longer
+/// a point (5.2 and 4.8 ns against 1.1 to 1.6 ns for 48, 54, 64, 72 in f32 on AVX2, one throwaway run). Longer
 /// lengths are good when built from those: 2^a 3^b and at most one 5 or 7, with 16 or 2 x 27 among their factors.
 pub fn fast_size(least: usize) -> usize {
     const SHORT: [usize; 20] = [
