@@ -7,7 +7,7 @@ use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::lifted_axis::Fold;
-use knotdock_scoring::se3::Pose;
+use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_structures::Knots;
@@ -56,19 +56,32 @@ const RADII: [f64; 3] = [1.5, 1.7, 1.9];
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Fold) -> f64 {
+    worst_after::<T>(a, b, tolerance, fold, HalfTurn::None)
+}
+
+/// The same where a half-turn of the grid follows the rotation, so that the ligand's transform is read mirrored.
+fn worst_after<T: Real>(
+    a: &Knots,
+    b: &Knots,
+    tolerance: f64,
+    fold: Fold,
+    half_turn: HalfTurn,
+) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options(tolerance)).unwrap());
     let scorer = ExactScorer::new(&plan.kernel, a, b).unwrap();
     let folded = Folded::<T>::new(&plan, a, b, fold);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
-    let rotation = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
-    engine.correlate(&rotation, &mut work);
+    let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
+    engine.turn(&turned, &mut work);
+    engine.correlate_turned(half_turn, &mut work);
+    let rotation = half_turn.after(&turned);
     let mut order: Vec<usize> = (0..work.grid.len()).collect();
     order.sort_by(|&x, &y| work.grid[y].partial_cmp(&work.grid[x]).unwrap());
     let sweep = order.iter().copied().step_by(order.len() / 150);
     let (mut error, mut best) = (0.0f64, 0.0f64);
     for voxel in order[..100].iter().copied().chain(sweep) {
-        let place = plan.receptor_center + engine.position(voxel);
+        let place = plan.receptor_center + engine.position_after(half_turn, voxel);
         let exact = scorer.score(&Pose::about(rotation, plan.ligand_center, place));
         let value = match fold {
             Fold::Score => exact.score,
@@ -104,6 +117,21 @@ fn slices_meet_the_tolerance_asked() {
             assert!(
                 error <= tolerance,
                 "slice {slice} at {tolerance:e}: {error:e}"
+            );
+        }
+    }
+}
+
+/// Four rotations share one transform of the ligand; the clouds have no symmetry that could hide a wrong reading of it.
+#[test]
+fn half_turns_read_the_same_transform() {
+    let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
+    for half_turn in HalfTurn::ALL {
+        for tolerance in [1e-2, 1e-4] {
+            let error = worst_after::<f64>(&a, &b, tolerance, Fold::Score, half_turn);
+            assert!(
+                error <= tolerance,
+                "{half_turn:?} at {tolerance:e}: {error:e}"
             );
         }
     }

@@ -124,7 +124,7 @@ pub fn plan(
     };
     Ok(DockPlan {
         rotations: options.rotations,
-        rotation_set: "super-Fibonacci (Alexa 2022)",
+        rotation_set: "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed",
         covering_radius_degrees: covering_radius(&set).to_degrees(),
         grid: engine.size(),
         spacing: engine.spacing,

@@ -12,7 +12,7 @@ use knotdock_scoring::engine::cpu::Folded;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
-use knotdock_scoring::se3::Pose;
+use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -97,8 +97,11 @@ fn dock_in_pool(
     let grid_poses: Vec<Pose> = peaks
         .iter()
         .map(|peak| {
-            let place = plan.engine.receptor_center + engine.position(peak.voxel as usize);
-            let rotation = plan.set[peak.rotation as usize];
+            let index = peak.rotation as usize;
+            let half_turn = HalfTurn::ALL[index % 4];
+            let place =
+                plan.engine.receptor_center + engine.position_after(half_turn, peak.voxel as usize);
+            let rotation = plan.set[index];
             Pose::about(rotation, plan.engine.ligand_center, place)
         })
         .collect();
@@ -296,24 +299,28 @@ fn search(plan: &DockPlan, engine: &CpuEngine<f32>, progress: &dyn Progress) -> 
             let mut work = engine.workspace();
             let mut found = Vec::with_capacity(2 * options.poses + options.per_rotation);
             loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(rotation) = plan.set.get(index) else {
+                // Four rotations that differ by half-turns share the ligand's transform.
+                let first = 4 * next.fetch_add(1, Ordering::Relaxed);
+                let Some(rotation) = plan.set.get(first) else {
                     break;
                 };
-                engine.correlate(rotation, &mut work);
-                find_peaks(
-                    plan.grid,
-                    &mut work.grid,
-                    &mut work.row_best,
-                    index as u32,
-                    options.per_rotation,
-                    &mut found,
-                );
-                if found.len() >= 2 * options.poses {
-                    found.sort_unstable_by(Peak::order);
-                    found.truncate(options.poses);
+                engine.turn(rotation, &mut work);
+                for (index, half_turn) in (first..plan.set.len()).zip(HalfTurn::ALL) {
+                    engine.correlate_turned(half_turn, &mut work);
+                    find_peaks(
+                        plan.grid,
+                        &mut work.grid,
+                        &mut work.row_best,
+                        index as u32,
+                        options.per_rotation,
+                        &mut found,
+                    );
+                    if found.len() >= 2 * options.poses {
+                        found.sort_unstable_by(Peak::order);
+                        found.truncate(options.poses);
+                    }
+                    progress.advance(1);
                 }
-                progress.advance(1);
             }
             found
         })

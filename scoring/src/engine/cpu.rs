@@ -1,11 +1,15 @@
 //! The engine on CPU cores: per rotation q pruned forward transforms, one product, one inverse transform.
 //!
 //! G^(w) = sum_q U_q(w) conj(B_q(w)), B_q the transform of the ligand's knots weighted by d_j V_q(s_j). U holds everything that does
-//! not turn: the receptor's transform, the folded lifted kernel, both windows' deconvolution and 1 / volume. Columns of modes are
-//! transformed along x, multiplied and transformed back while they lie in the first-level cache.
+//! not turn: the receptor's transform, the folded lifted kernel, both windows' deconvolution and 1 / volume.
+//!
+//! A half-turn about a grid axis maps the modes onto themselves, so one ligand transform serves four rotations: with F the half-turn,
+//! B(w; F R) = B(F w; R), which is a mirrored or conjugated reading of the same columns. Columns are multiplied and transformed back
+//! along x while they lie in the first-level cache.
 
 use super::plan::Plan;
 use crate::lifted_axis::Fold;
+use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::nfft::{Forward, ForwardWorkspace};
@@ -30,8 +34,11 @@ pub struct CpuEngine<T: Real> {
     weights: Vec<T>,
     /// Ligand knots relative to the ligand's centre, Å.
     ligand: Vec<Vector3<f64>>,
-    /// Position of voxel 0 relative to the receptor's centre, Å.
-    origin: [f64; 3],
+    /// Place of the ligand's centre in its own block, and of the receptor's in its, Å.
+    block_center: [f64; 3],
+    receptor_center: [f64; 3],
+    /// For each column the one with -ky.
+    mirrors: Vec<u32>,
     inverse_x: Arc<dyn Fft<T>>,
     inverse_y: Arc<dyn Fft<T>>,
     inverse_z: Arc<dyn Fft<T>>,
@@ -44,6 +51,8 @@ pub struct Workspace<T> {
     forward: ForwardWorkspace<T>,
     points: Vec<[f64; 3]>,
     lines: Vec<Complex<T>>,
+    /// The turned ligand's transform, laid out like the engine's spectra: [column][field][kx].
+    turned: Vec<Complex<T>>,
     product: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
     /// [kz in block][x][y].
@@ -228,7 +237,7 @@ impl<T: Real> CpuEngine<T> {
             .collect();
         let scale = forward.cells_per_length();
         let center = forward.center();
-        let origin = [0, 1, 2].map(|axis| center[axis] / scale[axis] - folded.center[axis]);
+        let mirrors = modes.mirrors();
         let mut planner = FftPlanner::new();
         let largest = singular
             .first()
@@ -244,7 +253,9 @@ impl<T: Real> CpuEngine<T> {
                 .iter()
                 .map(|&y| Vector3::from(y) - plan.ligand_center)
                 .collect(),
-            origin,
+            block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
+            receptor_center: folded.center,
+            mirrors,
             inverse_x: planner.plan_fft_inverse(modes.size[0]),
             inverse_y: planner.plan_fft_inverse(modes.size[1]),
             inverse_z: planner.plan_fft_inverse(modes.size[2]),
@@ -281,6 +292,7 @@ impl<T: Real> CpuEngine<T> {
             forward: self.forward.workspace(),
             points: vec![[0.0; 3]; self.ligand.len()],
             lines: vec![zero; COLUMNS * self.rank() * self.forward.line_length()],
+            turned: vec![zero; self.spectra.len()],
             product: vec![zero; COLUMNS * nx],
             scratch: vec![zero; scratch],
             planes: vec![zero; PLANES * nx * ny],
@@ -295,42 +307,70 @@ impl<T: Real> CpuEngine<T> {
         let [nx, ny, nz] = plan.modes.size;
         let forward = ligand_forward::<T>(plan, rank);
         let reals = 2 * COLUMNS * rank * forward.line_length()
+            + 2 * rank * plan.modes.count
             + 2 * PLANES * nx * ny
             + nx * ny * nz
             + nx * ny * (nz + 1);
         forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
-    /// Position of the ligand's centre relative to the receptor's for a voxel, in Å, in the box centred on the receptor.
-    pub fn position(&self, voxel: usize) -> Vector3<f64> {
+    /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `half_turn` gave, in Å, in the box
+    /// centred on the receptor.
+    pub fn position_after(&self, half_turn: HalfTurn, voxel: usize) -> Vector3<f64> {
         let [_, ny, nz] = self.plan.modes.size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
+        // The block turns with the ligand in it.
+        let signs = half_turn.signs();
         Vector3::from([0, 1, 2].map(|axis| {
             let length = self.plan.modes.lengths[axis];
-            let t = index[axis] as f64 * self.plan.spacing + self.origin[axis];
+            let t = index[axis] as f64 * self.plan.spacing + signs[axis] * self.block_center[axis]
+                - self.receptor_center[axis];
             t - length * (t / length + 0.5).floor()
         }))
     }
 
+    /// [`Self::position_after`] no half-turn.
+    pub fn position(&self, voxel: usize) -> Vector3<f64> {
+        self.position_after(HalfTurn::None, voxel)
+    }
+
     /// G over all translations at one rotation, into `work.grid`, and each row's best into `work.row_best`.
     pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
+        self.turn(rotation, work);
+        self.correlate_turned(HalfTurn::None, work);
+    }
+
+    /// Turns the ligand: its transform at `rotation`, which [`Self::correlate_turned`] then reads for each half-turn.
+    pub fn turn(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
         pulp::Arch::new().dispatch(
             #[inline(always)]
             || {
                 self.spread(rotation, work);
                 self.forward.planes(&mut work.forward);
-                self.multiply(work);
+                self.columns(work);
+            },
+        );
+    }
+
+    /// G over all translations at the rotation last turned to, followed by `half_turn`: into `work.grid`, and each row's best
+    /// into `work.row_best`.
+    pub fn correlate_turned(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                self.multiply(half_turn, work);
                 self.rows_to_grid(work);
             },
         );
     }
 
-    /// Time in seconds of each stage of one rotation: spreading, forward planes, columns with product and inverse, rows.
+    /// Time in seconds of each stage of one rotation: spreading, forward planes, forward columns (these three serve all four
+    /// half-turns), product with the inverse along x and y, and rows.
     pub fn stage_seconds(
         &self,
         rotation: &UnitQuaternion<f64>,
         work: &mut Workspace<T>,
-    ) -> [f64; 4] {
+    ) -> [f64; 5] {
         let arch = pulp::Arch::new();
         let mut last = std::time::Instant::now();
         let mut lap = || {
@@ -351,14 +391,19 @@ impl<T: Real> CpuEngine<T> {
         let planes = lap();
         arch.dispatch(
             #[inline(always)]
-            || self.multiply(work),
+            || self.columns(work),
         );
         let columns = lap();
         arch.dispatch(
             #[inline(always)]
+            || self.multiply(HalfTurn::X, work),
+        );
+        let product = lap();
+        arch.dispatch(
+            #[inline(always)]
             || self.rows_to_grid(work),
         );
-        [spread, planes, columns, lap()]
+        [spread, planes, columns, product, lap()]
     }
 
     #[inline(always)]
@@ -371,15 +416,39 @@ impl<T: Real> CpuEngine<T> {
             .spread(&work.points, &self.weights, &mut work.forward);
     }
 
-    /// Columns: forward along x, product, inverse along x; then y for each block of planes.
+    /// Forward along x, column by column: completes the ligand's transform.
     #[inline(always)]
-    fn multiply(&self, work: &mut Workspace<T>) {
+    fn columns(&self, work: &mut Workspace<T>) {
+        let modes = &self.plan.modes;
+        let mx = self.forward.line_length();
+        let rank = self.rank();
+        for start in (0..modes.columns.len()).step_by(COLUMNS) {
+            let end = (start + COLUMNS).min(modes.columns.len());
+            self.forward
+                .columns(start..end, &mut work.forward, &mut work.lines);
+            for (index, column) in modes.columns[start..end].iter().enumerate() {
+                let side = column.kx_max as usize;
+                for q in 0..rank {
+                    let line = &work.lines[(index * rank + q) * mx..(index * rank + q + 1) * mx];
+                    let to = rank * column.start + q * column.len();
+                    let turned = &mut work.turned[to..to + column.len()];
+                    turned[..side].copy_from_slice(&line[mx - side..]);
+                    turned[side..].copy_from_slice(&line[..=side]);
+                }
+            }
+        }
+    }
+
+    /// Products of columns and their inverse along x; then y for each block of planes.
+    #[inline(always)]
+    fn multiply(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
         let modes = &self.plan.modes;
         let [nx, ny, nz] = modes.size;
         let half = nz / 2 + 1;
-        let mx = self.forward.line_length();
         let rank = self.rank();
         let zero = Complex::new(T::zero(), T::zero());
+        // F w as a reading of the half that is kept, kz >= 0: B(-w) = conj B(w).
+        let mirrored = matches!(half_turn, HalfTurn::Y | HalfTurn::Z);
         for block in (0..half).step_by(PLANES) {
             let depth = PLANES.min(half - block);
             for level in 0..depth {
@@ -390,23 +459,72 @@ impl<T: Real> CpuEngine<T> {
                 };
                 for start in range.clone().step_by(COLUMNS) {
                     let end = (start + COLUMNS).min(range.end);
-                    self.forward
-                        .columns(start..end, &mut work.forward, &mut work.lines);
                     for (index, column) in modes.columns[start..end].iter().enumerate() {
                         let product = &mut work.product[index * nx..(index + 1) * nx];
                         product.fill(zero);
                         let side = column.kx_max as usize;
+                        let (low, high) = (nx - side, side + 1);
+                        let twin = if mirrored {
+                            let mirror = self.mirrors[start + index] as usize;
+                            modes.columns[mirror].start
+                        } else {
+                            column.start
+                        };
                         for q in 0..rank {
-                            let line =
-                                &work.lines[(index * rank + q) * mx..(index * rank + q + 1) * mx];
                             let from = rank * column.start + q * column.len();
-                            let spectrum = &self.spectra[from..from + column.len()];
-                            multiply_add(
-                                &mut product[nx - side..],
-                                &spectrum[..side],
-                                &line[mx - side..],
-                            );
-                            multiply_add(&mut product[..=side], &spectrum[side..], &line[..=side]);
+                            let a = &self.spectra[from..from + column.len()];
+                            let from = rank * twin + q * column.len();
+                            let b = &work.turned[from..from + column.len()];
+                            match half_turn {
+                                HalfTurn::None => {
+                                    multiply_add(
+                                        &mut product[low..],
+                                        a[..side].iter().zip(b),
+                                        -T::one(),
+                                    );
+                                    multiply_add(
+                                        &mut product[..high],
+                                        a[side..].iter().zip(&b[side..]),
+                                        -T::one(),
+                                    );
+                                }
+                                HalfTurn::X => {
+                                    multiply_add(
+                                        &mut product[low..],
+                                        a[..side].iter().zip(b.iter().rev()),
+                                        T::one(),
+                                    );
+                                    multiply_add(
+                                        &mut product[..high],
+                                        a[side..].iter().zip(b[..high].iter().rev()),
+                                        T::one(),
+                                    );
+                                }
+                                HalfTurn::Y => {
+                                    multiply_add(
+                                        &mut product[low..],
+                                        a[..side].iter().zip(b),
+                                        T::one(),
+                                    );
+                                    multiply_add(
+                                        &mut product[..high],
+                                        a[side..].iter().zip(&b[side..]),
+                                        T::one(),
+                                    );
+                                }
+                                HalfTurn::Z => {
+                                    multiply_add(
+                                        &mut product[low..],
+                                        a[..side].iter().zip(b.iter().rev()),
+                                        -T::one(),
+                                    );
+                                    multiply_add(
+                                        &mut product[..high],
+                                        a[side..].iter().zip(b[..high].iter().rev()),
+                                        -T::one(),
+                                    );
+                                }
+                            }
                         }
                     }
                     self.inverse_x.process_with_scratch(
@@ -510,11 +628,16 @@ fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
     Forward::new(Arc::clone(modes), plan.fine, plan.width, extent, rank)
 }
 
-/// sum += a conj(b), element by element.
+/// sum += a b (`sign` 1) or a conj(b) (`sign` -1), element by element.
 #[inline(always)]
-fn multiply_add<T: Real>(sum: &mut [Complex<T>], a: &[Complex<T>], b: &[Complex<T>]) {
-    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
-        sum.re += a.re * b.re + a.im * b.im;
-        sum.im += a.im * b.re - a.re * b.im;
+fn multiply_add<'a, T: Real>(
+    sum: &mut [Complex<T>],
+    factors: impl Iterator<Item = (&'a Complex<T>, &'a Complex<T>)>,
+    sign: T,
+) {
+    for (sum, (a, b)) in sum.iter_mut().zip(factors) {
+        let imaginary = sign * b.im;
+        sum.re += a.re * b.re - a.im * imaginary;
+        sum.im += a.im * b.re + a.re * imaginary;
     }
 }

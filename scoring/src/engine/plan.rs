@@ -130,7 +130,7 @@ impl Plan {
         let (r_low, r_high) = ends(&receptor_radii);
         let (s_low, s_high) = ends(&ligand_radii);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
-        let reach_factor = 1.0 + 0.75 * (1e-2 / tolerance).log10().max(0.0);
+        let reach_factor = 1.15 + 0.75 * (1e-2 / tolerance).log10().max(0.0);
         let kernel =
             RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
         let widest = r_high + s_high;

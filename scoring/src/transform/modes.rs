@@ -100,6 +100,19 @@ impl ModeSet {
         }
     }
 
+    /// For each column the one that has -ky instead of ky.
+    pub fn mirrors(&self) -> Vec<u32> {
+        let mut mirrors = vec![0; self.columns.len()];
+        for range in &self.planes {
+            // ky comes as 0, 1, ..., n, -n, ..., -1.
+            mirrors[range.start] = range.start as u32;
+            for (up, down) in (range.start + 1..range.end).zip((range.start + 1..range.end).rev()) {
+                mirrors[up] = down as u32;
+            }
+        }
+        mirrors
+    }
+
     /// Volume of the box in Å^3.
     pub fn volume(&self) -> f64 {
         self.lengths.iter().product()
