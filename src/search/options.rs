@@ -54,14 +54,15 @@ pub struct DockOptions {
 pub const PASS_RATIO: f64 = 2.0;
 
 impl Default for DockOptions {
+    /// Resolution and offset were chosen on training pairs, the rest is the literature's or this project's first measured setting.
     fn default() -> Self {
         Self {
             rotations: 3600,
-            resolution: 4.0,
+            resolution: 5.0,
             pass_length: None,
             spacing: None,
             lambda: 10.0,
-            offset: 2.0,
+            offset: 2.2,
             alpha: 2.0,
             tolerance: 1e-2,
             effects: vec![Effect::Shape],
