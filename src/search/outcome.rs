@@ -1,5 +1,7 @@
 //! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
 
+use super::peaks::Peak;
+use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::se3::Pose;
 use serde::Serialize;
 
@@ -14,7 +16,7 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
-    /// Whether `pose` was moved off the grid by refinement.
+    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
     pub refined: bool,
     /// Index in the rotation set of the grid pose that this row came from.
     pub rotation: usize,
@@ -39,6 +41,27 @@ pub struct MeasuredError {
     pub worst: f64,
     /// Mean share of the unfiltered score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
     pub low_pass_share: f64,
+}
+
+impl MeasuredError {
+    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
+    pub(super) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
+        let poses = peaks.len().min(exact.len());
+        let best = best.max(f64::MIN_POSITIVE);
+        let (mut squares, mut worst, mut removed) = (0.0, 0.0f64, 0.0);
+        for (peak, exact) in peaks.iter().zip(exact) {
+            let error = (f64::from(peak.score) - exact.score).abs() / best;
+            squares += error * error;
+            worst = worst.max(error);
+            removed += (exact.score - exact.unfiltered).abs() / best;
+        }
+        Self {
+            poses,
+            rms: (squares / poses.max(1) as f64).sqrt(),
+            worst,
+            low_pass_share: removed / poses.max(1) as f64,
+        }
+    }
 }
 
 /// What one term of the score cost.

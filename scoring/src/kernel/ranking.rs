@@ -234,16 +234,31 @@ impl RankingKernel {
             .sum()
     }
 
-    /// Table over distance of one pair of radii: lanes are the slices at rho = 0, r0, 2 r0 and the score kernel itself.
-    pub fn distance_table(&self, radius_sum: f64) -> Table<4> {
+    /// The slices at rho = 0, r0, 2 r0 of one pair of radii as functions of distance, by their definition; 0 from the reach on.
+    pub(crate) fn slices_of(&self, radius_sum: f64) -> impl Fn(f64) -> [f64; 3] + '_ {
         let bands = self
             .options
             .slice_offsets()
             .map(|offset| self.band(radius_sum + offset));
+        move |distance| {
+            let window = self.window(distance);
+            bands
+                .each_ref()
+                .map(|band| self.low_passed(band, distance) * window)
+        }
+    }
+
+    /// Widest panel in Å on which a polynomial of degree 7 follows the kernel to about 1e-9 of its largest value.
+    pub(crate) fn panel(&self) -> f64 {
+        0.125 / self.stop()
+    }
+
+    /// Table over distance of one pair of radii: lanes are the slices at rho = 0, r0, 2 r0 and the score kernel itself.
+    pub fn distance_table(&self, radius_sum: f64) -> Table<4> {
+        let slices_at = self.slices_of(radius_sum);
         let weights = self.options.slice_weights();
-        Table::fit(self.reach, 0.125 / self.stop(), |d| {
-            let window = self.window(d);
-            let slices = [0, 1, 2].map(|i| self.low_passed(&bands[i], d) * window);
+        Table::fit(self.reach, self.panel(), |d| {
+            let slices = slices_at(d);
             let score = (0..3).map(|i| weights[i] * slices[i]).sum();
             [slices[0], slices[1], slices[2], score]
         })

@@ -1,7 +1,7 @@
 //! Radial functions as piecewise polynomials on equal panels: one multiply, one truncation and a Horner chain a value.
 
 /// Coefficients a panel holds: polynomials of degree 7.
-const TERMS: usize = 8;
+pub(crate) const TERMS: usize = 8;
 
 /// `LANES` functions of one variable on [0, end], each a polynomial of degree 7 on each of equally wide panels, fitted
 /// at Chebyshev nodes. Beyond `end` every function is 0.
@@ -18,19 +18,11 @@ impl<const LANES: usize> Table<LANES> {
     pub fn fit(end: f64, panel: f64, mut function: impl FnMut(f64) -> [f64; LANES]) -> Self {
         let count = (end / panel).ceil().max(1.0) as usize;
         let width = end / count as f64;
-        let (nodes, inverse) = interpolation();
+        let fit = PanelFit::new();
         let coefficients = (0..count)
             .map(|index| {
-                let values: [[f64; LANES]; TERMS] = std::array::from_fn(|node| {
-                    function(width * (index as f64 + 0.5 * (nodes[node] + 1.0)))
-                });
-                std::array::from_fn(|power| {
-                    std::array::from_fn(|lane| {
-                        (0..TERMS)
-                            .map(|node| inverse[power][node] * values[node][lane])
-                            .sum()
-                    })
-                })
+                let middle = width * (index as f64 + 0.5);
+                fit.coefficients(middle, 0.5 * width, &mut function)
             })
             .collect();
         Self {
@@ -85,28 +77,56 @@ impl<const LANES: usize> Table<LANES> {
     }
 }
 
-/// Chebyshev nodes on [-1, 1] and the matrix that turns values there into monomial coefficients.
-fn interpolation() -> ([f64; TERMS], [[f64; TERMS]; TERMS]) {
-    let nodes: [f64; TERMS] =
-        std::array::from_fn(|i| -(std::f64::consts::PI * (i as f64 + 0.5) / TERMS as f64).cos());
-    // Column `node` holds the coefficients of the Lagrange polynomial that is 1 there and 0 at the others.
-    let mut inverse = [[0.0; TERMS]; TERMS];
-    for node in 0..TERMS {
-        let mut polynomial = [0.0; TERMS];
-        polynomial[0] = 1.0;
-        for (degree, other) in (0..TERMS).filter(|&other| other != node).enumerate() {
-            let scale = 1.0 / (nodes[node] - nodes[other]);
-            for power in (0..=degree).rev() {
-                let value = polynomial[power] * scale;
-                polynomial[power + 1] += value;
-                polynomial[power] = -nodes[other] * value;
+/// Interpolation at the Chebyshev nodes of a panel.
+pub(crate) struct PanelFit {
+    /// The nodes on [-1, 1].
+    nodes: [f64; TERMS],
+    /// [power][node]: turns values at the nodes into monomial coefficients.
+    inverse: [[f64; TERMS]; TERMS],
+}
+
+impl PanelFit {
+    pub(crate) fn new() -> Self {
+        let nodes: [f64; TERMS] = std::array::from_fn(|i| {
+            -(std::f64::consts::PI * (i as f64 + 0.5) / TERMS as f64).cos()
+        });
+        // Column `node` holds the coefficients of the Lagrange polynomial that is 1 there and 0 at the others.
+        let mut inverse = [[0.0; TERMS]; TERMS];
+        for node in 0..TERMS {
+            let mut polynomial = [0.0; TERMS];
+            polynomial[0] = 1.0;
+            for (degree, other) in (0..TERMS).filter(|&other| other != node).enumerate() {
+                let scale = 1.0 / (nodes[node] - nodes[other]);
+                for power in (0..=degree).rev() {
+                    let value = polynomial[power] * scale;
+                    polynomial[power + 1] += value;
+                    polynomial[power] = -nodes[other] * value;
+                }
+            }
+            for power in 0..TERMS {
+                inverse[power][node] = polynomial[power];
             }
         }
-        for power in 0..TERMS {
-            inverse[power][node] = polynomial[power];
-        }
+        Self { nodes, inverse }
     }
-    (nodes, inverse)
+
+    /// Coefficients [power][lane] in (x - middle) / half_width of the polynomials that agree with `function` at the nodes.
+    pub(crate) fn coefficients<const LANES: usize>(
+        &self,
+        middle: f64,
+        half_width: f64,
+        mut function: impl FnMut(f64) -> [f64; LANES],
+    ) -> [[f64; LANES]; TERMS] {
+        let values: [[f64; LANES]; TERMS] =
+            std::array::from_fn(|node| function(middle + half_width * self.nodes[node]));
+        std::array::from_fn(|power| {
+            std::array::from_fn(|lane| {
+                (0..TERMS)
+                    .map(|node| self.inverse[power][node] * values[node][lane])
+                    .sum()
+            })
+        })
+    }
 }
 
 #[cfg(test)]

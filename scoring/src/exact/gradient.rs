@@ -1,0 +1,73 @@
+//! The score's gradient over the six degrees of freedom of a pose.
+
+use super::blocks::LANES;
+use super::tables::Line;
+use super::{ExactScorer, PoseGradient};
+use crate::se3::Pose;
+use nalgebra::Vector3;
+
+impl ExactScorer {
+    /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.
+    pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.gradient_inline(pose),
+        )
+    }
+
+    #[inline(always)]
+    fn gradient_inline(&self, pose: &Pose) -> (f64, PoseGradient) {
+        let (rotation, center) = self.placed(pose);
+        let mut score = 0.0;
+        let mut gradient = PoseGradient::default();
+        for knot in &self.ligand {
+            let arm = rotation * knot.position;
+            let x: [f64; 3] = (arm + center).into();
+            let starts = self.tables.starts(knot.class);
+            let mut value = 0.0;
+            let mut force = [0.0; 3];
+            self.receptor.near(
+                &x,
+                self.kernel.reach(),
+                #[inline(always)]
+                |block| {
+                    let squares = block.squares(&x);
+                    let places = self.tables.place(&squares);
+                    for lane in 0..LANES {
+                        let start = starts.get(block.classes[lane] as usize).copied();
+                        let index = (start.unwrap_or(0) + places.panels[lane]) as usize;
+                        let Some(line) = self.tables.scores().get(index) else {
+                            continue;
+                        };
+                        let (kernel, slope) = value_and_slope(line, places.offsets[lane]);
+                        value += block.weights[lane] * kernel;
+                        let distance = squares[lane].sqrt();
+                        // Coincident knots: the kernel is even and smooth there, so its force is zero.
+                        if distance > 0.0 {
+                            let pull = block.weights[lane] * slope / distance;
+                            for axis in 0..3 {
+                                force[axis] += (x[axis] - block.positions[axis][lane]) * pull;
+                            }
+                        }
+                    }
+                },
+            );
+            score += knot.weight * value;
+            let force = Vector3::from(force) * (knot.weight * self.tables.panels_per_unit());
+            gradient.force += force;
+            gradient.torque += arm.cross(&force);
+        }
+        (score, gradient)
+    }
+}
+
+/// A polynomial and its slope at u, per panel.
+#[inline(always)]
+fn value_and_slope(Line(line): &Line, u: f64) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for coefficient in line.iter().rev() {
+        slope = slope * u + value;
+        value = value * u + coefficient;
+    }
+    (value, slope)
+}

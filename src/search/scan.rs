@@ -1,0 +1,96 @@
+//! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
+
+use super::peaks::{Peak, find_peaks};
+use super::plan::DockPlan;
+use super::run::Progress;
+use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::se3::HalfTurn;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The lowest rank of the lifted axis whose error at the best poses of a few probe rotations is within a third of the tolerance,
+/// with the error measured there (relative to the best of them).
+pub(super) fn choose_rank(plan: &DockPlan, folded: &Folded<f32>) -> (CpuEngine<f32>, f64) {
+    const PROBES: usize = 3;
+    const BEST: usize = 50;
+    let build = |rank| CpuEngine::new(plan.engine.clone(), folded, &plan.ligand, rank);
+    let full = build(folded.full_rank());
+    if folded.full_rank() == 1 {
+        return (full, 0.0);
+    }
+    let mut work = full.workspace();
+    let mut samples: Vec<(usize, Vec<(usize, f32)>)> = Vec::new();
+    let mut best = f32::MIN_POSITIVE;
+    for probe in 0..PROBES {
+        let index = (2 * probe + 1) * plan.set.len() / (2 * PROBES);
+        full.correlate(&plan.set[index], &mut work);
+        let mut order: Vec<usize> = (0..work.grid.len()).collect();
+        let count = BEST.min(order.len() - 1);
+        order.select_nth_unstable_by(count, |&a, &b| {
+            work.grid[b].total_cmp(&work.grid[a]).then(a.cmp(&b))
+        });
+        let values: Vec<(usize, f32)> = order[..count].iter().map(|&v| (v, work.grid[v])).collect();
+        best = values.iter().fold(best, |best, value| best.max(value.1));
+        samples.push((index, values));
+    }
+    for rank in 1..folded.full_rank() {
+        let engine = build(rank);
+        let mut work = engine.workspace();
+        let mut error = 0.0f32;
+        for (index, values) in &samples {
+            engine.correlate(&plan.set[*index], &mut work);
+            for &(voxel, exact) in values {
+                error = error.max((work.grid[voxel] - exact).abs() / best);
+            }
+        }
+        if f64::from(error) <= plan.options.tolerance / 3.0 {
+            return (engine, f64::from(error));
+        }
+    }
+    (full, 0.0)
+}
+
+/// The best peaks over all rotations, best first.
+pub(super) fn scan(plan: &DockPlan, engine: &CpuEngine<f32>, progress: &dyn Progress) -> Vec<Peak> {
+    let options = &plan.options;
+    let next = AtomicUsize::new(0);
+    let mut peaks: Vec<Peak> = (0..plan.in_flight)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|_| {
+            let mut work = engine.workspace();
+            let mut found = Vec::with_capacity(2 * options.poses + options.per_rotation);
+            loop {
+                // Four rotations that differ by half-turns share the ligand's transform.
+                let first = 4 * next.fetch_add(1, Ordering::Relaxed);
+                let Some(rotation) = plan.set.get(first) else {
+                    break;
+                };
+                engine.turn(rotation, &mut work);
+                for (index, half_turn) in (first..plan.set.len()).zip(HalfTurn::ALL) {
+                    engine.correlate_turned(half_turn, &mut work);
+                    find_peaks(
+                        plan.grid,
+                        &mut work.grid,
+                        &mut work.row_best,
+                        index as u32,
+                        options.per_rotation,
+                        &mut found,
+                    );
+                    if found.len() >= 2 * options.poses {
+                        found.sort_unstable_by(Peak::order);
+                        found.truncate(options.poses);
+                    }
+                    progress.advance(1);
+                }
+            }
+            found
+        })
+        .flatten()
+        .collect();
+    peaks.retain(|peak| peak.score.is_finite());
+    peaks.sort_unstable_by(Peak::order);
+    peaks.truncate(options.poses);
+    peaks
+}
