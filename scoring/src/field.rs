@@ -11,6 +11,7 @@ use crate::se3::Pose;
 use crate::transform::fast_size;
 use crate::transform::modes::place;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
@@ -153,7 +154,7 @@ impl ReceptorField {
 
     /// Score of a pose and its gradient, per Å and per radian about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || self.gradient_inline(pose),
         )

@@ -23,3 +23,4 @@ pub mod kernel;
 pub mod lifted_axis;
 pub mod se3;
 pub mod transform;
+mod vectorized;

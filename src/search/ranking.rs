@@ -1,8 +1,8 @@
-//! The ranking: all poses by their exact score alone; those that are reported, with every term.
+//! The ranking: clusters by the fast path's scores, and every row that is reported by its exact score.
 //!
-//! Poses are ordered by [`ExactScorer::score_only`]; reported rows carry the score of [`ExactScorer::score`], the weighted sum of their
-//! slices. The two differ by rounding, so rows are ordered once more by what they report, and clusters numbered after their
-//! founders' places in that order.
+//! The fast path's error is measured in every run and far below what sets clusters apart, while an exact sum costs as much as a whole
+//! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
+//! pose was refined); rows of the table carry exact scores and are ordered, and their clusters numbered, by these.
 
 use super::cluster::{RigidBody, greedy};
 use super::outcome::RankedPose;
@@ -12,16 +12,15 @@ use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
-/// Grid poses over which the fast path's error is measured.
-const ERROR_POSES: usize = 100;
-
 /// A pose in the running.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pose: Pose,
-    /// Exact score at `pose`.
+    /// The fast path's score at `pose`.
     score: f64,
-    /// All terms at `pose`, where they are known already.
+    /// The grid pose that it came from.
+    grid_pose: Pose,
+    /// All terms at `grid_pose`, where they are known already.
     terms: Option<ExactScore>,
     /// Whether `pose` was moved off the grid.
     refined: bool,
@@ -41,43 +40,33 @@ pub(super) fn printed(pose: &Pose) -> Pose {
     Pose::from_parts(pose.quaternion(), pose.translation.into())
 }
 
-/// Scores grid poses, and for the first of them what they were refined to; returns them best first, ties in the order given, and
-/// all terms of the first grid poses, by which the fast path's error is measured.
-pub(super) fn score_poses(
-    scorer: &ExactScorer,
+/// Grid poses and what the first of them were refined to (with the field's score there), best first, ties in the order given.
+/// `at_grid` holds all terms of the first grid poses.
+pub(super) fn candidates(
     peaks: &[Peak],
     grid_poses: &[Pose],
-    refined: &[Pose],
-    progress: &dyn Progress,
-) -> (Vec<Candidate>, Vec<ExactScore>) {
-    let at_grid: Vec<ExactScore> = grid_poses[..ERROR_POSES.min(grid_poses.len())]
-        .par_iter()
-        .map(|pose| scorer.score(pose))
-        .collect();
+    refined: &[(Pose, f64)],
+    at_grid: &[ExactScore],
+) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = peaks
-        .par_iter()
+        .iter()
         .zip(grid_poses)
         .enumerate()
         .map(|(index, (peak, grid_pose))| {
-            let before = scorer.score_only(grid_pose);
-            let climbed = refined
-                .get(index)
-                .map(|pose| (*pose, scorer.score_only(pose)));
-            progress.advance(1);
+            let score_grid = f64::from(peak.score);
             let candidate = Candidate {
                 pose: *grid_pose,
-                score: before,
+                score: score_grid,
+                grid_pose: *grid_pose,
                 terms: at_grid.get(index).copied(),
                 refined: false,
                 rotation: peak.rotation as usize,
-                score_grid: f64::from(peak.score),
+                score_grid,
             };
-            match climbed {
-                // A climb on the fast path's values that the exact sum does not confirm is undone.
-                Some((pose, score)) if score >= before => Candidate {
+            match refined.get(index) {
+                Some(&(pose, score)) if score > score_grid => Candidate {
                     pose,
                     score,
-                    terms: None,
                     refined: true,
                     ..candidate
                 },
@@ -88,7 +77,7 @@ pub(super) fn score_poses(
         .collect();
     // The list comes in the order of the grid's scores, which breaks ties.
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-    (candidates, at_grid)
+    candidates
 }
 
 /// Drops refined poses that ended where a better one did.
@@ -123,6 +112,7 @@ pub(super) fn report(
     candidates: &[Candidate],
     clusters: &[usize],
     every_pose: bool,
+    progress: &dyn Progress,
 ) -> Ranking {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
@@ -134,13 +124,13 @@ pub(super) fn report(
             wanted.push((candidate, cluster, founder));
         }
     }
+    progress.stage("score", wanted.len() as u64);
     let mut rows: Vec<(RankedPose, usize, bool)> = wanted
         .into_par_iter()
         .map(|(candidate, cluster, founder)| {
-            let terms = candidate
-                .terms
-                .unwrap_or_else(|| scorer.score(&candidate.pose));
-            (candidate.reported(&terms), cluster, founder)
+            let row = candidate.reported(scorer);
+            progress.advance(1);
+            (row, cluster, founder)
         })
         .filter(|(row, ..)| row.score.is_finite() && row.score_unfiltered.is_finite())
         .collect();
@@ -170,14 +160,30 @@ pub(super) fn report(
 }
 
 impl Candidate {
-    /// Its row of the table, not yet in a cluster.
-    fn reported(&self, terms: &ExactScore) -> RankedPose {
+    /// Its row of the table, exactly scored, not yet in a cluster.
+    fn reported(&self, scorer: &ExactScorer) -> RankedPose {
+        let at_grid = || self.terms.unwrap_or_else(|| scorer.score(&self.grid_pose));
+        let (pose, terms, refined) = if self.refined {
+            let terms = scorer.score(&self.pose);
+            // A climb on the fast path's values that the exact sum does not confirm is undone.
+            let before = match &self.terms {
+                Some(terms) => terms.score,
+                None => scorer.score_only(&self.grid_pose),
+            };
+            if terms.score >= before {
+                (self.pose, terms, true)
+            } else {
+                (self.grid_pose, at_grid(), false)
+            }
+        } else {
+            (self.grid_pose, at_grid(), false)
+        };
         RankedPose {
-            pose: self.pose,
+            pose,
             score: terms.score,
             cluster: None,
             cluster_size: None,
-            refined: self.refined,
+            refined,
             rotation: self.rotation,
             score_grid: self.score_grid,
             score_unfiltered: terms.unfiltered,

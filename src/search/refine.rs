@@ -20,14 +20,14 @@ pub struct ClimbLimits {
     pub gyration: f64,
 }
 
-/// The highest pose found from `start` on by climbing `score`, which gives value and gradient (per Å, per radian about
+/// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian about
 /// `ligand_center` of the ligand's frame).
 pub fn climb(
     start: Pose,
     ligand_center: Vector3<f64>,
     limits: &ClimbLimits,
     score: impl Fn(&Pose) -> (f64, PoseGradient),
-) -> Pose {
+) -> (Pose, f64) {
     // Variables: translation in Å and rotation times the radius of gyration, about the ligand's centre.
     let radius = limits.gyration.max(f64::MIN_POSITIVE);
     let slope = |gradient: &PoseGradient| {
@@ -101,7 +101,7 @@ pub fn climb(
             break;
         }
     }
-    pose
+    (pose, value)
 }
 
 #[cfg(test)]
@@ -128,7 +128,7 @@ mod tests {
             angle: 1.0,
             gyration: 10.0,
         };
-        let found = climb(Pose::identity(), Vector3::zeros(), &limits, score);
+        let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
         assert!((found.translation - top.translation).norm() < 0.01);
         assert!(found.angle_to(&top) < 0.002);
     }
@@ -148,7 +148,7 @@ mod tests {
             angle: 0.2,
             gyration: 10.0,
         };
-        let found = climb(Pose::identity(), Vector3::zeros(), &limits, score);
+        let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
         assert!(found.translation[0] > 1.5 && found.translation.norm() <= 2.0);
     }
 }

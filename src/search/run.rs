@@ -4,12 +4,12 @@ use super::cluster::RigidBody;
 use super::options::{Effect, SearchError};
 use super::outcome::{DockOutcome, EffectCost, MeasuredError, StageTime};
 use super::plan::DockPlan;
-use super::ranking::{clusters_of, merge, printed, report, score_poses};
+use super::ranking::{candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
 use super::scan::{choose_rank, scan};
 use cpu_time::ProcessTime;
 use knotdock_scoring::engine::cpu::Folded;
-use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::{HalfTurn, Pose};
@@ -25,6 +25,8 @@ pub trait Progress: Sync {
     fn advance(&self, by: u64);
 }
 
+/// Grid poses over which the fast path's error is measured.
+const ERROR_POSES: usize = 100;
 /// Refined poses closer than this share of the grid spacing (ligand RMSD) are one.
 const MERGE_SPACINGS: f64 = 0.25;
 
@@ -107,7 +109,7 @@ fn dock_in_pool(
     let body = RigidBody::new(&points);
     let refined_count = options.refine.min(peaks.len());
     progress.stage("refine", refined_count as u64);
-    let refined: Vec<Pose> = if refined_count == 0 {
+    let refined: Vec<(Pose, f64)> = if refined_count == 0 {
         Vec::new()
     } else {
         let field = ReceptorField::new(&plan.engine, &folded, &plan.ligand);
@@ -131,22 +133,34 @@ fn dock_in_pool(
     drop(folded);
     clock.lap("refine");
 
-    progress.stage("score", peaks.len() as u64);
     // Printed poses are what is scored: a quaternion's digits survive the table's round trip.
     let grid_poses: Vec<Pose> = grid_poses.iter().map(printed).collect();
-    let refined: Vec<Pose> = refined.iter().map(printed).collect();
-    let (mut candidates, at_grid) = score_poses(&scorer, &peaks, &grid_poses, &refined, progress);
-    clock.lap("score");
+    let refined: Vec<(Pose, f64)> = refined
+        .iter()
+        .map(|(pose, score)| (printed(pose), *score))
+        .collect();
+    let at_grid: Vec<ExactScore> = grid_poses[..ERROR_POSES.min(grid_poses.len())]
+        .par_iter()
+        .map(|pose| scorer.score(pose))
+        .collect();
+    clock.lap("check");
 
+    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid);
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
     clock.lap("cluster");
 
-    let ranking = report(&scorer, &candidates, &clusters, options.every_pose);
+    let ranking = report(
+        &scorer,
+        &candidates,
+        &clusters,
+        options.every_pose,
+        progress,
+    );
     let best = ranking.poses.first().map_or(1.0, |row| row.score.abs());
     let error = MeasuredError::over(&peaks, &at_grid, best);
-    clock.lap("report");
+    clock.lap("score");
 
     let seconds = |name: &str| {
         clock

@@ -13,6 +13,7 @@ use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::nfft::{Forward, ForwardWorkspace};
+use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
 use num_complex::Complex;
@@ -342,7 +343,7 @@ impl<T: Real> CpuEngine<T> {
 
     /// Turns the ligand: its transform at `rotation`, which [`Self::correlate_turned`] then reads for each half-turn.
     pub fn turn(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || {
                 self.spread(rotation, work);
@@ -355,7 +356,7 @@ impl<T: Real> CpuEngine<T> {
     /// G over all translations at the rotation last turned to, followed by `half_turn`: into `work.grid`, and each row's best
     /// into `work.row_best`.
     pub fn correlate_turned(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || {
                 self.multiply(half_turn, work);
@@ -371,7 +372,6 @@ impl<T: Real> CpuEngine<T> {
         rotation: &UnitQuaternion<f64>,
         work: &mut Workspace<T>,
     ) -> [f64; 5] {
-        let arch = pulp::Arch::new();
         let mut last = std::time::Instant::now();
         let mut lap = || {
             let now = std::time::Instant::now();
@@ -379,27 +379,27 @@ impl<T: Real> CpuEngine<T> {
             last = now;
             seconds
         };
-        arch.dispatch(
+        vectorized(
             #[inline(always)]
             || self.spread(rotation, work),
         );
         let spread = lap();
-        arch.dispatch(
+        vectorized(
             #[inline(always)]
             || self.forward.planes(&mut work.forward),
         );
         let planes = lap();
-        arch.dispatch(
+        vectorized(
             #[inline(always)]
             || self.columns(work),
         );
         let columns = lap();
-        arch.dispatch(
+        vectorized(
             #[inline(always)]
             || self.multiply(HalfTurn::X, work),
         );
         let product = lap();
-        arch.dispatch(
+        vectorized(
             #[inline(always)]
             || self.rows_to_grid(work),
         );

@@ -4,12 +4,13 @@ use super::blocks::LANES;
 use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
 use crate::se3::Pose;
+use crate::vectorized::vectorized;
 use nalgebra::Vector3;
 
 impl ExactScorer {
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || self.gradient_inline(pose),
         )

@@ -9,6 +9,7 @@ use super::blocks::{Block, LANES};
 use super::tables::{Line, Places};
 use super::{ExactScore, ExactScorer};
 use crate::se3::Pose;
+use crate::vectorized::vectorized;
 
 /// Partial sums of one ligand knot: four lanes, twice, so that one addition need not wait for the other.
 type Sums = [[f64; 4]; 2];
@@ -17,7 +18,7 @@ impl ExactScorer {
     /// The ranking kernel's score of one pose and nothing else: what poses are ranked by, at a fraction of [`Self::score`]'s price.
     /// Agrees with it but for rounding.
     pub fn score_only(&self, pose: &Pose) -> f64 {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || {
                 let [score] = self.sums(
@@ -32,7 +33,7 @@ impl ExactScorer {
 
     /// Score, slices and unfiltered score of one pose.
     pub fn score(&self, pose: &Pose) -> ExactScore {
-        pulp::Arch::new().dispatch(
+        vectorized(
             #[inline(always)]
             || {
                 let slices = self.sums(
