@@ -9,6 +9,7 @@ use crate::lifted_axis::Fold;
 use crate::transform::Real;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::nfft::{Forward, ForwardWorkspace};
+use crate::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
 use num_complex::Complex;
@@ -124,6 +125,17 @@ impl<T: Real> Folded<T> {
     /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
     pub fn spectra(&self) -> &[Vec<Complex<T>>] {
         &self.spectra
+    }
+
+    /// Leaves out all modes but those of a selection, for the whole correlation.
+    pub fn keep(&mut self, selection: &Selection) {
+        for spectrum in &mut self.spectra {
+            for (place, value) in spectrum.iter_mut().enumerate() {
+                if !selection.keeps(place) {
+                    *value = Complex::new(T::zero(), T::zero());
+                }
+            }
+        }
     }
 
     /// d_j v_b(s_j) of ligand knot j.
