@@ -94,7 +94,11 @@ impl GatherTables {
                                 sums[3][lane] = phase[1][lane].mul_add(sin, sums[3][lane]);
                             }
                         }
-                        let [xr, xi, yr, yi] = sums.map(|lanes| lanes.iter().sum::<f64>());
+                        let mut totals = [0.0; 4];
+                        for (total, lanes) in totals.iter_mut().zip(&sums) {
+                            *total = lanes.iter().sum();
+                        }
+                        let [xr, xi, yr, yi] = totals;
                         let [er, ei, or, oi] = fields[run[0].field][entry];
                         out[entry][0] += er * xr - ei * xi + or * yr - oi * yi;
                         out[entry][1] += er * xi + ei * xr + or * yi + oi * yr;

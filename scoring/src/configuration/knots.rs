@@ -81,12 +81,15 @@ pub(super) fn powers(theta: Lane) -> impl Iterator<Item = [Lane; 2]> {
         (sin[lane], cos[lane]) = theta[lane].sin_cos();
     }
     let mut next = [[1.0; LANES], [0.0; LANES]];
-    std::iter::from_fn(move || {
-        let now = next;
-        for lane in 0..LANES {
-            next[0][lane] = now[0][lane] * cos[lane] - now[1][lane] * sin[lane];
-            next[1][lane] = now[0][lane] * sin[lane] + now[1][lane] * cos[lane];
-        }
-        Some(now)
-    })
+    std::iter::from_fn(
+        #[inline(always)]
+        move || {
+            let now = next;
+            for lane in 0..LANES {
+                next[0][lane] = now[0][lane] * cos[lane] - now[1][lane] * sin[lane];
+                next[1][lane] = now[0][lane] * sin[lane] + now[1][lane] * cos[lane];
+            }
+            Some(now)
+        },
+    )
 }

@@ -14,6 +14,9 @@
 //! ligand's centre. Modes are counted with their conjugates, the lifted axis folded. All sums run in f64. The polynomial repeats
 //! with the box; where the ligand's centre lies outside the box, whose edge no contact reaches, value and gradient are zero.
 
+// Closures that are dispatched to vector instructions move what they change into themselves: only so can they be called once and
+// no more, and only then does the compiler call their inlined body, rather than a shim that is compiled without those instructions.
+
 mod columns;
 mod fields;
 mod gather;
@@ -136,7 +139,8 @@ impl Configuration {
         };
         pulp::Arch::new().dispatch(
             #[inline(always)]
-            || {
+            move || {
+                let work = work;
                 let rotation = pose.rotation.to_rotation_matrix();
                 let mut score = 0.0;
                 let mut gradient = PoseGradient::default();
@@ -154,15 +158,17 @@ impl Configuration {
     /// The spectrum G^(w; R) of one rotation.
     pub fn prepare(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> Prepared {
         let mut values = vec![[0.0; 4]; self.layout.harmonics.len()];
+        let out = &mut values;
         pulp::Arch::new().dispatch(
             #[inline(always)]
-            || {
+            move || {
+                let out = out;
                 work.gather.gather(
                     &self.layout,
                     &self.fields,
                     &self.blocks,
                     &rotation.to_rotation_matrix(),
-                    &mut values,
+                    out,
                 );
             },
         );

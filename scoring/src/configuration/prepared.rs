@@ -54,7 +54,10 @@ impl Prepared {
         match self.frame.position(&self.rotation, translation) {
             Some(position) => pulp::Arch::new().dispatch(
                 #[inline(always)]
-                || work.place.sum(&self.layout, &self.values, &position),
+                move || {
+                    let work = work;
+                    work.place.sum(&self.layout, &self.values, &position)
+                },
             ),
             None => Default::default(),
         }

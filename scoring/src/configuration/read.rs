@@ -48,12 +48,12 @@ impl ReadTables {
         let angles = |axis: usize| arms[axis].map(|arm| radians[axis] * (arm + center[axis]));
         for ((k, row), [cos, sin]) in (0..).zip(&mut self.x).zip(powers(angles(0))) {
             let k = f64::from(k);
-            *row = [
-                cos,
-                sin,
-                cos.map(|value| k * value),
-                sin.map(|value| k * value),
-            ];
+            for lane in 0..LANES {
+                row[0][lane] = cos[lane];
+                row[1][lane] = sin[lane];
+                row[2][lane] = k * cos[lane];
+                row[3][lane] = k * sin[lane];
+            }
         }
         for (row, phase) in self.y.iter_mut().zip(powers(angles(1))) {
             *row = phase;
