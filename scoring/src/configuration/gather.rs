@@ -84,21 +84,19 @@ impl GatherTables {
                     for run in blocks.chunk_by(|a, b| a.field == b.field) {
                         let range = start..start + run.len();
                         start = range.end;
-                        let mut sums = [[0.0; LANES]; 4];
+                        let (mut xr, mut xi) = ([0.0; LANES], [0.0; LANES]);
+                        let (mut yr, mut yi) = ([0.0; LANES], [0.0; LANES]);
                         for (phase, x) in self.column[range.clone()].iter().zip(&along_x[range]) {
+                            let [[re, im], [cos, sin]] = [phase, x];
                             for lane in 0..LANES {
-                                let (cos, sin) = (x[0][lane], x[1][lane]);
-                                sums[0][lane] = phase[0][lane].mul_add(cos, sums[0][lane]);
-                                sums[1][lane] = phase[1][lane].mul_add(cos, sums[1][lane]);
-                                sums[2][lane] = phase[0][lane].mul_add(sin, sums[2][lane]);
-                                sums[3][lane] = phase[1][lane].mul_add(sin, sums[3][lane]);
+                                xr[lane] = re[lane].mul_add(cos[lane], xr[lane]);
+                                xi[lane] = im[lane].mul_add(cos[lane], xi[lane]);
+                                yr[lane] = re[lane].mul_add(sin[lane], yr[lane]);
+                                yi[lane] = im[lane].mul_add(sin[lane], yi[lane]);
                             }
                         }
-                        let mut totals = [0.0; 4];
-                        for (total, lanes) in totals.iter_mut().zip(&sums) {
-                            *total = lanes.iter().sum();
-                        }
-                        let [xr, xi, yr, yi] = totals;
+                        let total = |lanes: Lane| lanes.iter().sum::<f64>();
+                        let (xr, xi, yr, yi) = (total(xr), total(xi), total(yr), total(yi));
                         let [er, ei, or, oi] = fields[run[0].field][entry];
                         out[entry][0] += er * xr - ei * xi + or * yr - oi * yi;
                         out[entry][1] += er * xi + ei * xr + or * yi + oi * yr;
