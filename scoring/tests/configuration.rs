@@ -113,7 +113,7 @@ fn at_voxels_it_is_the_engines_grid() {
     let best = grid.grid.iter().copied().fold(0.0, f64::max);
     let prepared = whole.prepare(&rotation, &mut work);
     let mut worst = 0.0f64;
-    for voxel in (0..grid.grid.len()).step_by(grid.grid.len() / 300) {
+    for voxel in (0..grid.grid.len()).step_by(grid.grid.len() / 60) {
         let pose = pair.pose(rotation, engine.position(voxel));
         let (by_translation, _) = prepared.gradient(&pose.translation, &mut work);
         let (by_knots, _) = whole.gradient(&pose, &mut work);

@@ -58,9 +58,10 @@ impl GatherTables {
             fill(&mut self.y, 1);
             fill(&mut self.z, 2);
             for row in self.z.iter_mut().skip(index).step_by(count) {
+                let [cos, sin] = row;
                 for lane in 0..LANES {
-                    row[0][lane] *= block.weights[lane];
-                    row[1][lane] *= block.weights[lane];
+                    cos[lane] *= block.weights[lane];
+                    sin[lane] *= block.weights[lane];
                 }
             }
         }
