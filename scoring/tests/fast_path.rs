@@ -73,6 +73,7 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Fold) -> f64 {
         let value = match fold {
             Fold::Score => exact.score,
             Fold::Slice(slice) => exact.slices[slice],
+            other => unreachable!("the exact sum has no {other:?}"),
         };
         error = error.max((value - work.grid[voxel].wide()).abs());
         best = best.max(value);
