@@ -2,4 +2,5 @@
 
 pub mod evaluate;
 pub mod output;
+pub mod score;
 pub mod search;

@@ -12,10 +12,11 @@
 //! # The way through
 //!
 //! [`kernel`] defines what is scored, [`exact`] scores one pose by the plain pair sum, [`lifted_axis`] and [`transform`] carry
-//! kernel and knots to modes, [`engine`] correlates over all translations at a rotation, and [`field`] reads the same
-//! correlation between its grid points. Fast paths stand beside a slow exact one that tests hold them to.
+//! kernel and knots to modes, [`engine`] correlates over all translations at a rotation, [`configuration`] sums
+//! chosen modes at one pose, and [`field`] reads the correlation between its grid points. Fast paths stand beside a slow exact one that tests hold them to.
 
 pub mod affinity;
+pub mod configuration;
 pub mod engine;
 pub mod exact;
 pub mod field;

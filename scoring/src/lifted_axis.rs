@@ -17,6 +17,10 @@ pub enum Fold {
     Score,
     /// One unweighted slice, 0, 1 or 2 for rho = 0, r0, 2 r0.
     Slice(usize),
+    /// dG / d rho, all three offsets moved by the same length: the score's sensitivity to the knots' radii, per Å.
+    ScoreByOffset,
+    /// dg / d rho of one slice, per Å (= -dg / dr on B&I's r axis, which runs the other way).
+    SliceByOffset(usize),
 }
 
 /// The lifted kernel's modes: for each k = 0..=K a complex radial profile (negative k are the conjugates).
@@ -127,6 +131,14 @@ impl LiftedAxis {
             Fold::Slice(index) => {
                 let offset = kernel.options().slice_offsets()[index.min(2)];
                 Complex64::cis(-2.0 * PI * eta * offset)
+            }
+            // Modes turn as exp(-2 pi i eta rho): to differentiate is to multiply by -2 pi i eta.
+            Fold::ScoreByOffset => {
+                self.fold_factor(kernel, Fold::Score, k) * Complex64::new(0.0, -2.0 * PI * eta)
+            }
+            Fold::SliceByOffset(index) => {
+                let slice = self.fold_factor(kernel, Fold::Slice(index), k);
+                slice * Complex64::new(0.0, -2.0 * PI * eta)
             }
         }
     }

@@ -86,6 +86,7 @@ fn worst_after<T: Real>(
         let value = match fold {
             Fold::Score => exact.score,
             Fold::Slice(slice) => exact.slices[slice],
+            other => unreachable!("the exact sum has no {other:?}"),
         };
         error = error.max((value - work.grid[voxel].wide()).abs());
         best = best.max(value);

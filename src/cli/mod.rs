@@ -12,6 +12,7 @@ mod memory;
 mod native;
 mod ranks;
 mod request;
+mod score;
 mod search_arguments;
 
 use std::ffi::OsString;
@@ -44,6 +45,7 @@ enum Command {
     Dock(Box<dock::Dock>),
     Complex(complex::Complex),
     Evaluate(evaluate::Evaluate),
+    Score(Box<score::Score>),
 }
 
 fn version() -> &'static str {
@@ -66,6 +68,7 @@ pub fn main() -> ExitCode {
         Command::Dock(command) => command.run(console),
         Command::Complex(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
+        Command::Score(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

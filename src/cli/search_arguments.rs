@@ -18,15 +18,9 @@ fn pass_length_help() -> String {
 /// Heading of the options that say what the table lists.
 pub const RANKING: &str = "Ranking";
 
-/// Options of the search.
+/// Options of the kernel and of the modes that stand for it.
 #[derive(Args, Debug)]
-pub struct SearchArguments {
-    /// Rotations of the ligand, near uniform over all.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations, help_heading = TRADE_OFFS)]
-    rotations: usize,
-    /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
-    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
-    angle: Option<usize>,
+pub struct KernelArguments {
     /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
     #[arg(long, value_name = "A", value_parser = above_zero, default_value_t = DockOptions::default().resolution, help_heading = TRADE_OFFS)]
     resolution: f64,
@@ -50,6 +44,19 @@ pub struct SearchArguments {
     /// Effects to score.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = effect, default_value = "shape", help_heading = SCORE)]
     effects: Vec<Effect>,
+}
+
+/// Options of the search.
+#[derive(Args, Debug)]
+pub struct SearchArguments {
+    /// Rotations of the ligand, near uniform over all.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations, help_heading = TRADE_OFFS)]
+    rotations: usize,
+    /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
+    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
+    angle: Option<usize>,
+    #[command(flatten)]
+    kernel: KernelArguments,
     /// Peaks kept of each rotation.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation, help_heading = TRADE_OFFS)]
     per_rotation: usize,
@@ -67,11 +74,10 @@ pub struct SearchArguments {
     no_cluster: bool,
 }
 
-impl SearchArguments {
-    /// The options as the search takes them; the machine's are at their defaults.
+impl KernelArguments {
+    /// The options with everything else at its default.
     pub fn options(&self) -> DockOptions {
         DockOptions {
-            rotations: self.angle.unwrap_or(self.rotations),
             resolution: self.resolution,
             pass_length: self.pass_length,
             spacing: self.spacing,
@@ -80,12 +86,22 @@ impl SearchArguments {
             alpha: self.alpha,
             tolerance: self.tolerance,
             effects: self.effects.clone(),
+            ..DockOptions::default()
+        }
+    }
+}
+
+impl SearchArguments {
+    /// The options as the search takes them; the machine's are at their defaults.
+    pub fn options(&self) -> DockOptions {
+        DockOptions {
+            rotations: self.angle.unwrap_or(self.rotations),
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,
             cluster_radius: self.cluster_radius,
             every_pose: self.no_cluster,
-            ..DockOptions::default()
+            ..self.kernel.options()
         }
     }
 }

@@ -58,7 +58,7 @@ impl Default for DockOptions {
     fn default() -> Self {
         Self {
             rotations: 3600,
-            resolution: 5.0,
+            resolution: 4.5,
             pass_length: None,
             spacing: None,
             lambda: 10.0,

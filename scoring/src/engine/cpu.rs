@@ -13,6 +13,7 @@ use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::nfft::{Forward, ForwardWorkspace};
+use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
@@ -134,6 +135,17 @@ impl<T: Real> Folded<T> {
     /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
     pub fn spectra(&self) -> &[Vec<Complex<T>>] {
         &self.spectra
+    }
+
+    /// Leaves out all modes but those of a selection, for the whole correlation.
+    pub fn keep(&mut self, selection: &Selection) {
+        for spectrum in &mut self.spectra {
+            for (place, value) in spectrum.iter_mut().enumerate() {
+                if !selection.keeps(place) {
+                    *value = Complex::new(T::zero(), T::zero());
+                }
+            }
+        }
     }
 
     /// d_j v_b(s_j) of ligand knot j.

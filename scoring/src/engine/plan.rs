@@ -12,6 +12,7 @@ use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use crate::transform::truncation::ball;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::Vector3;
@@ -107,6 +108,20 @@ impl Plan {
         ligand: &Knots,
         options: EngineOptions,
     ) -> Result<Self, PlanError> {
+        Self::with_kernel_of(receptor, ligand, options, options.tolerance)
+    }
+
+    /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a coarser run:
+    /// the kernel's window is part of its definition.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_kernel_of(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        kernel_tolerance: f64,
+    ) -> Result<Self, PlanError> {
         for knots in [receptor, ligand] {
             knots.check()?;
             if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
@@ -114,12 +129,14 @@ impl Plan {
             }
         }
         let tolerance = options.tolerance;
-        if !(1e-8..=0.1).contains(&tolerance) {
-            return Err(PlanError::Option {
-                name: "tolerance",
-                value: tolerance,
-                bound: "between 1e-8 and 0.1",
-            });
+        for value in [tolerance, kernel_tolerance] {
+            if !(1e-8..=0.1).contains(&value) {
+                return Err(PlanError::Option {
+                    name: "tolerance",
+                    value,
+                    bound: "between 1e-8 and 0.1",
+                });
+            }
         }
         let (receptor_radii, _) = receptor.radius_classes();
         let (ligand_radii, _) = ligand.radius_classes();
@@ -130,7 +147,7 @@ impl Plan {
         let (r_low, r_high) = ends(&receptor_radii);
         let (s_low, s_high) = ends(&ligand_radii);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
-        let reach_factor = 1.15 + 0.75 * (1e-2 / tolerance).log10().max(0.0);
+        let reach_factor = 1.15 + 0.75 * (1e-2 / kernel_tolerance).log10().max(0.0);
         let kernel =
             RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
         let widest = r_high + s_high;
@@ -210,6 +227,15 @@ impl Plan {
             ligand_radius,
             kernel,
         })
+    }
+
+    /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays, and the
+    /// transforms shrink with the modes.
+    pub fn truncated(&self, most: usize) -> Self {
+        Self {
+            modes: Arc::new(ball(&self.modes, most)),
+            ..self.clone()
+        }
     }
 
     /// Grid points per axis.

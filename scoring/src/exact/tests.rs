@@ -304,7 +304,7 @@ fn weights_count() {
     for i in 0..a.len() {
         weighted.weights[i] = Complex64::new((i % 3) as f64, 0.0);
     }
-    let keep = |i: &usize| i % 3 > 0;
+    let keep = |i: &usize| !i.is_multiple_of(3);
     let twice = (0..a.len()).filter(keep).flat_map(|i| vec![i; i % 3]);
     let members: Vec<usize> = twice.collect();
     doubled.centers = members.iter().map(|&i| a.centers[i]).collect();

@@ -11,6 +11,7 @@ pub mod modes;
 pub mod ndft;
 pub mod nfft;
 pub mod spreading;
+pub mod truncation;
 
 use rustfft::num_traits::Float;
 

@@ -1,0 +1,186 @@
+//! One configuration without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
+//!
+//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I section 4.3
+//! and Fig. 9). There are two ways through:
+//!
+//! - [`Configuration::prepare`] sums the ligand's knots into the spectrum of one rotation; each translation then costs O(m') by
+//!   [`Prepared::gradient`], with the force.
+//! - [`Configuration::gradient`] takes a pose with a rotation that is new: every knot reads the receptor's field and its slope, which
+//!   gives force and torque together, O(m' x ligand knots).
+//!
+//! # Conventions
+//!
+//! As everywhere: a pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
+//! ligand's centre. Modes are counted with their conjugates, the lifted axis folded. All sums run in f64. The polynomial repeats
+//! with the box; where the ligand's centre lies outside the box, whose edge no contact reaches, value and gradient are zero.
+
+mod columns;
+mod fields;
+mod gather;
+mod knots;
+mod place;
+mod prepared;
+mod read;
+
+pub use prepared::Prepared;
+
+use crate::engine::Plan;
+use crate::engine::cpu::Folded;
+use crate::exact::PoseGradient;
+use crate::se3::Pose;
+use crate::transform::Real;
+use crate::transform::truncation::Selection;
+use crate::vectorized::vectorized;
+use columns::{Harmonic, Layout};
+use knotdock_structures::Knots;
+use knots::Block;
+use nalgebra::{UnitQuaternion, Vector3};
+use std::sync::Arc;
+
+/// One pair of knot sets at chosen modes, ready for one pose at a time.
+pub struct Configuration {
+    layout: Arc<Layout>,
+    frame: Frame,
+    /// The receptor's fields that knots read: E and O of each kept mode, over the volume.
+    fields: Vec<Vec<Harmonic>>,
+    /// The ligand's knots by the field that they read.
+    blocks: Vec<Block>,
+}
+
+/// Where the two bodies lie.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    receptor_center: Vector3<f64>,
+    ligand_center: Vector3<f64>,
+    /// Half the box, Å.
+    half: Vector3<f64>,
+}
+
+impl Frame {
+    /// The ligand's centre relative to the receptor's, Å; `None` outside the box.
+    fn position(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+        translation: &Vector3<f64>,
+    ) -> Option<Vector3<f64>> {
+        let position = rotation * self.ligand_center + translation - self.receptor_center;
+        (0..3)
+            .all(|axis| position[axis].abs() <= self.half[axis])
+            .then_some(position)
+    }
+}
+
+/// Tables of phases: one evaluation at a time, for any configuration of the same pair and no more modes.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    read: read::ReadTables,
+    place: place::PlaceTables,
+    gather: gather::GatherTables,
+}
+
+impl Configuration {
+    /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Fold`] says of what: score, slice or sensitivity).
+    pub fn new<T: Real>(
+        plan: &Plan,
+        folded: &Folded<T>,
+        ligand: &Knots,
+        selection: &Selection,
+    ) -> Self {
+        let layout = Layout::new(&plan.modes, selection);
+        let fields = fields::of(plan, folded, ligand.len());
+        let volume = plan.modes.volume();
+        // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
+        let turns = fields::centering(plan, folded);
+        let values = fields
+            .iter()
+            .map(|field| {
+                layout.harmonics_of(1.0 / volume, |place| {
+                    field.mode(folded, place) * turns(place)
+                })
+            })
+            .collect();
+        let blocks = fields
+            .iter()
+            .enumerate()
+            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center))
+            .collect();
+        Self {
+            frame: Frame {
+                receptor_center: plan.receptor_center,
+                ligand_center: plan.ligand_center,
+                half: Vector3::from(plan.modes.lengths) * 0.5,
+            },
+            layout: Arc::new(layout),
+            fields: values,
+            blocks,
+        }
+    }
+
+    /// Modes in use, conjugates counted.
+    pub fn modes(&self) -> usize {
+        self.layout.modes
+    }
+
+    /// Buffers; nothing else is allocated by [`Self::gradient`] and [`Prepared::gradient`].
+    pub fn workspace(&self) -> Workspace {
+        Workspace {
+            read: read::ReadTables::new(&self.layout),
+            place: place::PlaceTables::new(&self.layout),
+            gather: gather::GatherTables::new(&self.layout, self.blocks.len()),
+        }
+    }
+
+    /// Value and gradient at a pose: force per Å, torque per radian about the ligand's centre.
+    pub fn gradient(&self, pose: &Pose, work: &mut Workspace) -> (f64, PoseGradient) {
+        let Some(center) = self.frame.position(&pose.rotation, &pose.translation) else {
+            return Default::default();
+        };
+        vectorized(
+            #[inline(always)]
+            || {
+                let rotation = pose.rotation.to_rotation_matrix();
+                let mut score = 0.0;
+                let mut gradient = PoseGradient::default();
+                for block in &self.blocks {
+                    let arms = block.turned(&rotation);
+                    let values = &self.fields[block.field];
+                    let read = work.read.read(&self.layout, values, &arms, &center);
+                    block.gather(&read, &arms, &mut score, &mut gradient);
+                }
+                (score, gradient)
+            },
+        )
+    }
+
+    /// The spectrum G^(w; R) of one rotation.
+    pub fn prepare(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> Prepared {
+        let mut values = vec![[0.0; 4]; self.layout.harmonics.len()];
+        vectorized(
+            #[inline(always)]
+            || {
+                work.gather.gather(
+                    &self.layout,
+                    &self.fields,
+                    &self.blocks,
+                    &rotation.to_rotation_matrix(),
+                    &mut values,
+                );
+            },
+        );
+        Prepared::new(Arc::clone(&self.layout), self.frame, *rotation, values)
+    }
+}
+
+/// For every mode the most that |G^(w; R)| / volume can be at any rotation: sum over fields of |H| times the knots' weights. With
+/// [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
+pub fn envelope<T: Real>(plan: &Plan, folded: &Folded<T>, ligand: &Knots) -> Vec<f64> {
+    let fields = fields::of(plan, folded, ligand.len());
+    let mut envelope = vec![0.0; plan.modes.count];
+    for field in &fields {
+        let weight: f64 = field.knots.iter().map(|knot| knot.1.abs()).sum();
+        for (place, value) in envelope.iter_mut().enumerate() {
+            *value += field.mode(folded, place).norm() * weight / plan.modes.volume();
+        }
+    }
+    envelope
+}

@@ -1,0 +1,401 @@
+//! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error bounds.
+
+use knotdock_scoring::configuration::{Configuration, envelope};
+use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::truncation::{Selection, Tail, total};
+use knotdock_structures::Knots;
+use nalgebra::{UnitQuaternion, Vector3};
+use proptest::prelude::*;
+use std::sync::Arc;
+
+/// Knots strewn over a ball, radii cycling through `radii`, by a fixed linear congruence; the ball lies off the origin.
+fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
+    let mut state = seed;
+    let mut next = move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let mut centers = Vec::new();
+    while centers.len() < count {
+        let p: [f64; 3] = std::array::from_fn(|_| 2.0 * size * next());
+        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
+            centers.push([p[0] + 100.0, p[1] - 20.0, p[2] + 3.0]);
+        }
+    }
+    let radii = (0..count).map(|i| radii[i % radii.len()]).collect();
+    Knots::new(centers, radii).unwrap()
+}
+
+fn options(tolerance: f64) -> EngineOptions {
+    EngineOptions {
+        kernel: KernelOptions {
+            lambda: 10.0,
+            offset: 2.0,
+            alpha: 2.0,
+            resolution: 4.0,
+            pass_length: 8.0,
+            trim: Trim::FlatTop,
+        },
+        spacing: None,
+        tolerance,
+        rank: None,
+    }
+}
+
+const RADII: [f64; 3] = [1.5, 1.7, 1.9];
+
+struct Pair {
+    receptor: Knots,
+    ligand: Knots,
+    plan: Arc<Plan>,
+    folded: Folded<f64>,
+}
+
+impl Pair {
+    fn new(receptor: Knots, ligand: Knots, tolerance: f64, fold: Fold) -> Self {
+        let plan = Arc::new(Plan::new(&receptor, &ligand, options(tolerance)).unwrap());
+        let folded = Folded::<f64>::new(&plan, &receptor, &ligand, fold);
+        Self {
+            receptor,
+            ligand,
+            plan,
+            folded,
+        }
+    }
+
+    fn clouds(tolerance: f64, fold: Fold, seed: u64) -> Self {
+        let receptor = cloud(70, 8.0, &RADII, seed);
+        Self::new(receptor, cloud(29, 5.0, &RADII, seed + 1), tolerance, fold)
+    }
+
+    fn configuration(&self, selection: &Selection) -> Configuration {
+        Configuration::new(&self.plan, &self.folded, &self.ligand, selection)
+    }
+
+    fn whole(&self) -> Configuration {
+        self.configuration(&Selection::all(&self.plan.modes))
+    }
+
+    /// The pose that puts the ligand's centre at `place` relative to the receptor's.
+    fn pose(&self, rotation: UnitQuaternion<f64>, place: Vector3<f64>) -> Pose {
+        Pose::about(
+            rotation,
+            self.plan.ligand_center,
+            self.plan.receptor_center + place,
+        )
+    }
+
+    fn engine(&self) -> CpuEngine<f64> {
+        let rank = self.folded.full_rank();
+        CpuEngine::new(Arc::clone(&self.plan), &self.folded, &self.ligand, rank)
+    }
+}
+
+fn turn(seed: f64) -> UnitQuaternion<f64> {
+    Pose::from_parts([0.3 + seed, -0.2, 0.8, 0.4 - seed], [0.0; 3]).rotation
+}
+
+#[test]
+fn at_voxels_it_is_the_engines_grid() {
+    let pair = Pair::clouds(1e-6, Fold::Score, 1);
+    let (engine, whole) = (pair.engine(), pair.whole());
+    assert_eq!(whole.modes(), total(&pair.plan.modes));
+    let (mut grid, mut work) = (engine.workspace(), whole.workspace());
+    let rotation = turn(0.1);
+    engine.correlate(&rotation, &mut grid);
+    let best = grid.grid.iter().copied().fold(0.0, f64::max);
+    let prepared = whole.prepare(&rotation, &mut work);
+    let mut worst = 0.0f64;
+    for voxel in (0..grid.grid.len()).step_by(grid.grid.len() / 60) {
+        let pose = pair.pose(rotation, engine.position(voxel));
+        let (by_translation, _) = prepared.gradient(&pose.translation, &mut work);
+        let (by_knots, _) = whole.gradient(&pose, &mut work);
+        worst = worst.max((by_translation - grid.grid[voxel]).abs() / best);
+        worst = worst.max((by_knots - grid.grid[voxel]).abs() / best);
+    }
+    println!("worst difference {worst:e} of the best score");
+    assert!(worst < 1e-6);
+}
+
+/// Many radii: fields come from the factored lifted axis. Both ways of summing must still agree with the exact sum.
+#[test]
+fn every_knot_its_own_radius() {
+    let many: Vec<f64> = (0..90).map(|i| 1.5 + 0.4 * f64::from(i) / 89.0).collect();
+    let pair = Pair::new(
+        cloud(90, 9.0, &many, 5),
+        cloud(40, 5.0, &many, 6),
+        1e-3,
+        Fold::Score,
+    );
+    let (whole, engine) = (pair.whole(), pair.engine());
+    let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
+    let mut work = whole.workspace();
+    let mut grid = engine.workspace();
+    engine.correlate(&turn(0.0), &mut grid);
+    let best = grid.grid.iter().copied().fold(0.0, f64::max);
+    let prepared = whole.prepare(&turn(0.0), &mut work);
+    for i in 0..20 {
+        let place = Vector3::new(13.0 - 0.3 * f64::from(i), 0.4 * f64::from(i), -2.0);
+        let pose = pair.pose(turn(0.0), place);
+        let exact = scorer.score(&pose).score;
+        for value in [
+            prepared.gradient(&pose.translation, &mut work).0,
+            whole.gradient(&pose, &mut work).0,
+        ] {
+            assert!(
+                (value - exact).abs() <= 1e-3 * best,
+                "{value} is not {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn gradients_are_the_slopes_of_the_value() {
+    let pair = Pair::clouds(1e-3, Fold::Score, 11);
+    let modes = &pair.plan.modes;
+    let some = Selection::low_frequency(modes, 700);
+    for selection in [Selection::all(modes), some] {
+        let configuration = pair.configuration(&selection);
+        let mut work = configuration.workspace();
+        let pose = pair.pose(turn(0.2), Vector3::new(9.3, -4.1, 2.2));
+        let (value, gradient) = configuration.gradient(&pose, &mut work);
+        let prepared = configuration.prepare(&pose.rotation, &mut work);
+        let (same, force) = prepared.gradient(&pose.translation, &mut work);
+        let scale = gradient.force.norm() + gradient.torque.norm();
+        assert!((value - same).abs() < 1e-10 * scale);
+        assert!((force - gradient.force).norm() < 1e-10 * scale);
+        let h = 1e-4;
+        for axis in 0..3 {
+            let step = Vector3::ith(axis, h);
+            let at = |pose: Pose, work: &mut _| configuration.gradient(&pose, work).0;
+            let moved = |sign: f64| Pose {
+                translation: pose.translation + sign * step,
+                ..pose
+            };
+            let slope = (at(moved(1.0), &mut work) - at(moved(-1.0), &mut work)) / (2.0 * h);
+            assert!((slope - gradient.force[axis]).abs() < 1e-6 * scale);
+            let center = pose.rotation * pair.plan.ligand_center + pose.translation;
+            let turned = |sign: f64| {
+                let rotation = UnitQuaternion::new(sign * step) * pose.rotation;
+                Pose::about(rotation, pair.plan.ligand_center, center)
+            };
+            let slope = (at(turned(1.0), &mut work) - at(turned(-1.0), &mut work)) / (2.0 * h);
+            assert!((slope - gradient.torque[axis]).abs() < 1e-6 * scale);
+        }
+    }
+}
+
+/// A ladder in both orders ends at the exact score; the l1 tail bounds every error on the way.
+#[test]
+fn ladders_converge_to_the_exact_score_within_their_bounds() {
+    let pair = Pair::clouds(1e-4, Fold::Score, 21);
+    let modes = &pair.plan.modes;
+    let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
+    let whole = pair.whole();
+    let mut work = whole.workspace();
+    let rotation = turn(-0.3);
+    let prepared = whole.prepare(&rotation, &mut work);
+    let magnitudes = prepared.magnitudes(modes.count);
+    let over_rotations = envelope(&pair.plan, &pair.folded, &pair.ligand);
+    assert!(
+        magnitudes
+            .iter()
+            .zip(&over_rotations)
+            .all(|(a, b)| *a <= b * (1.0 + 1e-9))
+    );
+    let pose = pair.pose(rotation, Vector3::new(-3.0, 11.0, 1.0));
+    let exact = scorer.score(&pose).score;
+    let (full, _) = prepared.gradient(&pose.translation, &mut work);
+    for order in [0, 1] {
+        let mut last = f64::INFINITY;
+        for most in [64, 256, 1024, 4096, 16_384, usize::MAX] {
+            let selection = match order {
+                0 => Selection::low_frequency(modes, most),
+                _ => Selection::by_magnitude(modes, &magnitudes, most),
+            };
+            let few = pair.configuration(&selection);
+            assert!(few.modes() <= most && few.modes() == selection.modes());
+            let (value, _) = few
+                .prepare(&rotation, &mut work)
+                .gradient(&pose.translation, &mut work);
+            let (by_knots, _) = few.gradient(&pose, &mut work);
+            assert!((value - by_knots).abs() < 1e-9 * full.abs().max(1.0));
+            let tail = Tail::of(modes, &selection, &magnitudes);
+            let anywhere = Tail::of(modes, &selection, &over_rotations);
+            let error = (value - full).abs();
+            println!(
+                "order {order}, {:6} modes: {value:9.3}, error {error:.2e}, rms {:.2e}, bound {:.2e}, over rotations {:.2e}",
+                few.modes(),
+                tail.rms,
+                tail.bound,
+                anywhere.bound
+            );
+            assert!(error <= tail.bound + 1e-9 * full.abs());
+            assert!(tail.bound <= anywhere.bound && tail.rms <= anywhere.rms);
+            assert!(tail.rms <= tail.bound && tail.bound <= last);
+            last = tail.bound;
+        }
+        assert!(
+            (full - exact).abs() < 1e-3 * exact.abs(),
+            "{full} is not {exact}"
+        );
+    }
+}
+
+/// By Parseval the rms tail is the root mean square of the grid's error to rounding, once modes of the product do not alias: they
+/// do not, as the grid holds every mode of the set.
+#[test]
+fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says() {
+    let mut pair = Pair::clouds(1e-6, Fold::Score, 31);
+    let whole = pair.whole();
+    let mut work = whole.workspace();
+    let rotation = turn(0.4);
+    let magnitudes = whole
+        .prepare(&rotation, &mut work)
+        .magnitudes(pair.plan.modes.count);
+    let engine = pair.engine();
+    let mut full = engine.workspace();
+    engine.correlate(&rotation, &mut full);
+    let over_rotations = envelope(&pair.plan, &pair.folded, &pair.ligand);
+    let best = full.grid.iter().copied().fold(0.0, f64::max);
+    // From many modes to few, since those left out of the folded spectra do not come back.
+    for most in [20_000, 4096, 512, 65] {
+        let plan = Arc::clone(&pair.plan);
+        let selection = Selection::low_frequency(&plan.modes, most);
+        pair.folded.keep(&selection);
+        let engine = pair.engine();
+        let mut few = engine.workspace();
+        engine.correlate(&rotation, &mut few);
+        let errors = || full.grid.iter().zip(&few.grid).map(|(a, b)| (a - b).abs());
+        let rms = (errors().map(|e| e * e).sum::<f64>() / few.grid.len() as f64).sqrt();
+        let worst = errors().fold(0.0, f64::max);
+        let tail = Tail::of(&plan.modes, &selection, &magnitudes);
+        let anywhere = Tail::of(&plan.modes, &selection, &over_rotations);
+        println!(
+            "{most}: rms {rms:.4e} of {:.4e}, worst {worst:.3e} of {:.3e}",
+            tail.rms, tail.bound
+        );
+        // The engine transforms to 1e-6 of the best score, which the smallest tails are near.
+        assert!((rms - tail.rms).abs() < 1e-4 * tail.rms + 1e-6 * best);
+        assert!(worst <= tail.bound + 1e-6 * best && tail.bound <= anywhere.bound);
+
+        // Cut to a ball, transforms and all, it is that ball's own low-frequency selection.
+        let cut = Arc::new(plan.truncated(most));
+        assert!(total(&cut.modes) <= most);
+        let folded = Folded::<f64>::new(&cut, &pair.receptor, &pair.ligand, Fold::Score);
+        let engine = CpuEngine::new(Arc::clone(&cut), &folded, &pair.ligand, folded.full_rank());
+        let mut ball = engine.workspace();
+        engine.correlate(&rotation, &mut ball);
+        let tail = Tail::of(
+            &plan.modes,
+            &Selection::low_frequency(&plan.modes, total(&cut.modes)),
+            &magnitudes,
+        );
+        let errors = full
+            .grid
+            .iter()
+            .zip(&ball.grid)
+            .map(|(a, b)| (a - b) * (a - b));
+        let rms = (errors.sum::<f64>() / ball.grid.len() as f64).sqrt();
+        assert!((rms - tail.rms).abs() < 1e-4 * tail.rms + 1e-6 * best);
+    }
+}
+
+/// dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in rho: all ligand radii grown
+/// and shrunk by h move every radius sum, which is what an offset does.
+#[test]
+fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
+    let h = 1e-3;
+    let pairs = [
+        Fold::SliceByOffset(0),
+        Fold::SliceByOffset(1),
+        Fold::SliceByOffset(2),
+        Fold::ScoreByOffset,
+    ]
+    .map(|fold| Pair::clouds(1e-5, fold, 41));
+    let first = &pairs[0];
+    let grown = |by: f64| {
+        let mut ligand = first.ligand.clone();
+        ligand.radii.iter_mut().for_each(|radius| *radius += by);
+        ExactScorer::new(&first.plan.kernel, &first.receptor, &ligand).unwrap()
+    };
+    let (more, less) = (grown(h), grown(-h));
+    let mut worst = [0.0f64; 4];
+    let mut largest = [0.0f64; 4];
+    let configurations = [0, 1, 2, 3].map(|i| pairs[i].whole());
+    let mut work = configurations[0].workspace();
+    for i in 0..12 {
+        let place = Vector3::new(14.0 - f64::from(i), 1.0, 0.3 * f64::from(i));
+        let pose = first.pose(turn(0.05 * f64::from(i)), place);
+        let (a, b) = (more.score(&pose), less.score(&pose));
+        for part in 0..4 {
+            let slope = match part {
+                3 => (a.score - b.score) / (2.0 * h),
+                _ => (a.slices[part] - b.slices[part]) / (2.0 * h),
+            };
+            let ours = configurations[part].gradient(&pose, &mut work).0;
+            worst[part] = worst[part].max((ours - slope).abs());
+            largest[part] = largest[part].max(slope.abs());
+        }
+    }
+    println!("worst {worst:?} of {largest:?}");
+    for part in 0..4 {
+        assert!(worst[part] < 1e-4 * largest[part]);
+    }
+}
+
+/// Beyond the box the polynomial repeats; the pair does not.
+#[test]
+fn a_ligand_far_away_scores_nothing() {
+    let pair = Pair::clouds(1e-2, Fold::Score, 51);
+    let whole = pair.whole();
+    let mut work = whole.workspace();
+    let prepared = whole.prepare(&turn(0.0), &mut work);
+    for far in [1.0, 2.0, 1e6] {
+        let pose = pair.pose(
+            turn(0.0),
+            Vector3::new(far * pair.plan.modes.lengths[0], 0.0, 0.0),
+        );
+        assert_eq!(whole.gradient(&pose, &mut work), Default::default());
+        assert_eq!(
+            prepared.gradient(&pose.translation, &mut work),
+            Default::default()
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    /// Whatever the knots, the rotation and the count: the tail bounds the error at every place tried.
+    #[test]
+    fn tails_bound_errors(seed in 0u64..1000, most in 1usize..3000, q in prop::array::uniform4(0.05..1.0f64)) {
+        let pair = Pair::new(cloud(25, 6.0, &RADII, seed), cloud(11, 4.0, &RADII, seed + 7), 1e-2, Fold::Score);
+        let modes = &pair.plan.modes;
+        let rotation = Pose::from_parts(q, [0.0; 3]).rotation;
+        let whole = pair.whole();
+        let mut work = whole.workspace();
+        let prepared = whole.prepare(&rotation, &mut work);
+        let magnitudes = prepared.magnitudes(modes.count);
+        for selection in [Selection::low_frequency(modes, most), Selection::by_magnitude(modes, &magnitudes, most)] {
+            let few = pair.configuration(&selection).prepare(&rotation, &mut work);
+            let tail = Tail::of(modes, &selection, &magnitudes);
+            for i in 0..40 {
+                let i = f64::from(i);
+                let place = Vector3::new(0.4 * i - 8.0, 7.0 - 0.3 * i, 0.1 * i);
+                let t = pair.pose(rotation, place).translation;
+                let (full, _) = prepared.gradient(&t, &mut work);
+                let (value, _) = few.gradient(&t, &mut work);
+                prop_assert!((full - value).abs() <= tail.bound * (1.0 + 1e-9) + 1e-9);
+            }
+        }
+    }
+}

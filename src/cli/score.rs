@@ -1,0 +1,213 @@
+//! `knotdock score`: one pose, exactly and from ever more modes.
+
+use clap::{Args, ValueEnum};
+use knotdock::output::report;
+use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
+use knotdock::search::SearchError;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::truncation::ModeOrder;
+
+use super::arguments::at_least_one;
+use super::console::Console;
+use super::failure::Failure;
+use super::input::Input;
+use super::search_arguments::KernelArguments;
+
+/// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
+///
+/// The number of modes m counts three-dimensional frequencies with their conjugates, and doubles until the error is below 1e-3
+/// of the exact value or of the scale, the best score at this rotation.
+#[derive(Args, Debug)]
+pub struct Score {
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    #[arg(value_name = "RECEPTOR")]
+    receptor: String,
+    /// The molecule that moves, likewise.
+    #[arg(value_name = "LIGAND")]
+    ligand: String,
+    /// The pose, as poses.csv has it: a unit quaternion and a translation in Å. A ligand atom at x goes to R x + t.
+    #[arg(long, value_name = "QW,QX,QY,QZ,TX,TY,TZ", allow_hyphen_values = true)]
+    pose: String,
+    /// A number of modes that the table is to contain.
+    #[arg(long, value_name = "M", value_parser = at_least_one)]
+    modes: Option<usize>,
+    /// Which modes come first.
+    #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
+    order: Order,
+    #[command(flatten)]
+    kernel: KernelArguments,
+}
+
+/// [`ModeOrder`] by its name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Order {
+    /// From frequency zero outward.
+    LowFrequency,
+    /// By falling magnitude at the pose's rotation.
+    Magnitude,
+}
+
+/// How far from 1 the length of a quaternion may be: what digits left off explain.
+const UNIT_LENGTH: f64 = 1e-3;
+
+impl Score {
+    /// Scores.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let pose = pose(&self.pose)?;
+        let options = ScoreOptions {
+            engine: self.kernel.options().engine(),
+            modes: self.modes,
+            order: match self.order {
+                Order::LowFrequency => ModeOrder::LowFrequency,
+                Order::Magnitude => ModeOrder::Magnitude,
+            },
+        };
+        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
+        let knots = |text: &String, what: &str| -> Result<_, Failure> {
+            let input = Input::read(text)?;
+            console.say(format!("{what}: {}", input.molecule.report));
+            input
+                .molecule
+                .knots()
+                .map_err(|error| refused(error.into()).at(&input.record.path))
+        };
+        let receptor = knots(&self.receptor, "Receptor")?;
+        let ligand = knots(&self.ligand, "Ligand")?;
+        let scored = score::score(&receptor, &ligand, &pose, &options).map_err(refused)?;
+        console.say(format!("\n{}", told(&scored)));
+        if !scored.reached {
+            console.warn(
+                "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
+            );
+        }
+        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        if let Some(object) = object.as_object_mut() {
+            let [qw, qx, qy, qz] = pose.quaternion();
+            let [tx, ty, tz]: [f64; 3] = pose.translation.into();
+            object.insert(
+                "pose".to_owned(),
+                serde_json::json!([qw, qx, qy, qz, tx, ty, tz]),
+            );
+        }
+        console.result(&object);
+        Ok(())
+    }
+}
+
+/// A pose from seven numbers.
+fn pose(text: &str) -> Result<Pose, Failure> {
+    let refused = |message: String, remedy: &str| Failure::input(message).remedy(remedy);
+    let numbers = text.split(',').map(|part| {
+        let number = part.trim().parse::<f64>().ok();
+        number.filter(|number| number.is_finite()).ok_or_else(|| {
+            refused(
+                format!("--pose: '{}' is not a finite number", part.trim()),
+                "give seven finite numbers, qw,qx,qy,qz,tx,ty,tz, with commas between them",
+            )
+        })
+    });
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    let [qw, qx, qy, qz, tx, ty, tz] = numbers[..] else {
+        return Err(refused(
+            format!("--pose has {} numbers, not seven", numbers.len()),
+            "give a unit quaternion and a translation in Å: qw,qx,qy,qz,tx,ty,tz",
+        ));
+    };
+    let length = [qw, qx, qy, qz]
+        .iter()
+        .fold(0.0f64, |length, part| length.hypot(*part));
+    if (length - 1.0).abs() > UNIT_LENGTH {
+        return Err(refused(
+            format!(
+                "--pose: the quaternion has length {length}; a rotation has length 1, to within {UNIT_LENGTH}"
+            ),
+            "divide qw, qx, qy and qz by their length, and check that the scalar part comes first",
+        ));
+    }
+    Ok(Pose::from_parts([qw, qx, qy, qz], [tx, ty, tz]))
+}
+
+/// The report for a person.
+fn told(scored: &PoseScore) -> String {
+    let mut lines = vec![
+        [
+            "modes",
+            "value",
+            "error",
+            "bound",
+            "rms",
+            "translation, µs",
+            "new rotation, µs",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+    ];
+    lines.extend(scored.rows.iter().map(|row| {
+        vec![
+            row.modes.to_string(),
+            format!("{:.3}", row.value),
+            format!("{:.2e}", row.error),
+            format!("{:.2e}", row.bound),
+            format!("{:.2e}", row.rms),
+            format!("{:.1}", 1e6 * row.seconds),
+            format!("{:.1}", 1e6 * row.seconds_new_rotation),
+        ]
+    }));
+    let vector = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
+    let sensitivity = &scored.offset_sensitivity;
+    format!(
+        "Exact score {:.3} (without the low-pass {:.3}); best score at this rotation {:.3}\n\
+         Gradient: {} per Å, {} per radian about the ligand's centre\n\
+         Sensitivity to the offset, per Å: {:.2} of the score, {} of the slices; by differences of the exact sum {:.2}, {}\n\
+         \n{}\n\
+         Modes: of {}, conjugates counted. Bound: the most that the modes left out can add at this rotation; rms: what they add over \
+         all translations.\n{}",
+        scored.exact,
+        scored.unfiltered,
+        scored.scale,
+        vector(scored.gradient.force),
+        vector(scored.gradient.torque),
+        sensitivity.score,
+        vector(sensitivity.slices),
+        sensitivity.exact_score,
+        vector(sensitivity.exact_slices),
+        report::align(&lines),
+        scored.modes_total,
+        if scored.reached {
+            format!(
+                "The last error is below {LADDER_ERROR} of the exact value or of the best score."
+            )
+        } else {
+            "The last error is what the grid leaves.".to_owned()
+        }
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_normalised_when_they_nearly_are() {
+        let found = pose("1.0005, 0,0,0, -1,2.5,3e1").unwrap();
+        assert_eq!(
+            found,
+            Pose::from_parts([1.0, 0.0, 0.0, 0.0], [-1.0, 2.5, 30.0])
+        );
+        for text in [
+            "1,0,0,0,0,0",
+            "1,0,0,0,0,0,0,0",
+            "",
+            "1,0,0,0,0,0,nan",
+            "1,0,0,0,0,inf,0",
+            "1,0,0,0,0,,0",
+            "1.002,0,0,0,0,0,0",
+            "0,0,0,0,0,0,0",
+            "1e300,1e300,0,0,0,0,0",
+        ] {
+            let failure = pose(text).unwrap_err();
+            assert_eq!(failure.exit_code(), 2, "{text}");
+            assert!(failure.text().contains("help:"), "{text}");
+        }
+    }
+}

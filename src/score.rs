@@ -1,0 +1,299 @@
+//! One pose scored: exactly, and from ever more modes, with the error and the time of each.
+
+use crate::search::SearchError;
+use knotdock_scoring::configuration::Configuration;
+use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::truncation::{ModeOrder, Selection, Tail, total};
+use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Modes of the row that every ladder has: the number that B&I's Fig. 9 is about.
+pub const STATED_MODES: usize = 4096;
+/// Modes of the first row.
+const FIRST_MODES: usize = 256;
+/// Error, as a share of the exact value or of the scale, at which a ladder ends.
+pub const LADDER_ERROR: f64 = 1e-3;
+/// Tolerance of the modes: a ladder must get well below its last error.
+const MODE_TOLERANCE: f64 = 1e-4;
+/// Step of the finite differences over radii, as a share of the ligand's smallest radius.
+const RADIUS_STEP: f64 = 1e-3;
+
+/// What to score with.
+#[derive(Clone, Copy, Debug)]
+pub struct ScoreOptions {
+    /// Kernel and grid; the tolerance is that of the run whose kernel is meant.
+    pub engine: EngineOptions,
+    /// A number of modes that the ladder is to contain.
+    pub modes: Option<usize>,
+    /// Which modes come first.
+    pub order: ModeOrder,
+}
+
+/// One row of the ladder.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Rung {
+    /// Modes allowed, conjugates counted.
+    pub modes: usize,
+    /// Modes kept: they come in groups of up to four.
+    pub modes_kept: usize,
+    /// The score from these modes.
+    pub value: f64,
+    /// |value - exact|.
+    pub error: f64,
+    /// The most that the modes left out can add at this rotation, wherever the ligand is: the sum of their magnitudes.
+    pub bound: f64,
+    /// What they add in the root mean square over all translations.
+    pub rms: f64,
+    /// Seconds of a new translation with its gradient, the rotation prepared.
+    pub seconds: f64,
+    /// Seconds to prepare a rotation.
+    pub seconds_prepare: f64,
+    /// Seconds of a new rotation with the gradient over rotation and translation.
+    pub seconds_new_rotation: f64,
+}
+
+/// d / d rho: how the score and its slices answer to a growth of all radius sums, per Å (= -d / dr on B&I's r axis).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OffsetSensitivity {
+    /// Of the score, all three slices moved together.
+    pub score: f64,
+    /// Of the slices at 0, r0, 2 r0.
+    pub slices: [f64; 3],
+    /// The same by finite differences of the exact sum.
+    pub exact_score: f64,
+    /// Likewise.
+    pub exact_slices: [f64; 3],
+}
+
+/// Gradient of the exact score: per Å, and per radian about the ligand's centre.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Gradient {
+    /// Over the translation.
+    pub force: [f64; 3],
+    /// Over the rotation.
+    pub torque: [f64; 3],
+}
+
+/// What there is to say about one pose.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoseScore {
+    /// The exact sum of the ranking kernel over all pairs.
+    pub exact: f64,
+    /// The largest score over all translations of the grid at this rotation, from all modes; where nothing scores above zero, the
+    /// largest magnitude instead.
+    pub scale: f64,
+    /// The ladder, by rising number of modes.
+    pub rows: Vec<Rung>,
+    /// Whether the last row's error is below [`LADDER_ERROR`] of exact value or scale.
+    pub reached: bool,
+    /// All modes of the correlation, conjugates counted.
+    pub modes_total: usize,
+    /// Exact unweighted sums at offsets 0, r0, 2 r0.
+    pub slices: [f64; 3],
+    /// B&I's own sum, without the low-pass.
+    pub unfiltered: f64,
+    /// Exact gradient.
+    pub gradient: Gradient,
+    /// The same from all modes.
+    pub gradient_modes: Gradient,
+    /// Sensitivity to the offset.
+    pub offset_sensitivity: OffsetSensitivity,
+}
+
+/// Scores one pose.
+///
+/// # Errors
+/// [`SearchError`] on knots or options that cannot be used.
+pub fn score(
+    receptor: &Knots,
+    ligand: &Knots,
+    pose: &Pose,
+    options: &ScoreOptions,
+) -> Result<PoseScore, SearchError> {
+    let kernel_tolerance = options.engine.tolerance;
+    let fine = EngineOptions {
+        tolerance: kernel_tolerance.min(MODE_TOLERANCE),
+        ..options.engine
+    };
+    let plan = Arc::new(Plan::with_kernel_of(
+        receptor,
+        ligand,
+        fine,
+        kernel_tolerance,
+    )?);
+    let scorer = ExactScorer::new(&plan.kernel, receptor, ligand)?;
+    let exact = scorer.score(pose);
+    let folds = [
+        Fold::Score,
+        Fold::SliceByOffset(0),
+        Fold::SliceByOffset(1),
+        Fold::SliceByOffset(2),
+    ];
+    let all = Selection::all(&plan.modes);
+    let whole: Vec<(Folded<f64>, Configuration)> = folds
+        .into_par_iter()
+        .map(|fold| {
+            let folded = Folded::<f64>::new(&plan, receptor, ligand, fold);
+            let configuration = Configuration::new(&plan, &folded, ligand, &all);
+            (folded, configuration)
+        })
+        .collect();
+    let [(folded, first), by_offset @ ..] = whole.as_slice() else {
+        return Err(SearchError::NoPose);
+    };
+    let mut work = first.workspace();
+    let magnitudes = first
+        .prepare(&pose.rotation, &mut work)
+        .magnitudes(plan.modes.count);
+    let scale = scale(&plan, folded, ligand, pose);
+    let limit = LADDER_ERROR * exact.score.abs().max(scale);
+    let modes_total = total(&plan.modes);
+    let last_asked = STATED_MODES.max(options.modes.unwrap_or(0));
+    let mut rows = Vec::new();
+    for most in rungs(modes_total, options.modes) {
+        let selection = match options.order {
+            ModeOrder::LowFrequency => Selection::low_frequency(&plan.modes, most),
+            ModeOrder::Magnitude => Selection::by_magnitude(&plan.modes, &magnitudes, most),
+        };
+        let few = Configuration::new(&plan, folded, ligand, &selection);
+        let mut work = few.workspace();
+        let prepared = few.prepare(&pose.rotation, &mut work);
+        let (value, _) = prepared.gradient(&pose.translation, &mut work);
+        let tail = Tail::of(&plan.modes, &selection, &magnitudes);
+        let error = (value - exact.score).abs();
+        rows.push(Rung {
+            modes: most,
+            modes_kept: few.modes(),
+            value,
+            error,
+            bound: tail.bound,
+            rms: tail.rms,
+            seconds: seconds(|| prepared.gradient(&pose.translation, &mut work).0),
+            seconds_prepare: seconds(|| few.prepare(&pose.rotation, &mut work).modes() as f64),
+            seconds_new_rotation: seconds(|| few.gradient(pose, &mut work).0),
+        });
+        if error < limit && most >= last_asked {
+            break;
+        }
+    }
+    let reached = rows.last().is_some_and(|row| row.error < limit);
+    let mut slices = [0.0; 3];
+    for (slice, (_, configuration)) in slices.iter_mut().zip(by_offset) {
+        *slice = configuration.gradient(pose, &mut work).0;
+    }
+    let gradient = |(_, gradient): (f64, knotdock_scoring::exact::PoseGradient)| Gradient {
+        force: gradient.force.into(),
+        torque: gradient.torque.into(),
+    };
+    let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
+    let weights = plan.options.kernel.slice_weights();
+    Ok(PoseScore {
+        exact: exact.score,
+        scale,
+        rows,
+        reached,
+        modes_total,
+        slices: exact.slices,
+        unfiltered: exact.unfiltered,
+        gradient: gradient(scorer.gradient(pose)),
+        gradient_modes: gradient(first.gradient(pose, &mut work)),
+        offset_sensitivity: OffsetSensitivity {
+            score: slices
+                .iter()
+                .zip(weights)
+                .map(|(s, weight)| s * weight)
+                .sum(),
+            slices,
+            exact_score,
+            exact_slices,
+        },
+    })
+}
+
+/// Numbers of modes: doubling from `FIRST_MODES`, with the stated number, the one asked for, and all.
+fn rungs(total: usize, asked: Option<usize>) -> Vec<usize> {
+    let mut rungs: Vec<usize> =
+        std::iter::successors(Some(FIRST_MODES), |modes| modes.checked_mul(2))
+            .take_while(|&modes| modes < total)
+            .chain([STATED_MODES, total])
+            .chain(asked)
+            .collect();
+    rungs.sort_unstable();
+    rungs.dedup();
+    rungs
+}
+
+/// The largest score of the grid at the pose's rotation.
+fn scale(plan: &Arc<Plan>, folded: &Folded<f64>, ligand: &Knots, pose: &Pose) -> f64 {
+    let engine = CpuEngine::new(Arc::clone(plan), folded, ligand, folded.full_rank());
+    let mut work = engine.workspace();
+    engine.correlate(&pose.rotation, &mut work);
+    let best = work.grid.iter().copied().fold(0.0, f64::max);
+    let largest = work.grid.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    // Transforms ring about zero by their tolerance where no pose scores (lambda = 0, or no skin).
+    if best > plan.options.tolerance * largest {
+        best
+    } else {
+        largest
+    }
+}
+
+/// d score / d rho and d slices / d rho by central differences of the exact sum: growing the ligand's radii by h moves every
+/// radius sum as an offset of h does.
+fn exact_sensitivity(
+    plan: &Plan,
+    receptor: &Knots,
+    ligand: &Knots,
+    pose: &Pose,
+) -> Result<(f64, [f64; 3]), KnotsError> {
+    let smallest = ligand.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let h = RADIUS_STEP * smallest;
+    let grown = |by: f64| {
+        let mut ligand = ligand.clone();
+        for radius in &mut ligand.radii {
+            *radius += by;
+        }
+        ExactScorer::new(&plan.kernel, receptor, &ligand).map(|scorer| scorer.score(pose))
+    };
+    let (more, less) = (grown(h)?, grown(-h)?);
+    let slope = |a: f64, b: f64| (a - b) / (2.0 * h);
+    let slices = [0, 1, 2].map(|i| slope(more.slices[i], less.slices[i]));
+    Ok((slope(more.score, less.score), slices))
+}
+
+/// Median seconds of a call over as many as fit into some hundredths of a second, at least three.
+fn seconds(mut call: impl FnMut() -> f64) -> f64 {
+    let mut time = || {
+        let start = Instant::now();
+        std::hint::black_box(call());
+        start.elapsed().as_secs_f64()
+    };
+    let first = time();
+    let count = (0.02 / first.max(1e-9)).clamp(3.0, 301.0) as usize;
+    let mut times: Vec<f64> = (0..count).map(|_| time()).collect();
+    times.sort_by(f64::total_cmp);
+    times.get(count / 2).copied().unwrap_or(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ladders_contain_what_they_must() {
+        assert_eq!(rungs(3000, None), [256, 512, 1024, 2048, 3000, 4096]);
+        assert_eq!(
+            rungs(9000, Some(77)),
+            [77, 256, 512, 1024, 2048, 4096, 8192, 9000]
+        );
+        assert_eq!(rungs(10, Some(4096)), [10, 4096]);
+    }
+}
