@@ -4,4 +4,4 @@ pub mod cpu;
 pub mod plan;
 
 pub use cpu::{CpuEngine, Workspace};
-pub use plan::{EngineOptions, Plan, PlanError};
+pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
