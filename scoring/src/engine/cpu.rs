@@ -57,10 +57,11 @@ pub struct Workspace<T> {
 }
 
 /// The receptor's side, uncompressed: `H[basis function][mode]`, and the ligand's basis values.
+#[derive(Clone)]
 pub struct Folded<T> {
-    spectra: Vec<Vec<Complex<T>>>,
+    pub(super) spectra: Vec<Vec<Complex<T>>>,
     /// d_j v_b(s_j): (knots, basis functions).
-    ligand: DMatrix<f64>,
+    pub(super) ligand: DMatrix<f64>,
     center: [f64; 3],
 }
 

@@ -4,8 +4,10 @@
 
 pub mod cpu;
 pub mod plan;
+pub mod truncation;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
+pub use truncation::{Dominance, Truncation};
 pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};
