@@ -109,8 +109,9 @@ impl<T: Real> Truncation<T> {
             plan: Arc::new(own),
             folded: spectra,
             modes: shares[..kept].iter().map(|s| s.multiplicity).sum::<f64>() as usize,
-            bound: dropped.iter().map(|share| share.most).sum(),
-            estimate: dropped.iter().map(|share| share.square).sum::<f64>().sqrt(),
+            // An empty sum of floats is -0.
+            bound: dropped.iter().map(|share| share.most).sum::<f64>() + 0.0,
+            estimate: (dropped.iter().map(|share| share.square).sum::<f64>() + 0.0).sqrt(),
         }
     }
 }
