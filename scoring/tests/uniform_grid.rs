@@ -86,7 +86,7 @@ fn errors<T: Real>(
     order.sort_by(|&x, &y| grid[y].partial_cmp(&grid[x]).unwrap());
     let sweep = order.iter().copied().step_by(order.len() / 150);
     let middle = knotdock_scoring::exact::center;
-    let (mut squares, mut worst, mut best, mut count) = (0.0, 0.0f64, 0.0f64, 0.0);
+    let (mut squares, mut worst, mut best, mut count) = (0.0f64, 0.0f64, 0.0f64, 0.0);
     for voxel in order[..100].iter().copied().chain(sweep) {
         let place = middle(a) + position(voxel);
         let exact = scorer.score(&Pose::about(turned().rotation, middle(b), place));
@@ -100,7 +100,7 @@ fn errors<T: Real>(
         best = best.max(value);
         count += 1.0;
     }
-    ((squares / f64::from(count)).sqrt() / best, worst / best)
+    ((squares / count).sqrt() / best, worst / best)
 }
 
 fn uniform<T: Real>(a: &Knots, b: &Knots, options: UniformGridOptions, fold: Fold) -> (f64, f64) {
@@ -274,14 +274,14 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
     let wrap = |i: usize, axis: usize| {
         (i as i64 + i64::from(steps[axis])).rem_euclid(size[axis] as i64) as usize
     };
-    for voxel in 0..still.len() {
+    for (voxel, value) in still.iter().enumerate() {
         let (x, y, z) = (
             voxel / (size[1] * size[2]),
             voxel / size[2] % size[1],
             voxel % size[2],
         );
         let to = (wrap(x, 0) * size[1] + wrap(y, 1)) * size[2] + wrap(z, 2);
-        assert!((still[voxel] - moved[to]).abs() < 1e-11 * scale);
+        assert!((value - moved[to]).abs() < 1e-11 * scale);
     }
 }
 
