@@ -141,9 +141,7 @@ impl ReceptorField {
             stride,
             cells_per_length,
             center: [0, 1, 2].map(|axis| folded.center()[axis] * cells_per_length[axis]),
-            limit: plan
-                .receptor_extent
-                .map(|extent| extent + plan.kernel.reach()),
+            limit: plan.receptor_extent.map(|extent| extent + plan.reach()),
             kernel,
             grids,
             knots,

@@ -5,8 +5,9 @@
 //! The slices' weights fold into one factor per mode, C_k = -lambda^2 + 2 lambda exp(-2 pi i eta_k r0) - exp(-4 pi i eta_k r0).
 
 use crate::affinity::DoubleSkin;
-use crate::kernel::RankingKernel;
+use crate::kernel::product::Body;
 use crate::kernel::table::Table;
+use crate::kernel::{ProductKernel, RankingKernel};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -176,7 +177,18 @@ pub enum RadiusBasis {
     },
     /// 1, cos and sin of 2 pi eta_k r for k = 1..=K: the lifted modes themselves, for any number of radii.
     Modes,
+    /// Lagrange polynomials on Chebyshev nodes (Å): any number of radii for the product kernel, whose factors are smooth in the radius
+    /// and have no lifted modes.
+    Nodes {
+        /// Nodes over the receptor's radii.
+        receptor: Vec<f64>,
+        /// Nodes over the ligand's radii.
+        ligand: Vec<f64>,
+    },
 }
+
+/// Most nodes of [`RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product kernel.
+const MOST_NODES: usize = 32;
 
 impl RadiusBasis {
     /// The shorter of the two for these radii.
@@ -188,10 +200,29 @@ impl RadiusBasis {
         }
     }
 
+    /// The basis for a product kernel on |w| <= `w_max`, and the largest error of interpolating over radii relative to the largest ball's
+    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as [`MOST_NODES`] nodes bring it.
+    pub fn for_product(
+        kernel: &ProductKernel,
+        receptor: Vec<f64>,
+        ligand: Vec<f64>,
+        w_max: f64,
+        tolerance: f64,
+    ) -> (Self, f64) {
+        if receptor.len().max(ligand.len()) <= MOST_NODES {
+            return (Self::Classes { receptor, ligand }, 0.0);
+        }
+        let (receptor, a) = nodes_for(kernel, &receptor, w_max, tolerance);
+        let (ligand, b) = nodes_for(kernel, &ligand, w_max, tolerance);
+        (Self::Nodes { receptor, ligand }, a.max(b))
+    }
+
     /// Number of functions on the receptor's and on the ligand's side.
     pub fn sizes(&self, axis: &LiftedAxis) -> (usize, usize) {
         match self {
-            Self::Classes { receptor, ligand } => (receptor.len(), ligand.len()),
+            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
+                (receptor.len(), ligand.len())
+            }
             Self::Modes => (2 * axis.modes() + 1, 2 * axis.modes() + 1),
         }
     }
@@ -200,6 +231,7 @@ impl RadiusBasis {
     pub fn receptor_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
         match self {
             Self::Classes { receptor, .. } => f64::from(u8::from(receptor[index] == radius)),
+            Self::Nodes { receptor, .. } => node_value(receptor, index, radius),
             Self::Modes => mode_value(axis, index, radius),
         }
     }
@@ -208,6 +240,7 @@ impl RadiusBasis {
     pub fn ligand_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
         match self {
             Self::Classes { ligand, .. } => f64::from(u8::from(ligand[index] == radius)),
+            Self::Nodes { ligand, .. } => node_value(ligand, index, radius),
             Self::Modes => mode_value(axis, index, radius),
         }
     }
@@ -223,7 +256,7 @@ impl RadiusBasis {
         w_max: f64,
     ) -> Option<Table<1>> {
         let profile = match self {
-            Self::Classes { receptor, ligand } => {
+            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
                 let sigma = receptor[a] + ligand[b];
                 axis.profile(|axis, k| {
                     let turn = Complex64::cis(-2.0 * PI * axis.eta(k) * sigma)
@@ -258,6 +291,80 @@ impl RadiusBasis {
             [kernel.spectrum_of(&profile, w)]
         }))
     }
+
+    /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a radius, and the two
+    /// bodies' transforms at their radii multiply. `None` for [`Self::Modes`], whose functions stand for no radius.
+    pub fn product_coupling(
+        &self,
+        kernel: &ProductKernel,
+        fold: Fold,
+        (a, b): (usize, usize),
+        w_max: f64,
+    ) -> Option<Table<1>> {
+        let (Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand }) = self else {
+            return None;
+        };
+        let (r, s) = (receptor[a], ligand[b]);
+        let options = kernel.options();
+        let support = r + s + 2.0 * options.offset;
+        let fall = 1.0 / options.resolution - 1.0 / options.pass_length;
+        let panel = (0.25 / support).min(0.1 * fall);
+        Some(Table::fit(w_max, panel.max(w_max / 2000.0), |w| {
+            [kernel.coupling(fold, r, s, w)]
+        }))
+    }
+}
+
+/// Value at `radius` of the Lagrange polynomial that is 1 at node `index`.
+fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
+    let own = nodes[index];
+    nodes
+        .iter()
+        .enumerate()
+        .filter(|&(other, _)| other != index)
+        .map(|(_, node)| (radius - node) / (own - node))
+        .product()
+}
+
+/// The fewest Chebyshev nodes over a range of radii that carry both bodies' transforms to `tolerance`, and the error reached.
+fn nodes_for(kernel: &ProductKernel, radii: &[f64], w_max: f64, tolerance: f64) -> (Vec<f64>, f64) {
+    let (Some(&low), Some(&high)) = (radii.first(), radii.last()) else {
+        return (Vec::new(), 0.0);
+    };
+    if low == high {
+        return (vec![low], 0.0);
+    }
+    let bodies = [Body::Solid, Body::Grown];
+    let between = |i: usize, n: usize| low + (high - low) * i as f64 / n as f64;
+    let mut reached = (Vec::new(), f64::INFINITY);
+    for count in 2..=MOST_NODES {
+        let nodes: Vec<f64> = (0..count)
+            .map(|i| (PI * (i as f64 + 0.5) / count as f64).cos())
+            .map(|x| 0.5 * (low + high) + 0.5 * (high - low) * x)
+            .collect();
+        let mut error = 0.0f64;
+        for i in 0..=48 {
+            let radius = between(i, 48);
+            let values: Vec<f64> = (0..count).map(|m| node_value(&nodes, m, radius)).collect();
+            for j in 0..=16 {
+                let w = w_max * f64::from(j) / 16.0;
+                for body in bodies {
+                    let sum: f64 = nodes
+                        .iter()
+                        .zip(&values)
+                        .map(|(&node, value)| value * kernel.spectrum(body, node, w))
+                        .sum();
+                    let scale = kernel.spectrum(body, high, 0.0);
+                    error = error.max((sum - kernel.spectrum(body, radius, w)).abs() / scale);
+                }
+            }
+        }
+        reached = (nodes, error);
+        if error <= tolerance {
+            break;
+        }
+    }
+    reached
 }
 
 fn mode_value(axis: &LiftedAxis, index: usize, radius: f64) -> f64 {

@@ -120,7 +120,7 @@ pub fn plan(
         knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
             (receptor.len(), ligand.len())
         }
-        knotdock_scoring::lifted_axis::RadiusBasis::Modes => engine.basis.sizes(&engine.axis),
+        _ => engine.basis.sizes(&engine.axis),
     };
     Ok(DockPlan {
         rotations: options.rotations,

@@ -68,10 +68,11 @@ pub struct Workspace<T> {
 }
 
 /// The receptor's side, uncompressed: `H[basis function][mode]`, and the ligand's basis values.
+#[derive(Clone)]
 pub struct Folded<T> {
-    spectra: Vec<Vec<Complex<T>>>,
+    pub(super) spectra: Vec<Vec<Complex<T>>>,
     /// d_j v_b(s_j): (knots, basis functions).
-    ligand: DMatrix<f64>,
+    pub(super) ligand: DMatrix<f64>,
     center: [f64; 3],
 }
 
@@ -90,7 +91,6 @@ impl<T: Real> Folded<T> {
             .iter()
             .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
             .collect();
-        let w_max = plan.modes.cut;
         let zero = Complex::new(T::zero(), T::zero());
         let mut spectra = vec![vec![zero; modes.count]; ligand_size];
         let mut field = vec![zero; modes.count];
@@ -107,10 +107,7 @@ impl<T: Real> Folded<T> {
             }
             forward.transform(&inside, &weights, &mut work, &mut field);
             for (b, spectrum) in spectra.iter_mut().enumerate() {
-                let Some(table) =
-                    plan.basis
-                        .coupling(&plan.kernel, &plan.axis, fold, (a, b), w_max)
-                else {
+                let Some(table) = plan.coupling(fold, (a, b)) else {
                     continue;
                 };
                 modes.for_each(|mode, w, _| {

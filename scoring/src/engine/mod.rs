@@ -1,7 +1,11 @@
 //! Engines: the correlation over all translations at a rotation. One plan, one answer, whatever runs it.
+//!
+//! [`uniform_grid`] is the baseline to compare with: rasterised bumps on a grid, the product kernel alone, a plan of its own.
 
 pub mod cpu;
 pub mod plan;
+pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
-pub use plan::{EngineOptions, Plan, PlanError};
+pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
+pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};

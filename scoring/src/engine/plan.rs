@@ -4,11 +4,16 @@
 //!
 //! Receptor and ligand are recentred on the middles of their bounding boxes. A voxel (ix, iy, iz) of the grid stands for a
 //! position t of the ligand's centre relative to the receptor's: `Plan` and the engine share the map between the two.
+//!
+//! A plan correlates one of two pair kernels ([`PairKernel`]): the lifted cone that ranks poses, or the product kernel of rasterised
+//! bumps, for comparison with grid engines. All that follows a plan takes its kernel from [`Plan::coupling`] alone.
 
 use crate::exact::center;
+use crate::kernel::product::rim_and_reach;
 use crate::kernel::ranking::KernelError;
-use crate::kernel::{KernelOptions, RankingKernel};
-use crate::lifted_axis::{LiftedAxis, RadiusBasis};
+use crate::kernel::table::Table;
+use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
+use crate::lifted_axis::{Fold, LiftedAxis, RadiusBasis};
 use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
@@ -59,16 +64,27 @@ pub enum PlanError {
     TooLarge(f64),
 }
 
+/// The function of two balls that a plan correlates.
+#[derive(Clone, Debug)]
+pub enum PairKernel {
+    /// The lifted cone at r + s + rho, low-passed and windowed: `Plan::kernel`.
+    Lifted,
+    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they are.
+    Product(Box<ProductKernel>),
+}
+
 /// A planned correlation.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The options it was made from.
     pub options: EngineOptions,
-    /// The kernel.
+    /// Which kernel is correlated.
+    pub pair: PairKernel,
+    /// The ranking kernel.
     pub kernel: RankingKernel,
-    /// Its lifted modes.
+    /// Its lifted modes; of a product kernel the mean alone, which nothing uses.
     pub axis: LiftedAxis,
-    /// Largest relative error of the lifted series at the radius sums in use.
+    /// Largest relative error of the lifted series at the radius sums in use, or of the product kernel's interpolation over radii.
     pub axis_error: f64,
     /// How radii meet the lifted axis.
     pub basis: RadiusBasis,
@@ -99,7 +115,7 @@ fn oversampling(tolerance: f64) -> f64 {
 }
 
 impl Plan {
-    /// Plans the correlation of two sets of knots.
+    /// Plans the correlation of two sets of knots by the ranking kernel.
     ///
     /// # Errors
     /// [`PlanError`] on knots or options that cannot be used.
@@ -108,7 +124,7 @@ impl Plan {
         ligand: &Knots,
         options: EngineOptions,
     ) -> Result<Self, PlanError> {
-        Self::with_kernel_of(receptor, ligand, options, options.tolerance)
+        Self::build(receptor, ligand, options, options.tolerance, None)
     }
 
     /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a coarser run:
@@ -121,6 +137,32 @@ impl Plan {
         ligand: &Knots,
         options: EngineOptions,
         kernel_tolerance: f64,
+    ) -> Result<Self, PlanError> {
+        Self::build(receptor, ligand, options, kernel_tolerance, None)
+    }
+
+    /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
+    ///
+    /// Under [`Band::LowPass`] the modes below the stop frequency are all there is. Under [`Band::Whole`] the grid cuts the kernel
+    /// sharply at 1 / (2 spacing), by default where less than the tolerance lies beyond.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn product(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        band: Band,
+    ) -> Result<Self, PlanError> {
+        Self::build(receptor, ligand, options, options.tolerance, Some(band))
+    }
+
+    fn build(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        kernel_tolerance: f64,
+        band: Option<Band>,
     ) -> Result<Self, PlanError> {
         for knots in [receptor, ligand] {
             knots.check()?;
@@ -150,10 +192,8 @@ impl Plan {
         let reach_factor = 1.15 + 0.75 * (1e-2 / kernel_tolerance).log10().max(0.0);
         let kernel =
             RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
-        let widest = r_high + s_high;
-        let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
-        let spacing = match options.spacing {
-            Some(spacing) if spacing.is_finite() && spacing > 0.0 => spacing,
+        let chosen = match options.spacing {
+            Some(spacing) if spacing.is_finite() && spacing > 0.0 => Some(spacing),
             Some(value) => {
                 return Err(PlanError::Option {
                     name: "spacing",
@@ -161,20 +201,22 @@ impl Plan {
                     bound: "above 0 and finite",
                 });
             }
+            None => None,
+        };
+        let (pair, spacing, effective_reach) = match band {
             None => {
-                let stop = kernel.stop();
-                let cut = if tolerance >= 1e-2 {
-                    stop
-                } else {
-                    (0..100)
-                        .map(|i| stop * (1.0 + 0.02 * f64::from(i)))
-                        .find(|&f| kernel.leak_beyond(widest, f) <= tolerance * rim)
-                        .unwrap_or(2.0 * stop)
-                };
-                0.5 / cut
+                let widest = r_high + s_high;
+                let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+                let spacing = chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance));
+                let reach = kernel.effective_reach(widest, tolerance * rim);
+                (PairKernel::Lifted, spacing, reach)
+            }
+            Some(band) => {
+                let ends = [r_low, s_low, r_high, s_high];
+                let (product, spacing, reach) = product_kernel(options, band, ends, chosen)?;
+                (PairKernel::Product(Box::new(product)), spacing, reach)
             }
         };
-        let effective_reach = kernel.effective_reach(widest, tolerance * rim);
         let receptor_center = center(receptor);
         let ligand_center = center(ligand);
         let (low, high) = receptor.bounds();
@@ -184,7 +226,11 @@ impl Plan {
             .iter()
             .map(|&x| (Vector3::from(x) - ligand_center).norm())
             .fold(0.0, f64::max);
-        let ratio = oversampling(tolerance);
+        let ratio = match band {
+            // Cut sharply, all modes count alike.
+            Some(Band::Whole) => 2.0,
+            _ => oversampling(tolerance),
+        };
         // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
         // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
         let share = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
@@ -209,10 +255,27 @@ impl Plan {
         let lengths = size.map(|n| n as f64 * spacing);
         let modes = Arc::new(ModeSet::new(size, lengths, 0.5 / spacing));
         let fine = size.map(|n| fast_size((n as f64 * ratio).ceil() as usize));
-        let (axis, axis_error) = LiftedAxis::for_tolerance(&kernel, 1e-3 * tolerance);
-        let basis = RadiusBasis::choose(&axis, receptor_radii, ligand_radii);
+        let (axis, basis, axis_error) = match &pair {
+            PairKernel::Lifted => {
+                let (axis, error) = LiftedAxis::for_tolerance(&kernel, 1e-3 * tolerance);
+                let basis = RadiusBasis::choose(&axis, receptor_radii, ligand_radii);
+                (axis, basis, error)
+            }
+            PairKernel::Product(product) => {
+                let cut = 0.5 / spacing;
+                let (basis, error) = RadiusBasis::for_product(
+                    product,
+                    receptor_radii,
+                    ligand_radii,
+                    cut,
+                    1e-3 * tolerance,
+                );
+                (LiftedAxis::new(&kernel, 0), basis, error)
+            }
+        };
         Ok(Self {
             options,
+            pair,
             axis,
             axis_error,
             basis,
@@ -238,8 +301,79 @@ impl Plan {
         }
     }
 
+    /// Radial spectrum that couples receptor function a with ligand function b of [`Plan::basis`] in the folded kernel, on all modes
+    /// kept; `None` where it is zero.
+    pub fn coupling(&self, fold: Fold, (a, b): (usize, usize)) -> Option<Table<1>> {
+        let w_max = self.modes.cut;
+        match &self.pair {
+            PairKernel::Lifted => {
+                self.basis
+                    .coupling(&self.kernel, &self.axis, fold, (a, b), w_max)
+            }
+            PairKernel::Product(product) => {
+                self.basis.product_coupling(product, fold, (a, b), w_max)
+            }
+        }
+    }
+
+    /// Distance in Å beyond which two knots do not feel each other.
+    pub fn reach(&self) -> f64 {
+        match self.pair {
+            PairKernel::Lifted => self.kernel.reach(),
+            PairKernel::Product(_) => self.effective_reach,
+        }
+    }
+
     /// Grid points per axis.
     pub fn size(&self) -> [usize; 3] {
         self.modes.size
     }
+}
+
+/// Grid spacing that keeps all modes of the ranking kernel that count.
+fn ranking_spacing(kernel: &RankingKernel, widest: f64, tolerance: f64) -> f64 {
+    let stop = kernel.stop();
+    let cut = if tolerance >= 1e-2 {
+        stop
+    } else {
+        let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+        (0..100)
+            .map(|i| stop * (1.0 + 0.02 * f64::from(i)))
+            .find(|&f| kernel.leak_beyond(widest, f) <= tolerance * rim)
+            .unwrap_or(2.0 * stop)
+    };
+    0.5 / cut
+}
+
+/// The product kernel for the smallest and largest radii of receptor and ligand, a spacing that keeps the modes that count, and the
+/// distance beyond which a pair stays below the tolerance.
+fn product_kernel(
+    options: EngineOptions,
+    band: Band,
+    [r_low, s_low, r_high, s_high]: [f64; 4],
+    chosen: Option<f64>,
+) -> Result<(ProductKernel, f64, f64), PlanError> {
+    let largest = r_high.max(s_high);
+    // No grid is planned finer than an eighth of the smallest ball unasked.
+    let finest = 4.0 / r_low.min(s_low);
+    let w_max = chosen.map_or(finest, |spacing| 0.5 / spacing);
+    let kernel = ProductKernel::new(options.kernel, band, largest, w_max)?;
+    let spacing = chosen.unwrap_or_else(|| match band {
+        Band::LowPass => 0.5 * options.kernel.resolution,
+        Band::Whole => {
+            let (rim, _) = rim_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
+            // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2 to 1e-4).
+            let allowed = 10.0 * options.tolerance * rim;
+            let cut = (1..100)
+                .map(|i| 0.01 * f64::from(i) * finest)
+                .find(|&f| kernel.leak_beyond(r_low, s_low, f) <= allowed)
+                .unwrap_or(finest);
+            0.5 / cut
+        }
+    });
+    let reach = match band {
+        Band::Whole => kernel.reach(r_high, s_high),
+        Band::LowPass => rim_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1,
+    };
+    Ok((kernel, spacing, reach))
 }

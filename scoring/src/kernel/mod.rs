@@ -1,8 +1,11 @@
-//! Kernels: the bump function, its transform, the lifted cone and the low-passed kernel that ranks poses.
+//! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product kernel of
+//! rasterised bumps.
 
 pub mod bump;
 pub mod cone;
 pub mod low_pass;
+pub mod product;
+pub mod product_sum;
 pub mod radial_transform;
 pub mod ranking;
 #[cfg(test)]
@@ -11,4 +14,6 @@ pub mod table;
 
 pub use bump::Bump;
 pub use cone::{Cone, Trim};
+pub use product::{Band, ProductKernel};
+pub use product_sum::ProductScorer;
 pub use ranking::{KernelOptions, RankingKernel};

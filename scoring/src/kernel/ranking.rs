@@ -65,7 +65,7 @@ impl KernelOptions {
         [0.0, self.offset, 2.0 * self.offset]
     }
 
-    fn check(&self) -> Result<Bump, KernelError> {
+    pub(super) fn check(&self) -> Result<Bump, KernelError> {
         let bump = Bump::new(self.alpha)?;
         let finite = |name, value: f64, ok: bool, bound| {
             if value.is_finite() && ok {
