@@ -10,6 +10,7 @@
 pub mod modes;
 pub mod ndft;
 pub mod nfft;
+pub mod nonequispaced;
 pub mod spreading;
 
 use rustfft::num_traits::Float;
