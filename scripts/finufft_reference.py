@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Our transform from points to modes beside FINUFFT and NFFT3: time and agreement, on the same numbers, on one thread.
 
-    python3 scripts/finufft_reference.py [--venv FOLDER] [--runs 15] [--skip-large]
+    python3 scripts/finufft_reference.py [--venv FOLDER] [--runs 15] [--skip-large] [--executable FILE]
 
 Builds `benches/nfft.rs`, installs finufft and numpy (and pyNFFT3, if it can be had) from PyPI into a virtual environment of
 its own, and prints two tables in Markdown. What is timed is what a user repeats for every new set of points: setpts + execute of
@@ -123,9 +123,10 @@ class Nfft3:
         import pyNFFT3
         import numpy as np
 
-        self.points = np.ascontiguousarray(points)
+        # Its adjoint has exp(+2 pi i k.x), and its nodes are in [-1/2, 1/2).
+        self.points = np.ascontiguousarray(np.where(points == -0.5, points, -points))
         self.weights = np.ascontiguousarray(weights)
-        # f1_default and FFTW_ESTIMATE are the library's own; window values precomputed per axis (PRE_PSI) with sorted nodes.
+        # All else is the library's default: window values precomputed an axis (PRE_PSI), nodes sorted, FFTW_ESTIMATE.
         found = None
         for factor in (1.25, 1.5, 2.0):
             grid = np.array([max(2 * -(-int(n * factor) // 2), 20) for n in modes], dtype=np.int32)
@@ -234,10 +235,11 @@ def main():
     parser.add_argument("--venv", default=str(ROOT / "target" / "reference-venv"), help="virtual environment to make or use")
     parser.add_argument("--runs", type=int, default=15, help="timed runs of each program")
     parser.add_argument("--skip-large", action="store_true", help="leave the 128^3 cases out")
+    parser.add_argument("--executable", help="the benchmark, if it is built already")
     options = parser.parse_args()
     if "KNOTDOCK_REFERENCE_VENV" not in os.environ:
         enter_environment(options.venv)
-    ours = Ours(bench_executable())
+    ours = Ours(options.executable or bench_executable())
     try:
         import pyNFFT3  # noqa: F401
 

@@ -1,7 +1,7 @@
 //! Modes to values at points: the passes of `forward` backwards, each transposed.
 
 use super::super::Real;
-use super::{GROUP, Located, Plan, Workspace, place};
+use super::{FIRST_GROUP, GROUP, Located, Plan, Workspace, place};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
@@ -65,8 +65,8 @@ impl<T: Real, const D: usize> Plan<T, D> {
         } = work;
         let zero = Complex::new(T::zero(), T::zero());
         let rest = middle.len() / length;
-        for start in (0..rest).step_by(GROUP) {
-            let count = GROUP.min(rest - start);
+        for start in (0..rest).step_by(FIRST_GROUP) {
+            let count = FIRST_GROUP.min(rest - start);
             let lines = &mut lines[..count * length];
             lines.fill(zero);
             for (index, &factor) in self.factors[0].iter().enumerate() {

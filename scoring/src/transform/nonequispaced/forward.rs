@@ -1,15 +1,16 @@
 //! Points to modes: spreading and the transforms of the fine grid, plane by plane.
 
 use super::super::Real;
-use super::{GROUP, Located, Plan, Workspace, place};
+use super::spread::Weight;
+use super::{FIRST_GROUP, GROUP, Located, Plan, Workspace, place};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
     #[inline(always)]
-    pub(super) fn run_forward<const PARTS: usize>(
+    pub(super) fn run_forward<W: Weight<T, PARTS>, const PARTS: usize>(
         &self,
         points: &Located<D>,
-        weight: impl Fn(usize) -> [T; PARTS] + Copy,
+        weights: &[W],
         work: &mut Workspace<T, D>,
         output: &mut [Complex<T>],
     ) {
@@ -22,7 +23,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         for slab in 0..points.slabs.len().saturating_sub(1) {
             let range = points.slabs[slab]..points.slabs[slab + 1];
             if !range.is_empty() {
-                self.spread_slab::<PARTS>(points, range, weight, work);
+                W::spread(self, points, range, weights, work);
             }
             let complete = ((slab + 1) * self.grid.slab).min(fine);
             for plane in done..complete {
@@ -34,35 +35,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
             self.plane_to_modes::<PARTS>(plane, work);
         }
         self.first_axis_to_modes(work, output);
-    }
-
-    #[inline(always)]
-    fn spread_slab<const PARTS: usize>(
-        &self,
-        points: &Located<D>,
-        range: std::ops::Range<usize>,
-        weight: impl Fn(usize) -> [T; PARTS],
-        work: &mut Workspace<T, D>,
-    ) {
-        let Workspace {
-            slots,
-            footprint,
-            ring,
-            row,
-            ..
-        } = work;
-        macro_rules! with_lanes {
-            ($($lanes:literal)*) => {
-                match (self.window.width.next_multiple_of(2), PARTS) {
-                    $(
-                        ($lanes, 1) => self.spread::<$lanes, PARTS, $lanes>(points, range, weight, slots, *row, footprint, ring),
-                        ($lanes, _) => self.spread::<$lanes, PARTS, { 2 * $lanes }>(points, range, weight, slots, *row, footprint, ring),
-                    )*
-                    _ => {}
-                }
-            };
-        }
-        with_lanes!(2 4 6 8 10 12 14 16);
     }
 
     /// Transforms a finished plane along its own axes into `middle`, and clears it.
@@ -186,8 +158,8 @@ impl<T: Real, const D: usize> Plan<T, D> {
             ..
         } = work;
         let rest = middle.len() / length;
-        for start in (0..rest).step_by(GROUP) {
-            let count = GROUP.min(rest - start);
+        for start in (0..rest).step_by(FIRST_GROUP) {
+            let count = FIRST_GROUP.min(rest - start);
             for (index, plane) in middle.chunks_exact(rest).enumerate() {
                 for (line, value) in plane[start..start + count].iter().enumerate() {
                     lines[line * length + index] = *value;

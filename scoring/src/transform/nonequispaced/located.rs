@@ -53,6 +53,7 @@ impl<const D: usize> Located<D> {
 
     /// Counting sort by slab, then by bin in the order of the grid's memory. Stable, so that results do not depend on chance.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // an axis indexes the point, the grid and the bins alike
     pub(super) fn set(&mut self, points: &[[f64; D]]) -> Result<(), TransformError> {
         let count = points.len();
         if u32::try_from(count).is_err() {

@@ -42,6 +42,7 @@ mod interpolate;
 mod located;
 mod plan;
 mod spread;
+mod vectorized;
 mod window;
 mod workspace;
 
@@ -52,6 +53,8 @@ pub use workspace::Workspace;
 
 /// Lines that are transformed together: their transposed writes then fill whole cache lines.
 const GROUP: usize = 8;
+/// As `GROUP`, for the first axis, whose points lie a plane apart: longer runs for each plane's page of memory.
+const FIRST_GROUP: usize = 32;
 
 /// Place of mode `index` (0 for k = -floor(modes/2)) in a transform of `length` points.
 #[inline(always)]

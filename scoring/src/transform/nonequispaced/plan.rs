@@ -2,6 +2,7 @@
 
 use super::super::{Real, fast_size, spreading::MAX_WIDTH};
 use super::located::Grid;
+use super::vectorized::{Adjoint, Forward, Sort};
 use super::window::{Quality, Window, best};
 use super::{Located, PlanError, TransformError, Workspace};
 use num_complex::Complex;
@@ -13,7 +14,7 @@ const OVERSAMPLING: [f64; 4] = [1.125, 1.25, 1.5, 2.0];
 /// Planes of the fine grid whose points are spread together.
 const SLAB: usize = 8;
 /// Share of the tolerance that aliasing may take by its root mean square; the rest is for unlucky points and for rounding.
-const ALIASING_SHARE: f64 = 0.6;
+const ALIASING_SHARE: f64 = 0.75;
 /// Most points of a fine grid.
 const LARGEST_GRID: usize = u32::MAX as usize;
 
@@ -235,10 +236,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         located: &mut Located<D>,
     ) -> Result<(), TransformError> {
         located.grid = self.grid;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || located.set(points),
-        )
+        pulp::Arch::new().dispatch(Sort { located, points })
     }
 
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
@@ -254,10 +252,13 @@ impl<T: Real, const D: usize> Plan<T, D> {
         output: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, weights.len(), output.len(), work)?;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.run_forward::<2>(points, |j| [weights[j].re, weights[j].im], work, output),
-        );
+        pulp::Arch::new().dispatch(Forward::<T, Complex<T>, D> {
+            plan: self,
+            points,
+            weights,
+            work,
+            output,
+        });
         Ok(())
     }
 
@@ -274,10 +275,13 @@ impl<T: Real, const D: usize> Plan<T, D> {
         output: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, weights.len(), output.len(), work)?;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.run_forward::<1>(points, |j| [weights[j]], work, output),
-        );
+        pulp::Arch::new().dispatch(Forward::<T, T, D> {
+            plan: self,
+            points,
+            weights,
+            work,
+            output,
+        });
         Ok(())
     }
 
@@ -294,10 +298,13 @@ impl<T: Real, const D: usize> Plan<T, D> {
         values: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, values.len(), modes.len(), work)?;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.run_adjoint(points, modes, work, values),
-        );
+        pulp::Arch::new().dispatch(Adjoint {
+            plan: self,
+            points,
+            modes,
+            work,
+            values,
+        });
         Ok(())
     }
 

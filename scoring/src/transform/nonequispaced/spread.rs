@@ -1,7 +1,8 @@
 //! Points onto the rows of the fine grid: the adjoint of `interpolate`.
 
 use super::super::Real;
-use super::{Located, Plan};
+use super::{Located, Plan, Workspace};
+use num_complex::Complex;
 
 /// Where a point's window stands: rows of the grid with their shares.
 pub(super) struct Stencil<T, const LANES: usize> {
@@ -14,8 +15,20 @@ pub(super) struct Stencil<T, const LANES: usize> {
 }
 
 impl<T: Real, const D: usize> Plan<T, D> {
+    /// First grid point and values of a point's window on one axis.
+    #[inline(always)]
+    fn on_axis<const LANES: usize>(&self, low: &[f64; D], axis: usize) -> (usize, [T; LANES]) {
+        if self.grid.widths[axis] == 1 {
+            let mut values = [T::zero(); LANES];
+            values[0] = T::one();
+            return (0, values);
+        }
+        self.window.values::<LANES>(low[axis])
+    }
+
     /// Fills `footprint` with the window on axis 0 and the axes from 3 on, and returns its rest.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // `lane` counts from the window's first point
     pub(super) fn stencil<const LANES: usize, const PARTS: usize>(
         &self,
         low: &[f64; D],
@@ -24,16 +37,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         footprint: &mut Vec<(usize, T)>,
     ) -> Stencil<T, LANES> {
         let fine = &self.grid.fine;
-        let on_axis = |axis: usize| {
-            if self.grid.widths[axis] == 1 {
-                let mut values = [T::zero(); LANES];
-                values[0] = T::one();
-                (0, values)
-            } else {
-                self.window.values::<LANES>(low[axis])
-            }
-        };
-        let (first, values) = on_axis(0);
+        let (first, values) = self.on_axis::<LANES>(low, 0);
         footprint.clear();
         footprint.extend(
             slots[first..first + self.grid.widths[0]]
@@ -43,7 +47,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         );
         let mut stride = row * fine[2];
         for axis in 3..D {
-            let (first, values) = on_axis(axis);
+            let (first, values) = self.on_axis::<LANES>(low, axis);
             let before = footprint.len();
             for (lane, &value) in values[..self.grid.widths[axis]].iter().enumerate().skip(1) {
                 let place = wrap(first + lane, fine[axis]) * stride;
@@ -58,12 +62,12 @@ impl<T: Real, const D: usize> Plan<T, D> {
             }
             stride *= fine[axis];
         }
-        let (first, values) = on_axis(2);
+        let (first, values) = self.on_axis::<LANES>(low, 2);
         let mut rows = [(0, T::zero()); LANES];
         for lane in 0..self.grid.widths[2] {
             rows[lane] = (wrap(first + lane, fine[2]) * row, values[lane]);
         }
-        let (first, along) = on_axis(1);
+        let (first, along) = self.on_axis(low, 1);
         Stencil {
             start: PARTS * first,
             along,
@@ -73,12 +77,17 @@ impl<T: Real, const D: usize> Plan<T, D> {
 
     /// Adds the sorted points `range` to the ring. `PARTS` numbers make a weight; `NUMBERS` = `PARTS` x `LANES`.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn spread<const LANES: usize, const PARTS: usize, const NUMBERS: usize>(
+    #[allow(clippy::too_many_arguments, clippy::needless_range_loop)]
+    pub(super) fn spread<
+        W: Weight<T, PARTS>,
+        const LANES: usize,
+        const PARTS: usize,
+        const NUMBERS: usize,
+    >(
         &self,
         points: &Located<D>,
         range: std::ops::Range<usize>,
-        weight: impl Fn(usize) -> [T; PARTS],
+        weights: &[W],
         slots: &[usize],
         row: usize,
         footprint: &mut Vec<(usize, T)>,
@@ -87,7 +96,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         let height = self.grid.widths[2];
         for (low, &index) in points.low[range.clone()].iter().zip(&points.order[range]) {
             let stencil = self.stencil::<LANES, PARTS>(low, slots, row, footprint);
-            let weight = weight(index as usize);
+            let weight = weights[index as usize].parts();
             let mut line = [T::zero(); NUMBERS];
             for lane in 0..LANES {
                 for part in 0..PARTS {
@@ -107,6 +116,61 @@ impl<T: Real, const D: usize> Plan<T, D> {
             }
         }
     }
+}
+
+/// A weight, real or complex, as the `PARTS` numbers that make it.
+pub(super) trait Weight<T: Real, const PARTS: usize>: Copy {
+    /// Real part, then imaginary part if there is one.
+    fn parts(self) -> [T; PARTS];
+
+    /// Adds the sorted points `range` to the workspace's ring.
+    fn spread<const D: usize>(
+        plan: &Plan<T, D>,
+        points: &Located<D>,
+        range: std::ops::Range<usize>,
+        weights: &[Self],
+        work: &mut Workspace<T, D>,
+    );
+}
+
+/// The method `spread` by the kernel for the window's width, rounded up to even.
+macro_rules! spread_by_width {
+    ($parts:literal: $($lanes:literal)*) => {
+        #[inline(always)]
+        fn spread<const D: usize>(
+            plan: &Plan<T, D>,
+            points: &Located<D>,
+            range: std::ops::Range<usize>,
+            weights: &[Self],
+            work: &mut Workspace<T, D>,
+        ) {
+            let Workspace { slots, footprint, ring, row, .. } = work;
+            match plan.window.width.next_multiple_of(2) {
+                $($lanes => plan.spread::<Self, $lanes, $parts, { $parts * $lanes }>(
+                    points, range, weights, slots, *row, footprint, ring,
+                ),)*
+                _ => {}
+            }
+        }
+    };
+}
+
+impl<T: Real> Weight<T, 1> for T {
+    #[inline(always)]
+    fn parts(self) -> [T; 1] {
+        [self]
+    }
+
+    spread_by_width!(1: 2 4 6 8 10 12 14 16);
+}
+
+impl<T: Real> Weight<T, 2> for Complex<T> {
+    #[inline(always)]
+    fn parts(self) -> [T; 2] {
+        [self.re, self.im]
+    }
+
+    spread_by_width!(2: 2 4 6 8 10 12 14 16);
 }
 
 /// An index that runs less than once around the period.

@@ -52,6 +52,7 @@ impl<T: Real> Window<T> {
 
     /// Values at the grid points from ceil(low) on, for a knot at low + width / 2; zero in the lanes beyond the width.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // `lane` runs along both rows
     pub(super) fn values<const LANES: usize>(&self, low: f64) -> (usize, [T; LANES]) {
         let first = low.ceil();
         let x = T::of(2.0 * (first - low) - 1.0);

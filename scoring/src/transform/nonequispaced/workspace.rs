@@ -2,7 +2,7 @@
 
 use super::super::Real;
 use super::located::Grid;
-use super::{GROUP, Plan};
+use super::{FIRST_GROUP, Plan};
 use num_complex::Complex;
 
 /// Buffers that belong to one plan and serve one transform at a time; made by [`Plan::workspace`].
@@ -75,7 +75,7 @@ impl<T: Real, const D: usize> Workspace<T, D> {
             footprint: Vec::with_capacity(plan.window.width.pow(D as u32 - 2)),
             planes: std::array::from_fn(|_| vec![zero; largest]),
             middle: vec![zero; fine[0] * plan.modes[1..].iter().product::<usize>()],
-            lines: vec![zero; GROUP * longest],
+            lines: vec![zero; FIRST_GROUP * longest],
             scratch: vec![zero; scratch],
             row,
             plane,
