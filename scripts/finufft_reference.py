@@ -259,6 +259,7 @@ def main():
                 print(f"{modes}, {count} points, {tolerance:.0e} ...", file=sys.stderr, flush=True)
                 beside = has_nfft3 and (len(modes) == 4 or modes[0] == 64)
                 rows.append(compare(ours, modes, count, tolerance, options.runs, folder, beside))
+                print(f"  {rows[-1]}", file=sys.stderr, flush=True)
     load = os.getloadavg()[0]
     print(f"{processor()}, {os.cpu_count()} cores, one thread; load {load:.1f}; medians of {options.runs} runs, wall clock (CPU)")
     show(rows, "finufft", "FINUFFT")

@@ -11,7 +11,8 @@
 //! - Modes of an axis with n of them are k = -floor(n/2), ..., ceil(n/2) - 1, in this order; any n >= 1. Arrays of modes are
 //!   row-major, the last axis fastest.
 //! - The tolerance is the error in the 2-norm over all modes (or values), relative to the norm of the whole, a root mean
-//!   square: a value at a single point may miss it by a factor of two. What single precision or a window of 16 points cannot reach is refused.
+//!   square: a value at a single point may miss it by a factor of two. What single precision or a
+//!   window of 16 points cannot reach is refused.
 //! - A weight that is not finite makes modes that are not finite; a point that is not finite is an error.
 //!
 //! # How
