@@ -10,6 +10,7 @@
 pub mod modes;
 pub mod ndft;
 pub mod nfft;
+pub mod nonequispaced;
 pub mod real_fft_3d;
 pub mod spreading;
 pub mod truncation;

@@ -3,6 +3,57 @@
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
+/// Type 1 in any number of dimensions: f_k = sum_j c_j exp(-2 pi i k.x_j) for all `modes`, O(points x modes).
+///
+/// Points are in units of the period; modes run from -floor(n/2) on each axis and stand row-major, the last axis fastest, as
+/// in [`super::nonequispaced`].
+pub fn forward<const D: usize>(
+    points: &[[f64; D]],
+    weights: &[Complex64],
+    modes: [usize; D],
+) -> Vec<Complex64> {
+    let mut output = vec![Complex64::default(); modes.iter().product()];
+    for (point, weight) in points.iter().zip(weights) {
+        for (sum, wave) in output.iter_mut().zip(waves(point, modes)) {
+            *sum += weight * wave;
+        }
+    }
+    output
+}
+
+/// Type 2, the adjoint of [`forward`]: v_j = sum_k f_k exp(+2 pi i k.x_j), O(points x modes).
+pub fn adjoint<const D: usize>(
+    points: &[[f64; D]],
+    values: &[Complex64],
+    modes: [usize; D],
+) -> Vec<Complex64> {
+    let at = |point| {
+        values
+            .iter()
+            .zip(waves(point, modes))
+            .map(|(value, wave)| value * wave.conj())
+            .sum()
+    };
+    points.iter().map(at).collect()
+}
+
+/// exp(-2 pi i k.x) at one point for all modes.
+fn waves<const D: usize>(point: &[f64; D], modes: [usize; D]) -> Vec<Complex64> {
+    let mut waves = vec![Complex64::new(1.0, 0.0)];
+    for (x, n) in point.iter().zip(modes) {
+        // Folded first, so that a point many periods away keeps the digits that it has.
+        let x = x - x.round();
+        let of_axis: Vec<Complex64> = (0..n)
+            .map(|index| Complex64::cis(-2.0 * PI * (index as f64 - (n / 2) as f64) * x))
+            .collect();
+        waves = waves
+            .iter()
+            .flat_map(|outer| of_axis.iter().map(move |inner| outer * inner))
+            .collect();
+    }
+    waves
+}
+
 /// sum_i c_i exp(-2 pi i (w.x_i + eta r_i)) at one lifted frequency (w, eta): O(knots).
 pub fn ndft_4d(
     centers: &[[f64; 3]],

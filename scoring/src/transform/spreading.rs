@@ -121,13 +121,14 @@ impl<T: Real> SpreadingKernel<T> {
     }
 }
 
-fn window(beta: f64, width: f64, u: f64) -> f64 {
+/// The window at u cells from its centre, for |u| <= width / 2.
+pub(super) fn window(beta: f64, width: f64, u: f64) -> f64 {
     let x = 2.0 * u / width;
     bessel_i0(beta * (1.0 - x * x).max(0.0).sqrt()) / bessel_i0(beta)
 }
 
 /// Modified Bessel function of the first kind, order 0, by its power series (all terms positive: no cancellation).
-fn bessel_i0(x: f64) -> f64 {
+pub(super) fn bessel_i0(x: f64) -> f64 {
     let quarter = 0.25 * x * x;
     let (mut term, mut sum, mut k) = (1.0, 1.0, 0.0);
     while term > 1e-18 * sum {

@@ -1,0 +1,365 @@
+//! Choosing grid and window for a tolerance, and the calls.
+
+use super::super::{Real, fast_size, spreading::MAX_WIDTH};
+use super::located::Grid;
+use super::vectorized::{Adjoint, Forward, Sort};
+use super::window::{Quality, Window, best};
+use super::{Located, PlanError, TransformError, Workspace};
+use num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+use std::sync::Arc;
+
+/// Oversampling factors that are weighed against each other.
+const OVERSAMPLING: [f64; 4] = [1.125, 1.25, 1.5, 2.0];
+/// Planes of the fine grid whose points are spread together.
+const SLAB: usize = 8;
+/// Share of the tolerance that the root mean square of the error may take. Points on the grid itself (on faces of the box, say)
+/// bring the errors of all axes and of all aliases into step: measured 2.8 times the mean square's root in three dimensions.
+const ALIASING_SHARE: f64 = 0.33;
+/// Most points of a fine grid.
+const LARGEST_GRID: usize = u32::MAX as usize;
+
+/// A planned pair of transforms between points and `D` = 3 or 4 axes of modes. See the [module](super) for conventions.
+///
+/// ```compile_fail
+/// // Fewer than three axes do not compile.
+/// let plan = knotdock_scoring::transform::nonequispaced::Plan::<f64, 2>::new([8, 8], 1e-3, 10);
+/// ```
+pub struct Plan<T: Real, const D: usize> {
+    pub(super) modes: [usize; D],
+    pub(super) grid: Grid<D>,
+    pub(super) window: Window<T>,
+    /// One over the window's transform, for each axis and mode.
+    pub(super) factors: [Vec<T>; D],
+    pub(super) to_modes: [Arc<dyn Fft<T>>; D],
+    pub(super) to_grid: [Arc<dyn Fft<T>>; D],
+    estimate: f64,
+}
+
+impl<T: Real, const D: usize> Plan<T, D> {
+    /// Plans for `modes` an axis (any positive numbers) and a relative `tolerance`: 1e-12 to below 1 in f64, 1e-5 in f32.
+    /// Grid and window are chosen for the least time at about `points` points; any number may be transformed.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] when an axis has no modes, the tolerance is out of reach, or the grid would be too large.
+    pub fn new(modes: [usize; D], tolerance: f64, points: usize) -> Result<Self, PlanError> {
+        Self::cheapest(modes, tolerance, points, &OVERSAMPLING)
+    }
+
+    /// As [`Self::new`], with the grid at least `oversampling` (above 1, at most 4) times finer than the modes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`]; and when the oversampling is out of range. Little oversampling cannot reach small tolerances.
+    pub fn with_oversampling(
+        modes: [usize; D],
+        tolerance: f64,
+        oversampling: f64,
+    ) -> Result<Self, PlanError> {
+        if !(oversampling > 1.0 && oversampling <= 4.0) {
+            return Err(PlanError::Oversampling {
+                asked: oversampling,
+            });
+        }
+        Self::cheapest(modes, tolerance, 0, &[oversampling])
+    }
+
+    fn cheapest(
+        modes: [usize; D],
+        tolerance: f64,
+        points: usize,
+        oversampling: &[f64],
+    ) -> Result<Self, PlanError> {
+        const { assert!(D == 3 || D == 4, "transforms have three or four axes") };
+        if let Some(axis) = modes.iter().position(|&n| n == 0) {
+            return Err(PlanError::NoModes { axis });
+        }
+        let least = if T::epsilon().wide() > 1e-10 {
+            1e-5
+        } else {
+            1e-12
+        };
+        // A tolerance of 1e-5 may arrive as the nearest f32.
+        if !(tolerance >= 0.999 * least && tolerance < 1.0) {
+            return Err(PlanError::Tolerance {
+                asked: tolerance,
+                least,
+            });
+        }
+        let mut choice: Option<(f64, [usize; D], usize, Quality, f64)> = None;
+        let mut least = f64::INFINITY;
+        let mut fits = false;
+        let addressable = |sizes: &[usize; D]| {
+            let product = sizes
+                .iter()
+                .try_fold(1usize, |product, &n| product.checked_mul(n));
+            product.is_some_and(|product| product <= LARGEST_GRID)
+        };
+        // Before any search for good lengths, which would not end for absurd ones.
+        if !addressable(&modes) {
+            return Err(PlanError::TooLarge {
+                modes: modes.to_vec(),
+            });
+        }
+        for &factor in oversampling {
+            let target = modes.map(|n| {
+                if n == 1 {
+                    1
+                } else {
+                    fast_size((n as f64 * factor).ceil() as usize)
+                }
+            });
+            if !addressable(&target) {
+                continue;
+            }
+            fits = true;
+            for width in 2..=MAX_WIDTH {
+                // The window must not meet itself around the period.
+                let fine = target.map(|n| {
+                    if n == 1 {
+                        1
+                    } else if n < width {
+                        fast_size(width)
+                    } else {
+                        n
+                    }
+                });
+                let axes: Vec<(usize, usize)> = modes
+                    .into_iter()
+                    .zip(fine)
+                    .filter(|&(n, _)| n > 1)
+                    .collect();
+                let quality = best(width, &axes);
+                let rounding = T::epsilon().wide() * quality.rounding;
+                let error = quality.aliasing.hypot(rounding);
+                least = least.min(error / ALIASING_SHARE);
+                if error > ALIASING_SHARE * tolerance {
+                    continue;
+                }
+                let cost = cost(&modes, &fine, width, points);
+                if choice
+                    .as_ref()
+                    .is_none_or(|(cheapest, ..)| cost < *cheapest)
+                {
+                    choice = Some((cost, fine, width, quality, error));
+                }
+                break;
+            }
+        }
+        if !fits {
+            return Err(PlanError::TooLarge {
+                modes: modes.to_vec(),
+            });
+        }
+        let Some((_, fine, width, quality, estimate)) = choice else {
+            return Err(PlanError::Tolerance {
+                asked: tolerance,
+                least,
+            });
+        };
+        let window = Window::new(width, quality.shape, 0.02 * tolerance * quality.edge);
+        let mut planner = FftPlanner::new();
+        Ok(Self {
+            modes,
+            grid: Grid {
+                fine,
+                widths: fine.map(|n| if n == 1 { 1 } else { width }),
+                slab: SLAB,
+            },
+            factors: std::array::from_fn(|axis| {
+                let (n, length) = (modes[axis], fine[axis]);
+                let factor = |index: usize| {
+                    if n == 1 {
+                        return T::one();
+                    }
+                    let k = index as f64 - (n / 2) as f64;
+                    T::of(1.0 / window.transform(k / length as f64))
+                };
+                (0..n).map(factor).collect()
+            }),
+            to_modes: fine.map(|n| planner.plan_fft_forward(n)),
+            to_grid: fine.map(|n| planner.plan_fft_inverse(n)),
+            window,
+            estimate,
+        })
+    }
+
+    /// Modes per axis.
+    pub fn modes(&self) -> [usize; D] {
+        self.modes
+    }
+
+    /// Number of modes in all.
+    pub fn mode_count(&self) -> usize {
+        self.modes.iter().product()
+    }
+
+    /// Points of the fine grid per axis; 1 on an axis of one mode, which needs no grid.
+    pub fn grid(&self) -> [usize; D] {
+        self.grid.fine
+    }
+
+    /// Width of the spreading window in grid points.
+    pub fn width(&self) -> usize {
+        self.window.width
+    }
+
+    /// The error to expect, relative, in the 2-norm, for points without special relation to each other.
+    pub fn expected_error(&self) -> f64 {
+        self.estimate
+    }
+
+    /// Buffers for transforms by this plan; executions allocate nothing.
+    pub fn workspace(&self) -> Workspace<T, D> {
+        Workspace::new(self)
+    }
+
+    /// Folds and sorts points (in units of the period) for transforms by this plan.
+    ///
+    /// # Errors
+    ///
+    /// [`TransformError`] when a coordinate is not finite or there are more than 2^32 - 1 points.
+    pub fn locate(&self, points: &[[f64; D]]) -> Result<Located<D>, TransformError> {
+        let mut located = Located::new(self.grid);
+        self.locate_into(points, &mut located)?;
+        Ok(located)
+    }
+
+    /// As [`Self::locate`], into memory that is there: nothing is allocated for no more points than were there before.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::locate`]; after one, `located` must not be used until points have been set.
+    pub fn locate_into(
+        &self,
+        points: &[[f64; D]],
+        located: &mut Located<D>,
+    ) -> Result<(), TransformError> {
+        located.grid = self.grid;
+        pulp::Arch::new().dispatch(Sort { located, points })
+    }
+
+    /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
+    ///
+    /// # Errors
+    ///
+    /// [`TransformError`] when an array has another length than points or modes, or belongs to another plan.
+    pub fn forward(
+        &self,
+        points: &Located<D>,
+        weights: &[Complex<T>],
+        work: &mut Workspace<T, D>,
+        output: &mut [Complex<T>],
+    ) -> Result<(), TransformError> {
+        self.check(points, weights.len(), output.len(), work)?;
+        pulp::Arch::new().dispatch(Forward::<T, Complex<T>, D> {
+            plan: self,
+            points,
+            weights,
+            work,
+            output,
+        });
+        Ok(())
+    }
+
+    /// As [`Self::forward`] for real weights, in less time.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::forward`].
+    pub fn forward_real(
+        &self,
+        points: &Located<D>,
+        weights: &[T],
+        work: &mut Workspace<T, D>,
+        output: &mut [Complex<T>],
+    ) -> Result<(), TransformError> {
+        self.check(points, weights.len(), output.len(), work)?;
+        pulp::Arch::new().dispatch(Forward::<T, T, D> {
+            plan: self,
+            points,
+            weights,
+            work,
+            output,
+        });
+        Ok(())
+    }
+
+    /// Type 2, modes to values at the points: `values[j] = sum_k modes[k] exp(+2 pi i k.x_j)`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::forward`].
+    pub fn adjoint(
+        &self,
+        points: &Located<D>,
+        modes: &[Complex<T>],
+        work: &mut Workspace<T, D>,
+        values: &mut [Complex<T>],
+    ) -> Result<(), TransformError> {
+        self.check(points, values.len(), modes.len(), work)?;
+        pulp::Arch::new().dispatch(Adjoint {
+            plan: self,
+            points,
+            modes,
+            work,
+            values,
+        });
+        Ok(())
+    }
+
+    fn check(
+        &self,
+        points: &Located<D>,
+        values: usize,
+        modes: usize,
+        work: &Workspace<T, D>,
+    ) -> Result<(), TransformError> {
+        if points.grid != self.grid {
+            return Err(TransformError::Foreign { what: "the points" });
+        }
+        if work.grid != self.grid || work.modes != self.modes {
+            return Err(TransformError::Foreign {
+                what: "the workspace",
+            });
+        }
+        for (what, expected, got) in [
+            ("the array of weights or values", points.len(), values),
+            ("the array of modes", self.mode_count(), modes),
+        ] {
+            if expected != got {
+                return Err(TransformError::Length {
+                    what,
+                    expected,
+                    got,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Time of a transform in units of about a nanosecond, from the operations counted: multiply-adds of spreading and points of one-dimensional transforms.
+fn cost(modes: &[usize], fine: &[usize], width: usize, points: usize) -> f64 {
+    let lanes = width.next_multiple_of(2) as f64;
+    let outer: f64 = fine[1..]
+        .iter()
+        .map(|&n| if n == 1 { 1.0 } else { width as f64 })
+        .product();
+    let spreading = points as f64 * (outer * (2.0 + 0.35 * lanes) + 10.0 * lanes);
+    // Axes 1, 2, ..., 0, each on the modes that earlier ones kept.
+    let mut transforms = 0.0;
+    for step in 0..fine.len() {
+        let axis = (step + 1) % fine.len();
+        let mut lines = 1.0;
+        for other in 0..fine.len() {
+            let done = other != 0 && other < axis || axis == 0;
+            if other != axis {
+                lines *= if done { modes[other] } else { fine[other] } as f64;
+            }
+        }
+        transforms += 3.5 * lines * fine[axis] as f64;
+    }
+    spreading + transforms
+}

@@ -1,0 +1,180 @@
+//! Points onto the rows of the fine grid: the adjoint of `interpolate`.
+
+use super::super::Real;
+use super::{Located, Plan, Workspace};
+use num_complex::Complex;
+
+/// Where a point's window stands: rows of the grid with their shares.
+pub(super) struct Stencil<T, const LANES: usize> {
+    /// First number of the window in a row.
+    pub(super) start: usize,
+    /// Window values along axis 1.
+    pub(super) along: [T; LANES],
+    /// Offsets of rows along axis 2 and their window values.
+    pub(super) rows: [(usize, T); LANES],
+}
+
+impl<T: Real, const D: usize> Plan<T, D> {
+    /// First grid point and values of a point's window on one axis.
+    #[inline(always)]
+    fn on_axis<const LANES: usize>(&self, low: &[f64; D], axis: usize) -> (usize, [T; LANES]) {
+        if self.grid.widths[axis] == 1 {
+            let mut values = [T::zero(); LANES];
+            values[0] = T::one();
+            return (0, values);
+        }
+        self.window.values::<LANES>(low[axis])
+    }
+
+    /// Fills `footprint` with the window on axis 0 and the axes from 3 on, and returns its rest.
+    #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // `lane` counts from the window's first point
+    pub(super) fn stencil<const LANES: usize, const PARTS: usize>(
+        &self,
+        low: &[f64; D],
+        slots: &[usize],
+        row: usize,
+        footprint: &mut Vec<(usize, T)>,
+    ) -> Stencil<T, LANES> {
+        let fine = &self.grid.fine;
+        let (first, values) = self.on_axis::<LANES>(low, 0);
+        footprint.clear();
+        footprint.extend(
+            slots[first..first + self.grid.widths[0]]
+                .iter()
+                .copied()
+                .zip(values),
+        );
+        let mut stride = row * fine[2];
+        for axis in 3..D {
+            let (first, values) = self.on_axis::<LANES>(low, axis);
+            let before = footprint.len();
+            for (lane, &value) in values[..self.grid.widths[axis]].iter().enumerate().skip(1) {
+                let place = wrap(first + lane, fine[axis]) * stride;
+                for index in 0..before {
+                    let (offset, share) = footprint[index];
+                    footprint.push((offset + place, share * value));
+                }
+            }
+            let place = first * stride;
+            for entry in &mut footprint[..before] {
+                *entry = (entry.0 + place, entry.1 * values[0]);
+            }
+            stride *= fine[axis];
+        }
+        let (first, values) = self.on_axis::<LANES>(low, 2);
+        let mut rows = [(0, T::zero()); LANES];
+        for lane in 0..self.grid.widths[2] {
+            rows[lane] = (wrap(first + lane, fine[2]) * row, values[lane]);
+        }
+        let (first, along) = self.on_axis(low, 1);
+        Stencil {
+            start: PARTS * first,
+            along,
+            rows,
+        }
+    }
+
+    /// Adds the sorted points `range` to the ring. `PARTS` numbers make a weight; `NUMBERS` = `PARTS` x `LANES`.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, clippy::needless_range_loop)]
+    pub(super) fn spread<
+        W: Weight<T, PARTS>,
+        const LANES: usize,
+        const PARTS: usize,
+        const NUMBERS: usize,
+    >(
+        &self,
+        points: &Located<D>,
+        range: std::ops::Range<usize>,
+        weights: &[W],
+        slots: &[usize],
+        row: usize,
+        footprint: &mut Vec<(usize, T)>,
+        ring: &mut [T],
+    ) {
+        let height = self.grid.widths[2];
+        for (low, &index) in points.low[range.clone()].iter().zip(&points.order[range]) {
+            let stencil = self.stencil::<LANES, PARTS>(low, slots, row, footprint);
+            let weight = weights[index as usize].parts();
+            let mut line = [T::zero(); NUMBERS];
+            for lane in 0..LANES {
+                for part in 0..PARTS {
+                    line[PARTS * lane + part] = weight[part] * stencil.along[lane];
+                }
+            }
+            for &(offset, share) in footprint.iter() {
+                for &(place, value) in &stencil.rows[..height] {
+                    let factor = share * value;
+                    let start = offset + place + stencil.start;
+                    if let Some(target) = ring[start..].first_chunk_mut::<NUMBERS>() {
+                        for (sum, part) in target.iter_mut().zip(&line) {
+                            *sum += factor * *part;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A weight, real or complex, as the `PARTS` numbers that make it.
+pub(super) trait Weight<T: Real, const PARTS: usize>: Copy {
+    /// Real part, then imaginary part if there is one.
+    fn parts(self) -> [T; PARTS];
+
+    /// Adds the sorted points `range` to the workspace's ring.
+    fn spread<const D: usize>(
+        plan: &Plan<T, D>,
+        points: &Located<D>,
+        range: std::ops::Range<usize>,
+        weights: &[Self],
+        work: &mut Workspace<T, D>,
+    );
+}
+
+/// The method `spread` by the kernel for the window's width, rounded up to even.
+macro_rules! spread_by_width {
+    ($parts:literal: $($lanes:literal)*) => {
+        #[inline(always)]
+        fn spread<const D: usize>(
+            plan: &Plan<T, D>,
+            points: &Located<D>,
+            range: std::ops::Range<usize>,
+            weights: &[Self],
+            work: &mut Workspace<T, D>,
+        ) {
+            let Workspace { slots, footprint, ring, row, .. } = work;
+            match plan.window.width.next_multiple_of(2) {
+                $($lanes => plan.spread::<Self, $lanes, $parts, { $parts * $lanes }>(
+                    points, range, weights, slots, *row, footprint, ring,
+                ),)*
+                _ => {}
+            }
+        }
+    };
+}
+
+impl<T: Real> Weight<T, 1> for T {
+    #[inline(always)]
+    fn parts(self) -> [T; 1] {
+        [self]
+    }
+
+    spread_by_width!(1: 2 4 6 8 10 12 14 16);
+}
+
+impl<T: Real> Weight<T, 2> for Complex<T> {
+    #[inline(always)]
+    fn parts(self) -> [T; 2] {
+        [self.re, self.im]
+    }
+
+    spread_by_width!(2: 2 4 6 8 10 12 14 16);
+}
+
+/// An index that runs less than once around the period.
+#[inline(always)]
+fn wrap(index: usize, size: usize) -> usize {
+    if index >= size { index - size } else { index }
+}
