@@ -399,7 +399,6 @@ mod tests {
         let mut last = usize::MAX;
         for tolerance in [1e-2, 1e-3, 1e-4, 1e-6].into_iter().rev() {
             let (axis, error) = LiftedAxis::for_tolerance(&kernel, tolerance);
-            println!("{tolerance}: {} modes, {error}", axis.modes());
             assert!(error <= tolerance);
             assert!(axis.modes() <= last);
             last = axis.modes();

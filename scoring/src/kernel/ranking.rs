@@ -364,22 +364,6 @@ mod tests {
         let short = RankingKernel::new(options(), 3.0, 3.8, 1.0).unwrap();
         let long = RankingKernel::new(options(), 3.0, 3.8, 4.0).unwrap();
         let (a, b) = (short.leak_beyond(3.4, 0.25), long.leak_beyond(3.4, 0.25));
-        println!(
-            "reach {} {}; leak {a} {b}; rim {}",
-            short.reach(),
-            long.reach(),
-            short.rim(3.4)
-        );
-        for t in [1.0, 0.3, 0.1, 0.03, 0.01] {
-            println!("{t} {}", long.effective_reach(3.4, t));
-        }
-        for f in [0.25, 0.26, 0.28, 0.3, 0.35, 0.4] {
-            println!(
-                "{f} {} {}",
-                short.leak_beyond(3.4, f),
-                long.leak_beyond(3.4, f)
-            );
-        }
         assert!(b < 0.1 * a);
     }
 
