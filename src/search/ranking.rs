@@ -106,53 +106,58 @@ pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
     greedy(body, &poses, radius)
 }
 
-/// All terms of the founders of clusters, or of every pose, ordered by the score that they report; ties in the order given.
+/// Exactly scored rows: every pose, or the best of each cluster. Ordered by their exact scores, ties in the order given; clusters
+/// are numbered in the order of their best poses.
+///
+/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
 pub(super) fn report(
     scorer: &ExactScorer,
     candidates: &[Candidate],
     clusters: &[usize],
     every_pose: bool,
+    margin: f64,
     progress: &dyn Progress,
 ) -> Ranking {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
-    let mut wanted: Vec<(&Candidate, usize, bool)> = Vec::new();
+    let mut founders = vec![f64::NEG_INFINITY; count];
+    let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
     for (candidate, &cluster) in candidates.iter().zip(clusters) {
         sizes[cluster] += 1;
-        let founder = sizes[cluster] == 1;
-        if founder || every_pose {
-            wanted.push((candidate, cluster, founder));
+        // The founder comes first, being the best by the fast path.
+        founders[cluster] = founders[cluster].max(candidate.score);
+        if every_pose || candidate.score >= founders[cluster] - margin {
+            wanted.push((candidate, cluster));
         }
     }
     progress.stage("score", wanted.len() as u64);
-    let mut rows: Vec<(RankedPose, usize, bool)> = wanted
+    let mut rows: Vec<(RankedPose, usize)> = wanted
         .into_par_iter()
-        .map(|(candidate, cluster, founder)| {
+        .map(|(candidate, cluster)| {
             let row = candidate.reported(scorer);
             progress.advance(1);
-            (row, cluster, founder)
+            (row, cluster)
         })
-        .filter(|(row, ..)| row.score.is_finite() && row.score_unfiltered.is_finite())
+        .filter(|(row, _)| row.score.is_finite() && row.score_unfiltered.is_finite())
         .collect();
-    rows.sort_by(|(a, ..), (b, ..)| b.score.total_cmp(&a.score));
-    let mut numbers = vec![None; count];
+    rows.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
+    let mut numbers: Vec<Option<usize>> = vec![None; count];
     let mut found = 0;
-    for &(_, cluster, founder) in &rows {
-        if founder {
+    let mut poses = Vec::with_capacity(rows.len());
+    for (row, cluster) in rows {
+        let first = numbers[cluster].is_none();
+        let number = *numbers[cluster].get_or_insert_with(|| {
             found += 1;
-            numbers[cluster] = Some(found);
-        }
-    }
-    let poses = rows
-        .into_iter()
-        .filter_map(|(row, cluster, _)| {
-            Some(RankedPose {
-                cluster: Some(numbers[cluster]?),
+            found
+        });
+        if first || every_pose {
+            poses.push(RankedPose {
+                cluster: Some(number),
                 cluster_size: Some(sizes[cluster]),
                 ..row
-            })
-        })
-        .collect();
+            });
+        }
+    }
     Ranking {
         poses,
         clusters: found,

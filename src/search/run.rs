@@ -151,11 +151,13 @@ fn dock_in_pool(
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
     clock.lap("cluster");
 
+    let best_peak = peaks.first().map_or(0.0, |peak| f64::from(peak.score));
     let ranking = report(
         &scorer,
         &candidates,
         &clusters,
         options.every_pose,
+        2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
     let best = ranking.poses.first().map_or(1.0, |row| row.score.abs());
