@@ -201,7 +201,7 @@ impl RadiusBasis {
     }
 
     /// The basis for a product kernel on |w| <= `w_max`, and the largest error of interpolating over radii relative to the largest ball's
-    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as [`MOST_NODES`] nodes bring it.
+    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as `MOST_NODES` nodes bring it.
     pub fn for_product(
         kernel: &ProductKernel,
         receptor: Vec<f64>,
