@@ -5,8 +5,8 @@
 //! linear in modes. B&I (Fig. 9) report under a millisecond for fewer than 4,096 modes.
 
 use knotdock_scoring::configuration::Configuration;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::Plan;
-use knotdock_scoring::engine::cpu::Folded;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, total};

@@ -7,7 +7,7 @@
 
 use knotdock::search::DockOptions;
 use knotdock::search::rotations::rotation_set;
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };

@@ -3,7 +3,7 @@
 //! `cargo bench --bench exact` prints microseconds a pose and nanoseconds a pair within reach, medians over the best grid pose of
 //! each of some rotations.
 
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::lifted_axis::Fold;

@@ -4,7 +4,7 @@
 //! is held against: q forward real transforms of the fine grid and one inverse of the mode grid, unpruned, out of place, by
 //! realfft and rustfft with the `transpose` crate between axes.
 
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};

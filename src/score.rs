@@ -2,7 +2,7 @@
 
 use crate::search::SearchError;
 use knotdock_scoring::configuration::Configuration;
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::lifted_axis::Fold;

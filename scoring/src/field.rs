@@ -4,8 +4,8 @@
 //! gradient at every ligand knot by the same window that spreads them. O(ligand knots), whatever the receptor's size, which is what
 //! makes climbing thousands of peaks in six degrees of freedom cheap. Accuracy is that of the fast path.
 
+use crate::engine::Folded;
 use crate::engine::Plan;
-use crate::engine::cpu::Folded;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::fast_size;

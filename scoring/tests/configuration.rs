@@ -1,7 +1,7 @@
 //! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error bounds.
 
 use knotdock_scoring::configuration::{Configuration, envelope};
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, Trim};

@@ -2,7 +2,7 @@
 //!
 //! Errors of G are relative to the best exact score, errors of a slice to its largest value.
 
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, Trim};

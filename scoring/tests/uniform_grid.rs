@@ -2,7 +2,7 @@
 //!
 //! Errors are relative to the best exact score of the sweep; errors of a slice to its largest value.
 
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };

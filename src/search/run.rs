@@ -8,7 +8,7 @@ use super::ranking::{candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
 use super::scan::{choose_rank, scan};
 use cpu_time::ProcessTime;
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;

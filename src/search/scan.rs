@@ -4,7 +4,7 @@ use super::peaks::{Peak, find_peaks};
 use super::plan::DockPlan;
 use super::run::Progress;
 use knotdock_scoring::engine::CpuEngine;
-use knotdock_scoring::engine::cpu::Folded;
+use knotdock_scoring::engine::Folded;
 use knotdock_scoring::se3::HalfTurn;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -3,8 +3,8 @@
 //! With few radii a field belongs to a radius, and every knot reads one. With many, knots would read all of the lifted modes; the
 //! factorisation of the lifted axis then stands for them.
 
+use crate::engine::Folded;
 use crate::engine::Plan;
-use crate::engine::cpu::Folded;
 use crate::transform::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;

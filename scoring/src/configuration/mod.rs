@@ -24,8 +24,8 @@ mod read;
 
 pub use prepared::Prepared;
 
+use crate::engine::Folded;
 use crate::engine::Plan;
-use crate::engine::cpu::Folded;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::Real;

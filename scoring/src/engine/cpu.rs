@@ -7,16 +7,16 @@
 //! B(w; F R) = B(F w; R), which is a mirrored or conjugated reading of the same columns. Columns are multiplied and transformed back
 //! along x while they lie in the first-level cache.
 
+use super::columns::Reading;
+use super::folded::Folded;
 use super::plan::Plan;
-use crate::lifted_axis::Fold;
 use crate::se3::HalfTurn;
 use crate::transform::Real;
-use crate::transform::modes::{ModeSet, place};
+use crate::transform::modes::place;
 use crate::transform::nfft::{Forward, ForwardWorkspace};
-use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
-use nalgebra::{DMatrix, SymmetricEigen, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
@@ -65,151 +65,6 @@ pub struct Workspace<T> {
     pub grid: Vec<T>,
     /// Largest score of each row (x, y).
     pub row_best: Vec<T>,
-}
-
-/// The receptor's side, uncompressed: `H[basis function][mode]`, and the ligand's basis values.
-#[derive(Clone)]
-pub struct Folded<T> {
-    pub(super) spectra: Vec<Vec<Complex<T>>>,
-    /// d_j v_b(s_j): (knots, basis functions).
-    pub(super) ligand: DMatrix<f64>,
-    center: [f64; 3],
-}
-
-impl<T: Real> Folded<T> {
-    /// Transforms the receptor and folds the lifted kernel into it.
-    pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Fold) -> Self {
-        let modes = &plan.modes;
-        let (receptor_size, ligand_size) = plan.basis.sizes(&plan.axis);
-        let fine = plan.fine;
-        let extent = [0, 1, 2]
-            .map(|axis| plan.receptor_extent[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5);
-        let forward = Forward::<T>::new(Arc::clone(modes), fine, plan.width, extent, 1);
-        let mut work = forward.workspace();
-        let points: Vec<[f64; 3]> = receptor
-            .centers
-            .iter()
-            .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
-            .collect();
-        let zero = Complex::new(T::zero(), T::zero());
-        let mut spectra = vec![vec![zero; modes.count]; ligand_size];
-        let mut field = vec![zero; modes.count];
-        for a in 0..receptor_size {
-            let mut inside = Vec::new();
-            let mut weights = Vec::new();
-            for (i, &radius) in receptor.radii.iter().enumerate() {
-                let value =
-                    plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i].re;
-                if value != 0.0 {
-                    inside.push(points[i]);
-                    weights.push(T::of(value));
-                }
-            }
-            forward.transform(&inside, &weights, &mut work, &mut field);
-            for (b, spectrum) in spectra.iter_mut().enumerate() {
-                let Some(table) = plan.coupling(fold, (a, b)) else {
-                    continue;
-                };
-                modes.for_each(|mode, w, _| {
-                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-                    let factor = T::of(table.value(length)[0]);
-                    spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
-                });
-            }
-        }
-        let ligand = DMatrix::from_fn(ligand.len(), ligand_size, |j, b| {
-            ligand.weights[j].re * plan.basis.ligand_value(&plan.axis, b, ligand.radii[j])
-        });
-        let scale = forward.cells_per_length();
-        let center = forward.center();
-        Self {
-            spectra,
-            ligand,
-            center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
-        }
-    }
-
-    /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
-    pub fn spectra(&self) -> &[Vec<Complex<T>>] {
-        &self.spectra
-    }
-
-    /// Leaves out all modes but those of a selection, for the whole correlation.
-    pub fn keep(&mut self, selection: &Selection) {
-        for spectrum in &mut self.spectra {
-            for (place, value) in spectrum.iter_mut().enumerate() {
-                if !selection.keeps(place) {
-                    *value = Complex::new(T::zero(), T::zero());
-                }
-            }
-        }
-    }
-
-    /// d_j v_b(s_j) of ligand knot j.
-    pub fn ligand_weight(&self, knot: usize, function: usize) -> f64 {
-        self.ligand[(knot, function)]
-    }
-
-    /// Where the receptor's middle lies in the box, Å.
-    pub fn center(&self) -> [f64; 3] {
-        self.center
-    }
-
-    /// Number of basis functions: the rank that is exact.
-    pub fn full_rank(&self) -> usize {
-        self.spectra.len()
-    }
-
-    /// The factorisation of the lifted axis: for every rank q the receptor's combination (basis, q), the ligand's coefficients
-    /// (knots, q), and the singular values, largest first.
-    ///
-    /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'; the singular vectors of
-    /// H S, stacked [Re; Im] so that V stays real, give the best q terms in the mean over knots placed at random.
-    pub fn factor(&self, modes: &ModeSet) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
-        let size = self.spectra.len();
-        let mut gram = DMatrix::<f64>::zeros(size, size);
-        let mut multiplicities = Vec::with_capacity(modes.count);
-        modes.for_each(|_, _, multiplicity| multiplicities.push(multiplicity));
-        for a in 0..size {
-            for b in 0..=a {
-                let sum: f64 = self.spectra[a]
-                    .iter()
-                    .zip(&self.spectra[b])
-                    .zip(&multiplicities)
-                    .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
-                    .sum();
-                gram[(a, b)] = sum;
-                gram[(b, a)] = sum;
-            }
-        }
-        let ligand = SymmetricEigen::new(self.ligand.transpose() * &self.ligand);
-        let largest = ligand.eigenvalues.max();
-        let power = |exponent: f64| {
-            let scaled = ligand.eigenvalues.map(|value| {
-                // Functions that no ligand knot tells apart carry nothing.
-                if value > 1e-13 * largest {
-                    value.powf(exponent)
-                } else {
-                    0.0
-                }
-            });
-            &ligand.eigenvectors * DMatrix::from_diagonal(&scaled) * ligand.eigenvectors.transpose()
-        };
-        let (root, inverse_root) = (power(0.5), power(-0.5));
-        let eigen = SymmetricEigen::new(&root * gram * &root);
-        let mut order: Vec<usize> = (0..size).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        let vectors = DMatrix::from_fn(size, size, |row, q| eigen.eigenvectors[(row, order[q])]);
-        let singular = order
-            .iter()
-            .map(|&i| eigen.eigenvalues[i].max(0.0).sqrt())
-            .collect();
-        (
-            &root * &vectors,
-            &self.ligand * inverse_root * &vectors,
-            singular,
-        )
-    }
 }
 
 impl<T: Real> CpuEngine<T> {
@@ -451,129 +306,106 @@ impl<T: Real> CpuEngine<T> {
     /// Products of columns and their inverse along x; then y for each block of planes.
     #[inline(always)]
     fn multiply(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
-        let modes = &self.plan.modes;
-        let [nx, ny, nz] = modes.size;
-        let half = nz / 2 + 1;
-        let rank = self.rank();
-        let zero = Complex::new(T::zero(), T::zero());
-        // F w as a reading of the half that is kept, kz >= 0: B(-w) = conj B(w).
-        let mirrored = matches!(half_turn, HalfTurn::Y | HalfTurn::Z);
+        let half = self.plan.modes.size[2] / 2 + 1;
+        let reading = Reading::after(half_turn);
         for block in (0..half).step_by(PLANES) {
             let depth = PLANES.min(half - block);
             for level in 0..depth {
-                let plane = &mut work.planes[level * nx * ny..(level + 1) * nx * ny];
-                plane.fill(zero);
-                let Some(range) = modes.planes.get(block + level) else {
-                    continue;
-                };
-                for start in range.clone().step_by(COLUMNS) {
-                    let end = (start + COLUMNS).min(range.end);
-                    for (index, column) in modes.columns[start..end].iter().enumerate() {
-                        let product = &mut work.product[index * nx..(index + 1) * nx];
-                        product.fill(zero);
-                        let side = column.kx_max as usize;
-                        let (low, high) = (nx - side, side + 1);
-                        let twin = if mirrored {
-                            let mirror = self.mirrors[start + index] as usize;
-                            modes.columns[mirror].start
-                        } else {
-                            column.start
-                        };
-                        for q in 0..rank {
-                            let from = rank * column.start + q * column.len();
-                            let a = &self.spectra[from..from + column.len()];
-                            let from = rank * twin + q * column.len();
-                            let b = &work.turned[from..from + column.len()];
-                            match half_turn {
-                                HalfTurn::None => {
-                                    multiply_add(
-                                        &mut product[low..],
-                                        a[..side].iter().zip(b),
-                                        -T::one(),
-                                    );
-                                    multiply_add(
-                                        &mut product[..high],
-                                        a[side..].iter().zip(&b[side..]),
-                                        -T::one(),
-                                    );
-                                }
-                                HalfTurn::X => {
-                                    multiply_add(
-                                        &mut product[low..],
-                                        a[..side].iter().zip(b.iter().rev()),
-                                        T::one(),
-                                    );
-                                    multiply_add(
-                                        &mut product[..high],
-                                        a[side..].iter().zip(b[..high].iter().rev()),
-                                        T::one(),
-                                    );
-                                }
-                                HalfTurn::Y => {
-                                    multiply_add(
-                                        &mut product[low..],
-                                        a[..side].iter().zip(b),
-                                        T::one(),
-                                    );
-                                    multiply_add(
-                                        &mut product[..high],
-                                        a[side..].iter().zip(&b[side..]),
-                                        T::one(),
-                                    );
-                                }
-                                HalfTurn::Z => {
-                                    multiply_add(
-                                        &mut product[low..],
-                                        a[..side].iter().zip(b.iter().rev()),
-                                        -T::one(),
-                                    );
-                                    multiply_add(
-                                        &mut product[..high],
-                                        a[side..].iter().zip(b[..high].iter().rev()),
-                                        -T::one(),
-                                    );
-                                }
-                            }
-                        }
-                    }
-                    self.inverse_x.process_with_scratch(
-                        &mut work.product[..(end - start) * nx],
-                        &mut work.scratch,
-                    );
-                    // Columns side by side in y make each write a run.
-                    let first = place(modes.columns[start].ky, ny);
-                    let count = end - start;
-                    if place(modes.columns[end - 1].ky, ny) == first + count - 1 {
-                        for (x, row) in plane.chunks_exact_mut(ny).enumerate() {
-                            for (index, value) in row[first..first + count].iter_mut().enumerate() {
-                                *value = work.product[index * nx + x];
-                            }
-                        }
-                    } else {
-                        for (index, column) in modes.columns[start..end].iter().enumerate() {
-                            let y = place(column.ky, ny);
-                            let product = &work.product[index * nx..(index + 1) * nx];
-                            for (row, value) in plane.chunks_exact_mut(ny).zip(product) {
-                                row[y] = *value;
-                            }
-                        }
+                self.plane(reading, block + level, level, work);
+            }
+            self.pair_rows(block, depth, work);
+        }
+    }
+
+    /// Plane kz of the product, transformed along x and y, into `work.planes` at `level`.
+    #[inline(always)]
+    fn plane(&self, reading: Reading, kz: usize, level: usize, work: &mut Workspace<T>) {
+        let modes = &self.plan.modes;
+        let [nx, ny, _] = modes.size;
+        let plane = &mut work.planes[level * nx * ny..(level + 1) * nx * ny];
+        plane.fill(Complex::new(T::zero(), T::zero()));
+        let Some(range) = modes.planes.get(kz) else {
+            return;
+        };
+        for start in range.clone().step_by(COLUMNS) {
+            let end = (start + COLUMNS).min(range.end);
+            let products = &mut work.product[..(end - start) * nx];
+            for (column, product) in (start..end).zip(products.chunks_exact_mut(nx)) {
+                self.multiply_column(reading, column, &work.turned, product);
+            }
+            self.inverse_x
+                .process_with_scratch(products, &mut work.scratch);
+            // Columns side by side in y make each write a run.
+            let first = place(modes.columns[start].ky, ny);
+            let count = end - start;
+            if place(modes.columns[end - 1].ky, ny) == first + count - 1 {
+                for (x, row) in plane.chunks_exact_mut(ny).enumerate() {
+                    for (index, value) in row[first..first + count].iter_mut().enumerate() {
+                        *value = products[index * nx + x];
                     }
                 }
-                self.inverse_y
-                    .process_with_scratch(plane, &mut work.scratch);
-            }
-            for (pair, row) in work.rows.chunks_exact_mut(nz).enumerate() {
-                for level in 0..depth {
-                    let at = level * nx * ny + 2 * pair;
-                    let (a, b) = (work.planes[at], work.planes[at + 1]);
-                    let kz = block + level;
-                    // A + iB at kz, and A* + iB* at -kz; the mean of a real row is real, and the Nyquist plane is empty.
-                    if kz == 0 {
-                        row[0] = Complex::new(a.re, b.re);
-                    } else {
-                        row[kz] = Complex::new(a.re - b.im, a.im + b.re);
-                        row[nz - kz] = Complex::new(a.re + b.im, b.re - a.im);
+            } else {
+                for (column, product) in modes.columns[start..end]
+                    .iter()
+                    .zip(products.chunks_exact(nx))
+                {
+                    let y = place(column.ky, ny);
+                    for (row, value) in plane.chunks_exact_mut(ny).zip(product) {
+                        row[y] = *value;
                     }
+                }
+            }
+        }
+        self.inverse_y
+            .process_with_scratch(plane, &mut work.scratch);
+    }
+
+    /// sum_q U_q conj(B_q) of one column.
+    #[inline(always)]
+    fn multiply_column(
+        &self,
+        reading: Reading,
+        index: usize,
+        turned: &[Complex<T>],
+        product: &mut [Complex<T>],
+    ) {
+        let columns = &self.plan.modes.columns;
+        let column = &columns[index];
+        let twin = if reading.mirrored {
+            &columns[self.mirrors[index] as usize]
+        } else {
+            column
+        };
+        product.fill(Complex::new(T::zero(), T::zero()));
+        let (rank, length) = (self.rank(), column.len());
+        for q in 0..rank {
+            let (a, b) = (
+                rank * column.start + q * length,
+                rank * twin.start + q * length,
+            );
+            reading.multiply_add(
+                product,
+                &self.spectra[a..a + length],
+                &turned[b..b + length],
+            );
+        }
+    }
+
+    /// Joins the rows of `depth` planes from kz = `block` on in pairs.
+    #[inline(always)]
+    fn pair_rows(&self, block: usize, depth: usize, work: &mut Workspace<T>) {
+        let [nx, ny, nz] = self.plan.modes.size;
+        for (pair, row) in work.rows.chunks_exact_mut(nz).enumerate() {
+            for level in 0..depth {
+                let at = level * nx * ny + 2 * pair;
+                let (a, b) = (work.planes[at], work.planes[at + 1]);
+                let kz = block + level;
+                // A + iB at kz, and A* + iB* at -kz; the mean of a real row is real, and the Nyquist plane is empty.
+                if kz == 0 {
+                    row[0] = Complex::new(a.re, b.re);
+                } else {
+                    row[kz] = Complex::new(a.re - b.im, a.im + b.re);
+                    row[nz - kz] = Complex::new(a.re + b.im, b.re - a.im);
                 }
             }
         }
@@ -635,18 +467,4 @@ fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
     let extent = [0, 1, 2]
         .map(|axis| plan.ligand_radius * plan.fine[axis] as f64 / modes.lengths[axis] + 0.5);
     Forward::new(Arc::clone(modes), plan.fine, plan.width, extent, rank)
-}
-
-/// sum += a b (`sign` 1) or a conj(b) (`sign` -1), element by element.
-#[inline(always)]
-fn multiply_add<'a, T: Real>(
-    sum: &mut [Complex<T>],
-    factors: impl Iterator<Item = (&'a Complex<T>, &'a Complex<T>)>,
-    sign: T,
-) {
-    for (sum, (a, b)) in sum.iter_mut().zip(factors) {
-        let imaginary = sign * b.im;
-        sum.re += a.re * b.re - a.im * imaginary;
-        sum.im += a.im * b.re + a.re * imaginary;
-    }
 }

@@ -2,10 +2,13 @@
 //!
 //! [`uniform_grid`] is the baseline to compare with: rasterised bumps on a grid, the product kernel alone, a plan of its own.
 
+mod columns;
 pub mod cpu;
+pub mod folded;
 pub mod plan;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
+pub use folded::Folded;
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
 pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};
