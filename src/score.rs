@@ -1,6 +1,6 @@
 //! One pose scored: exactly, and from ever more modes, with the error and the time of each.
 
-use crate::search::SearchError;
+use crate::search::{Scene, SearchError};
 use knotdock_scoring::configuration::Configuration;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
@@ -12,6 +12,7 @@ use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -85,8 +86,10 @@ pub struct Gradient {
 /// What there is to say about one pose.
 #[derive(Clone, Debug, Serialize)]
 pub struct PoseScore {
-    /// The exact sum of the ranking kernel over all pairs.
+    /// The exact sum over all pairs, of all effects that are on.
     pub exact: f64,
+    /// Its weighted terms by the effect's name.
+    pub terms: BTreeMap<&'static str, f64>,
     /// The largest score over all translations of the grid at this rotation, from all modes; where nothing scores above zero, the
     /// largest magnitude instead.
     pub scale: f64,
@@ -98,7 +101,7 @@ pub struct PoseScore {
     pub modes_total: usize,
     /// Exact unweighted sums at offsets 0, r0, 2 r0.
     pub slices: [f64; 3],
-    /// B&I's own sum, without the low-pass.
+    /// B&I's own sum of shape, without the low-pass.
     pub unfiltered: f64,
     /// Exact gradient.
     pub gradient: Gradient,
@@ -112,24 +115,21 @@ pub struct PoseScore {
 ///
 /// # Errors
 /// [`SearchError`] on knots or options that cannot be used.
-pub fn score(
-    receptor: &Knots,
-    ligand: &Knots,
-    pose: &Pose,
-    options: &ScoreOptions,
-) -> Result<PoseScore, SearchError> {
+pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, SearchError> {
+    let (receptor, ligand) = (&scene.receptor, &scene.ligand);
     let kernel_tolerance = options.engine.tolerance;
     let fine = EngineOptions {
         tolerance: kernel_tolerance.min(MODE_TOLERANCE),
         ..options.engine
     };
-    let plan = Arc::new(Plan::with_kernel_of(
+    let plan = Arc::new(Plan::with_effects(
         receptor,
         ligand,
         fine,
         kernel_tolerance,
+        scene.terms.clone(),
     )?);
-    let scorer = ExactScorer::new(&plan.kernel, receptor, ligand)?;
+    let scorer = ExactScorer::with_effects(&plan.kernel, receptor, ligand, &plan.effects)?;
     let exact = scorer.score(pose);
     let folds = [
         Fold::Score,
@@ -197,6 +197,17 @@ pub fn score(
     let weights = plan.options.kernel.slice_weights();
     Ok(PoseScore {
         exact: exact.score,
+        terms: scene
+            .decisions
+            .iter()
+            .filter(|decision| decision.on)
+            .map(|decision| {
+                (
+                    decision.effect.name(),
+                    exact.terms[decision.effect as usize],
+                )
+            })
+            .collect(),
         scale,
         rows,
         reached,
@@ -266,6 +277,7 @@ fn exact_sensitivity(
     let (more, less) = (grown(h)?, grown(-h)?);
     let slope = |a: f64, b: f64| (a - b) / (2.0 * h);
     let slices = [0, 1, 2].map(|i| slope(more.slices[i], less.slices[i]));
+    // Shape alone: no other term knows of radii.
     Ok((slope(more.score, less.score), slices))
 }
 

@@ -38,6 +38,8 @@ impl DoubleSkin {
                 .map(|c| c * skin)
                 .chain(solid.weights.iter().map(|c| c * core))
                 .collect(),
+            // Shape is all that the affinity function knows.
+            ..Knots::default()
         }
     }
 

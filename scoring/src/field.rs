@@ -4,6 +4,7 @@
 //! gradient at every ligand knot by the same window that spreads them. O(ligand knots), whatever the receptor's size, which is what
 //! makes climbing thousands of peaks in six degrees of freedom cheap. Accuracy is that of the fast path.
 
+use crate::effect::Effect;
 use crate::engine::Folded;
 use crate::engine::Plan;
 use crate::exact::PoseGradient;
@@ -17,6 +18,7 @@ use nalgebra::Vector3;
 use num_complex::Complex;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Fine grid points per mode: the window's slope needs more room than its value.
 const OVERSAMPLING: f64 = 1.5;
@@ -49,7 +51,7 @@ impl ReceptorField {
     /// Bytes that the field of a plan takes.
     pub fn bytes(plan: &Plan) -> usize {
         let size = fine_size(plan);
-        plan.basis.sizes(&plan.axis).1 * 4 * size[0] * size[1] * (size[2] + LANES)
+        plan.functions() * 4 * size[0] * size[1] * (size[2] + LANES)
     }
 
     /// Samples the potentials from the folded spectra.
@@ -76,10 +78,11 @@ impl ReceptorField {
         let mut spectrum = vec![zero; mx * my * half];
         let mut line = vec![zero; mx.max(my)];
         let mut row = vec![0.0f32; mz];
-        let grids = folded
-            .spectra()
+        let seen = fields(folded, ligand.len());
+        let grids = seen
+            .grids
             .iter()
-            .map(|source| {
+            .map(|functions| {
                 // [kz][ky][kx] for x, then [kz][x][y], then rows along z.
                 spectrum.fill(zero);
                 for column in &modes.columns {
@@ -90,7 +93,10 @@ impl ReceptorField {
                         let factor = (outer * factors[0][k.unsigned_abs() as usize]) as f32;
                         let at =
                             (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
-                        spectrum[at] = source[column.start + i].scale(factor);
+                        let source = functions.iter().fold(zero, |sum, &(function, weight)| {
+                            sum + folded.spectra()[function][column.start + i].scale(weight)
+                        });
+                        spectrum[at] = source.scale(factor);
                     }
                 }
                 along_x.process(&mut spectrum);
@@ -124,16 +130,13 @@ impl ReceptorField {
             })
             .collect();
         let cells_per_length = [0, 1, 2].map(|axis| size[axis] as f64 / modes.lengths[axis]);
-        let knots = (0..ligand.len())
-            .map(|j| {
-                let weights = (0..folded.full_rank())
-                    .map(|b| (b, folded.ligand_weight(j, b)))
-                    .filter(|&(_, weight)| weight != 0.0)
-                    .collect();
-                (
-                    Vector3::from(ligand.centers[j]) - plan.ligand_center,
-                    weights,
-                )
+        let knots = seen
+            .knots
+            .into_iter()
+            .enumerate()
+            .map(|(j, weights)| {
+                let center = Vector3::from(ligand.centers[j]);
+                (center - plan.ligand_center, weights)
             })
             .collect();
         Self {
@@ -229,6 +232,72 @@ impl ReceptorField {
         }
         (score, force)
     }
+}
+
+/// Which combinations of the folded functions are sampled, and which knot reads which.
+struct Fields {
+    /// (function, weight) by grid.
+    grids: Vec<Vec<(usize, f32)>>,
+    /// (grid, weight) by knot.
+    knots: Vec<Vec<(usize, f64)>>,
+}
+
+/// Knots of one radius and one class see one potential: the functions that tell classes apart are added up beforehand, so that a knot
+/// reads one grid for all of them. Charges, of which there are many, keep a grid of their own.
+fn fields(folded: &Folded<f32>, count: usize) -> Fields {
+    let (charges, classes): (Vec<usize>, Vec<usize>) = (0..folded.full_rank())
+        .partition(|&function| folded.effect(function) == Effect::Electrostatics);
+    let mut keys: BTreeMap<Vec<(usize, u64)>, usize> = BTreeMap::new();
+    let mut grids: Vec<Vec<(usize, f32)>> = Vec::new();
+    let mut knots = Vec::with_capacity(count);
+    let weights = |knot: usize, functions: &[usize]| -> Vec<(usize, f64)> {
+        functions
+            .iter()
+            .map(|&function| (function, folded.ligand_weight(knot, function)))
+            .filter(|&(_, weight)| weight != 0.0)
+            .collect()
+    };
+    // With continuous radii or weights no two knots are alike, and nothing is won.
+    let merge = classes.len() > 1 && {
+        let distinct: BTreeSet<Vec<(usize, u64)>> = (0..count)
+            .map(|knot| bits(&weights(knot, &classes)))
+            .collect();
+        distinct.len() <= 2 * classes.len()
+    };
+    let mut single = vec![None; folded.full_rank()];
+    for knot in 0..count {
+        let mut reads = Vec::new();
+        let apart = if merge {
+            let own = weights(knot, &classes);
+            if !own.is_empty() {
+                let grid = *keys.entry(bits(&own)).or_insert_with(|| {
+                    grids.push(own.iter().map(|&(b, weight)| (b, weight as f32)).collect());
+                    grids.len() - 1
+                });
+                reads.push((grid, 1.0));
+            }
+            weights(knot, &charges)
+        } else {
+            let all: Vec<usize> = (0..folded.full_rank()).collect();
+            weights(knot, &all)
+        };
+        for (function, weight) in apart {
+            let grid = *single[function].get_or_insert_with(|| {
+                grids.push(vec![(function, 1.0)]);
+                grids.len() - 1
+            });
+            reads.push((grid, weight));
+        }
+        knots.push(reads);
+    }
+    Fields { grids, knots }
+}
+
+fn bits(weights: &[(usize, f64)]) -> Vec<(usize, u64)> {
+    weights
+        .iter()
+        .map(|&(function, weight)| (function, weight.to_bits()))
+        .collect()
 }
 
 fn fine_size(plan: &Plan) -> [usize; 3] {

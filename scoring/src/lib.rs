@@ -17,6 +17,7 @@
 
 pub mod affinity;
 pub mod configuration;
+pub mod effect;
 pub mod engine;
 pub mod exact;
 pub mod field;

@@ -1,6 +1,5 @@
 //! Values of options, checked as they are read.
 
-use knotdock::search::Effect;
 
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
@@ -42,12 +41,6 @@ pub fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// An effect by the name that it has in `run.json`.
-pub fn effect(text: &str) -> Result<Effect, String> {
-    serde_json::from_value(serde_json::Value::String(text.to_owned()))
-        .map_err(|_| "there is no such effect; there is `shape`".to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,7 +64,5 @@ mod tests {
         assert!(above_zero("0").is_err());
         assert_eq!(not_negative("-0").map(f64::to_bits), Ok(0));
         assert!(at_least_one("0").is_err());
-        assert_eq!(effect("shape"), Ok(Effect::Shape));
-        assert!(effect("gravity").is_err());
     }
 }

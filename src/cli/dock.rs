@@ -11,7 +11,8 @@ use knotdock::output::quality;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
-use knotdock::search::{self, DockOutcome, DockPlan};
+use knotdock::search::{self, DockOutcome, DockPlan, Effect};
+use knotdock_structures::molecule::LabelReport;
 use serde_json::json;
 
 use super::arguments::at_least_one;
@@ -60,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 21] = [
+const RECORDED: [&str; 24] = [
     "receptor",
     "ligand",
     "rotations",
@@ -73,6 +74,9 @@ const RECORDED: [&str; 21] = [
     "alpha",
     "tolerance",
     "effects",
+    "electrostatics_weight",
+    "contact_weight",
+    "ph",
     "per_rotation",
     "poses",
     "refine",
@@ -129,6 +133,11 @@ impl Dock {
         let plan = search::plan(receptor, ligand, &request.options.dock)
             .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
         console.say(format!("\n{plan}"));
+        for (side, labels) in ["receptor", "ligand"].into_iter().zip(&plan.labels) {
+            if let Some(text) = assumed(side, labels, &plan) {
+                console.say(text);
+            }
+        }
         let staging = Staging::open(&directory, self.force)?;
         let progress = console.progress();
         let outcome = search::dock(&plan, ligand, &progress)
@@ -193,23 +202,32 @@ impl Dock {
 
 /// Which effects were on and what they cost, and how far the fast path was off.
 fn told(outcome: &DockOutcome) -> String {
-    let effects = outcome.effects.iter().map(|cost| {
-        format!(
-            "Effect {} ({}): {} fields of the lifted axis, {:.2} CPU ms a rotation",
-            format!("{:?}", cost.effect).to_lowercase(),
-            cost.reason,
-            cost.rank,
-            cost.milliseconds_per_rotation
-        )
-    });
+    let effects = outcome
+        .effects
+        .iter()
+        .map(|cost| match (cost.on, cost.effect) {
+            (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
+            (true, Effect::Shape) => format!(
+                "Effect shape ({}): rank {}, {:.2} ms a rotation",
+                cost.reason, cost.rank, cost.milliseconds_per_rotation
+            ),
+            (true, effect) => format!(
+                "Effect {effect} ({}): without it {} ranks and {:.2} ms a rotation less",
+                cost.reason, cost.rank, cost.milliseconds_per_rotation
+            ),
+        });
     let mut lines: Vec<String> = effects.collect();
+    lines.push(format!(
+        "All together: rank {}, {:.1e} of the best score lost by compression",
+        outcome.rank, outcome.rank_error
+    ));
     let error = outcome.error;
     lines.push(format!(
         "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
         error.poses, error.rms, error.worst
     ));
     lines.push(format!(
-        "The low-pass moved their scores by {:.0}% of the best on average",
+        "The low-pass moved their shape scores by {:.0}% of the best on average",
         100.0 * error.low_pass_share
     ));
     lines.push(format!(
@@ -217,6 +235,37 @@ fn told(outcome: &DockOutcome) -> String {
         outcome.poses_kept, outcome.clusters
     ));
     lines.join("\n")
+}
+
+/// What was assumed of one side's charges and contact types, where effects use them.
+fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
+    let names = |unknown: &std::collections::BTreeMap<String, usize>| {
+        let names = unknown
+            .iter()
+            .map(|(name, count)| format!("{count} {name}"));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let mut parts = Vec::new();
+    if plan.is_on(Effect::Electrostatics) {
+        let [amino, carboxyl] = labels.termini;
+        parts.push(format!(
+            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} gaps capped",
+            labels.net_charge, plan.options.ph, labels.gaps
+        ));
+        if !labels.unknown_charges.is_empty() {
+            parts.push(format!(
+                "no charges known for {}",
+                names(&labels.unknown_charges)
+            ));
+        }
+    }
+    if plan.is_on(Effect::Contact) && !labels.unknown_types.is_empty() {
+        parts.push(format!(
+            "no contact types for {}",
+            names(&labels.unknown_types)
+        ));
+    }
+    (!parts.is_empty()).then(|| format!("The {side}: {}", parts.join("; ")))
 }
 
 /// When the run began.

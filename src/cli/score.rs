@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use knotdock::output::report;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
-use knotdock::search::SearchError;
+use knotdock::search::{Scene, SearchError};
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::ModeOrder;
 
@@ -63,17 +63,15 @@ impl Score {
             },
         };
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
-        let knots = |text: &String, what: &str| -> Result<_, Failure> {
+        let read = |text: &String, what: &str| -> Result<_, Failure> {
             let input = Input::read(text)?;
             console.say(format!("{what}: {}", input.molecule.report));
-            input
-                .molecule
-                .knots()
-                .map_err(|error| refused(error.into()).at(&input.record.path))
+            Ok(input.molecule)
         };
-        let receptor = knots(&self.receptor, "Receptor")?;
-        let ligand = knots(&self.ligand, "Ligand")?;
-        let scored = score::score(&receptor, &ligand, &pose, &options).map_err(refused)?;
+        let receptor = read(&self.receptor, "Receptor")?;
+        let ligand = read(&self.ligand, "Ligand")?;
+        let scene = Scene::new(&receptor, &ligand, &self.kernel.options()).map_err(refused)?;
+        let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         console.say(format!("\n{}", told(&scored)));
         if !scored.reached {
             console.warn(

@@ -2,9 +2,9 @@
 
 use clap::Args;
 use knotdock::search::options::PASS_RATIO;
-use knotdock::search::{DockOptions, Effect};
+use knotdock::search::{DockOptions, EffectChoice};
 
-use super::arguments::{above_zero, at_least_one, effect, not_negative, rotations_of_angle};
+use super::arguments::{above_zero, at_least_one, not_negative, rotations_of_angle};
 
 const TRADE_OFFS: &str = "Accuracy against time";
 const SCORE: &str = "Score";
@@ -41,9 +41,19 @@ pub struct KernelArguments {
     /// Error of the fast path that is allowed, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
-    /// Effects to score.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = effect, default_value = "shape", help_heading = SCORE)]
-    effects: Vec<Effect>,
+    /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics and contact, with commas
+    /// between them (shape is always on).
+    #[arg(long, value_name = "NAMES", default_value = "auto", help_heading = SCORE)]
+    effects: EffectChoice,
+    /// Weight of the electrostatic energy: score per kcal/mol.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().electrostatics_weight, help_heading = SCORE)]
+    electrostatics_weight: f64,
+    /// Weight of the contact potential: score per RT.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().contact_weight, help_heading = SCORE)]
+    contact_weight: f64,
+    /// pH at which charges are assigned.
+    #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
+    ph: f64,
 }
 
 /// Options of the search.
@@ -86,6 +96,9 @@ impl KernelArguments {
             alpha: self.alpha,
             tolerance: self.tolerance,
             effects: self.effects.clone(),
+            electrostatics_weight: self.electrostatics_weight,
+            contact_weight: self.contact_weight,
+            ph: self.ph,
             ..DockOptions::default()
         }
     }

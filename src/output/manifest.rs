@@ -191,7 +191,7 @@ impl<'a> Manifest<'a> {
             inputs: parts.inputs,
             options: parts.options.record()?,
             plan: parts.plan,
-            rank: parts.outcome.effects.iter().map(|cost| cost.rank).sum(),
+            rank: parts.outcome.rank,
             effects: &parts.outcome.effects,
             error: ErrorRecord {
                 measured: parts.outcome.error,

@@ -8,6 +8,7 @@ use std::io;
 use std::path::Path;
 
 use csv::StringRecord;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
@@ -15,7 +16,7 @@ use super::staging::{StagingError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 19] = [
+pub const COLUMNS: [&str; 21] = [
     "rank",
     "score",
     "cluster",
@@ -35,6 +36,8 @@ pub const COLUMNS: [&str; 19] = [
     "slice_0",
     "slice_r0",
     "slice_2r0",
+    "electrostatics",
+    "contact",
 ];
 
 /// A column to append: its name and one field a row.
@@ -64,6 +67,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
     let [qw, qx, qy, qz] = row.pose.quaternion();
     let translation = row.pose.translation;
     let [slice_0, slice_r0, slice_2r0] = row.slices;
+    let term = |effect: Effect| row.terms[effect as usize].map_or(String::new(), number);
     [
         rank.to_string(),
         number(row.score),
@@ -80,10 +84,12 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         row.rotation.to_string(),
         number(row.score_grid),
         number(row.score_unfiltered),
-        number(row.shape),
+        term(Effect::Shape),
         number(slice_0),
         number(slice_r0),
         number(slice_2r0),
+        term(Effect::Electrostatics),
+        term(Effect::Contact),
     ]
 }
 
@@ -214,7 +220,7 @@ mod tests {
             rotation: 17,
             score_grid: f64::NAN,
             score_unfiltered: 1e-7,
-            shape: 0.1,
+            terms: [Some(0.1), None, Some(-3.0)],
             slices: [-0.0, 2.0, 1e21],
         }
     }
@@ -231,9 +237,9 @@ mod tests {
         assert_eq!(
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-             shape,slice_0,slice_r0,slice_2r0\n\
+             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000\n"
+             1000000000000000000000,,-3\n"
         );
     }
 

@@ -91,7 +91,7 @@ mod tests {
             rotation: 0,
             score_grid: score,
             score_unfiltered: score,
-            shape: score,
+            terms: [Some(score), None, None],
             slices: [0.0; 3],
         }
     }

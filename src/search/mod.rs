@@ -1,6 +1,8 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
 pub mod cluster;
+mod costs;
+pub mod effects;
 pub mod options;
 pub mod outcome;
 pub mod peaks;
@@ -11,7 +13,9 @@ pub mod rotations;
 pub mod run;
 mod scan;
 
-pub use options::{DockOptions, Effect, SearchError};
+pub use effects::{Decision, EffectChoice, Scene};
+pub use knotdock_scoring::effect::Effect;
+pub use options::{DockOptions, SearchError};
 pub use outcome::{DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
 pub use plan::{DockPlan, plan};
 pub use run::{Progress, dock};

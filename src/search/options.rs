@@ -1,17 +1,11 @@
 //! What a docking run may be asked, and why it may refuse.
 
+use super::effects::EffectChoice;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_structures::knots::KnotsError;
 use serde::{Deserialize, Serialize};
-
-/// A term of the score.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Effect {
-    /// Shape complementarity: the double-skin correlation of B&I.
-    Shape,
-}
 
 /// Options of a docking run. Lengths in Å.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +27,13 @@ pub struct DockOptions {
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
     /// Terms of the score.
-    pub effects: Vec<Effect>,
+    pub effects: EffectChoice,
+    /// Weight of the electrostatic energy: score per kcal/mol.
+    pub electrostatics_weight: f64,
+    /// Weight of the contact potential: score per RT.
+    pub contact_weight: f64,
+    /// pH at which charges are assigned.
+    pub ph: f64,
     /// Peaks kept of each rotation.
     pub per_rotation: usize,
     /// Poses kept over all rotations.
@@ -65,7 +65,10 @@ impl Default for DockOptions {
             offset: 2.2,
             alpha: 2.0,
             tolerance: 1e-2,
-            effects: vec![Effect::Shape],
+            effects: EffectChoice::Auto,
+            electrostatics_weight: 8.0,
+            contact_weight: 0.6,
+            ph: 7.0,
             per_rotation: 3,
             poses: 2000,
             refine: 300,
@@ -93,6 +96,25 @@ impl DockOptions {
             tolerance: self.tolerance,
             rank: None,
         }
+    }
+
+    /// Refuses weights and a pH that mean nothing.
+    pub(super) fn check_effects(&self) -> Result<(), SearchError> {
+        let numbers = [
+            ("electrostatics-weight", self.electrostatics_weight, 1e6),
+            ("contact-weight", self.contact_weight, 1e6),
+            ("ph", self.ph, 14.0),
+        ];
+        for (name, value, most) in numbers {
+            if !(0.0..=most).contains(&value) {
+                return Err(SearchError::Option {
+                    name,
+                    value: value.to_string(),
+                    bound: format!("between 0 and {most}"),
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Refuses what no run can do.
@@ -148,6 +170,14 @@ pub enum SearchError {
         /// Its range.
         bound: String,
     },
+    /// An effect was asked for that the inputs cannot feed.
+    #[error("there can be no {effect}: {reason}")]
+    Effect {
+        /// The effect.
+        effect: Effect,
+        /// What is missing.
+        reason: String,
+    },
     /// Not even one rotation in flight fits into the memory allowed.
     #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
     Memory {
@@ -184,6 +214,9 @@ impl SearchError {
             } => format!("use --spacing {spacing:.2}, or allow more with --memory"),
             Self::Memory { .. } => "allow more with --memory".to_owned(),
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::Effect { .. } => {
+                "leave it out of --effects, or let auto choose what the inputs call for".to_owned()
+            }
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
     }

@@ -1,6 +1,7 @@
 //! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use super::peaks::Peak;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::se3::Pose;
 use serde::Serialize;
@@ -24,8 +25,8 @@ pub struct RankedPose {
     pub score_grid: f64,
     /// B&I's own sum (no low-pass) at `pose`.
     pub score_unfiltered: f64,
-    /// Weighted shape term at `pose`; the terms add up to `score`.
-    pub shape: f64,
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `score`; `None` where the effect is off.
+    pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],
 }
@@ -39,7 +40,7 @@ pub struct MeasuredError {
     pub rms: f64,
     /// Largest of the same.
     pub worst: f64,
-    /// Mean share of the unfiltered score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
+    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
     pub low_pass_share: f64,
 }
 
@@ -53,7 +54,7 @@ impl MeasuredError {
             let error = (f64::from(peak.score) - exact.score).abs() / best;
             squares += error * error;
             worst = worst.max(error);
-            removed += (exact.score - exact.unfiltered).abs() / best;
+            removed += (exact.terms[Effect::Shape as usize] - exact.unfiltered).abs() / best;
         }
         Self {
             poses,
@@ -65,15 +66,17 @@ impl MeasuredError {
 }
 
 /// What one term of the score cost.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectCost {
     /// The term.
-    pub effect: super::options::Effect,
-    /// Why it was on.
-    pub reason: &'static str,
-    /// Fields of the compressed lifted axis that it needs.
+    pub effect: Effect,
+    /// Whether it was on.
+    pub on: bool,
+    /// Why it was on or off.
+    pub reason: String,
+    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out would save.
     pub rank: usize,
-    /// CPU milliseconds a rotation, all stages of the search loop.
+    /// Milliseconds that it adds to a rotation on one thread, likewise, peaks not counted.
     #[serde(skip)]
     pub milliseconds_per_rotation: f64,
 }
@@ -100,7 +103,9 @@ pub struct DockOutcome {
     pub clusters: usize,
     /// The fast path's error as measured.
     pub error: MeasuredError,
-    /// Error of the compressed lifted axis at the probe rotations, relative to their best score.
+    /// Rank of the compressed functions in use.
+    pub rank: usize,
+    /// Error of the compressed functions at the probe rotations, relative to their best score.
     pub rank_error: f64,
     /// What each term cost.
     pub effects: Vec<EffectCost>,

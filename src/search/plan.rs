@@ -1,11 +1,13 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
+use super::effects::{Decision, Scene};
 use super::options::{DockOptions, SearchError};
 use super::rotations::{covering_radius, rotation_set};
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::field::ReceptorField;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::Molecule;
+use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use std::sync::Arc;
@@ -49,6 +51,11 @@ pub struct DockPlan {
     pub fixed_bytes: u64,
     /// Bytes that a rotation in flight takes.
     pub bytes_in_flight: u64,
+    /// Which effects are on, and why.
+    #[serde(skip)]
+    pub decisions: Vec<Decision>,
+    /// What was assumed of charges and contact types, of receptor and ligand.
+    pub labels: [LabelReport; 2],
     #[serde(skip)]
     pub(super) engine: Arc<Plan>,
     #[serde(skip)]
@@ -60,7 +67,7 @@ pub struct DockPlan {
 }
 
 /// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
-const EXPECTED_RANK: usize = 4;
+const EXPECTED_RANK: usize = 8;
 
 /// Plans the docking of two molecules.
 ///
@@ -72,14 +79,29 @@ pub fn plan(
     options: &DockOptions,
 ) -> Result<DockPlan, SearchError> {
     options.check()?;
-    let (receptor, ligand) = (receptor.knots()?, ligand.knots()?);
-    let engine = Plan::new(&receptor, &ligand, options.engine())?;
+    let Scene {
+        receptor,
+        ligand,
+        terms,
+        decisions,
+        labels,
+    } = Scene::new(receptor, ligand, options)?;
+    let planned = |options: &DockOptions| {
+        Plan::with_effects(
+            &receptor,
+            &ligand,
+            options.engine(),
+            options.tolerance,
+            terms.clone(),
+        )
+    };
+    let engine = planned(options)?;
     let threads = match options.threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         threads => threads,
     };
     let needs = |engine: &Plan| {
-        let (_, functions) = engine.basis.sizes(&engine.axis);
+        let functions = engine.functions();
         let per_rotation =
             CpuEngine::<f32>::workspace_estimate(engine, functions.min(EXPECTED_RANK)) as u64;
         let fixed =
@@ -103,7 +125,7 @@ pub fn plan(
                     spacing: Some(spacing),
                     ..options.clone()
                 };
-                let plan = Plan::new(&receptor, &ligand, coarser.engine()).ok()?;
+                let plan = planned(&coarser).ok()?;
                 let (fixed, per_rotation) = needs(&plan);
                 (fixed + per_rotation <= allowed).then_some((spacing * 100.0).ceil() / 100.0)
             });
@@ -139,6 +161,8 @@ pub fn plan(
         in_flight,
         fixed_bytes: fixed,
         bytes_in_flight: per_rotation,
+        decisions,
+        labels,
         engine: Arc::new(engine),
         options: options.clone(),
         receptor,
@@ -148,6 +172,11 @@ pub fn plan(
 }
 
 impl DockPlan {
+    /// Whether an effect is on.
+    pub fn is_on(&self, effect: Effect) -> bool {
+        self.decisions.iter().any(|d| d.effect == effect && d.on)
+    }
+
     /// Bytes that the run is expected to take at its peak.
     pub fn memory_bytes(&self) -> u64 {
         self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight

@@ -8,6 +8,7 @@ use super::cluster::{RigidBody, greedy};
 use super::outcome::RankedPose;
 use super::peaks::Peak;
 use super::run::Progress;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
@@ -109,11 +110,14 @@ pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
 /// Exactly scored rows: every pose, or the best of each cluster. Ordered by their exact scores, ties in the order given; clusters
 /// are numbered in the order of their best poses.
 ///
+/// `on` says which effects are on, by effect.
+///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
 pub(super) fn report(
     scorer: &ExactScorer,
     candidates: &[Candidate],
     clusters: &[usize],
+    on: [bool; Effect::ALL.len()],
     every_pose: bool,
     margin: f64,
     progress: &dyn Progress,
@@ -134,7 +138,7 @@ pub(super) fn report(
     let mut rows: Vec<(RankedPose, usize)> = wanted
         .into_par_iter()
         .map(|(candidate, cluster)| {
-            let row = candidate.reported(scorer);
+            let row = candidate.reported(scorer, on);
             progress.advance(1);
             (row, cluster)
         })
@@ -166,7 +170,7 @@ pub(super) fn report(
 
 impl Candidate {
     /// Its row of the table, exactly scored, not yet in a cluster.
-    fn reported(&self, scorer: &ExactScorer) -> RankedPose {
+    fn reported(&self, scorer: &ExactScorer, on: [bool; Effect::ALL.len()]) -> RankedPose {
         let at_grid = || self.terms.unwrap_or_else(|| scorer.score(&self.grid_pose));
         let (pose, terms, refined) = if self.refined {
             let terms = scorer.score(&self.pose);
@@ -192,7 +196,7 @@ impl Candidate {
             rotation: self.rotation,
             score_grid: self.score_grid,
             score_unfiltered: terms.unfiltered,
-            shape: terms.score,
+            terms: std::array::from_fn(|effect| on[effect].then_some(terms.terms[effect])),
             slices: terms.slices,
         }
     }

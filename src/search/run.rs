@@ -1,13 +1,15 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
 use super::cluster::RigidBody;
-use super::options::{Effect, SearchError};
-use super::outcome::{DockOutcome, EffectCost, MeasuredError, StageTime};
+use super::costs::costs;
+use super::options::SearchError;
+use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::plan::DockPlan;
 use super::ranking::{candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
-use super::scan::{choose_rank, scan};
+use super::scan::{Chosen, choose_rank, scan};
 use cpu_time::ProcessTime;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::field::ReceptorField;
@@ -82,8 +84,17 @@ fn dock_in_pool(
     let mut clock = Clock::start();
     progress.stage("prepare", 1);
     let folded = Folded::<f32>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
-    let (engine, rank_error) = choose_rank(plan, &folded);
-    let scorer = ExactScorer::new(&plan.engine.kernel, &plan.receptor, &plan.ligand)?;
+    let Chosen {
+        engine,
+        error: rank_error,
+    } = choose_rank(plan, &folded);
+    let effects = costs(plan, &folded, &engine);
+    let scorer = ExactScorer::with_effects(
+        &plan.engine.kernel,
+        &plan.receptor,
+        &plan.ligand,
+        &plan.engine.effects,
+    )?;
     progress.advance(1);
     clock.lap("prepare");
 
@@ -145,6 +156,7 @@ fn dock_in_pool(
         .collect();
     clock.lap("check");
 
+    let on = Effect::ALL.map(|effect| plan.is_on(effect));
     let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid);
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
@@ -156,6 +168,7 @@ fn dock_in_pool(
         &scorer,
         &candidates,
         &clusters,
+        on,
         options.every_pose,
         2.0 * options.tolerance * best_peak.abs(),
         progress,
@@ -164,25 +177,14 @@ fn dock_in_pool(
     let error = MeasuredError::over(&peaks, &at_grid, best);
     clock.lap("score");
 
-    let seconds = |name: &str| {
-        clock
-            .stages
-            .iter()
-            .find(|stage| stage.name == name)
-            .map_or(0.0, |stage| stage.cpu_seconds.unwrap_or(stage.wall_seconds))
-    };
     Ok(DockOutcome {
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
         error,
         rank_error,
-        effects: vec![EffectCost {
-            effect: Effect::Shape,
-            reason: "always on",
-            rank: engine.rank(),
-            milliseconds_per_rotation: 1e3 * seconds("search") / plan.rotations as f64,
-        }],
+        rank: engine.rank(),
+        effects,
         timing: clock.stages,
     })
 }

@@ -9,46 +9,87 @@ use knotdock_scoring::se3::HalfTurn;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The lowest rank of the lifted axis whose error at the best poses of a few probe rotations is within a third of the tolerance,
-/// with the error measured there (relative to the best of them).
-pub(super) fn choose_rank(plan: &DockPlan, folded: &Folded<f32>) -> (CpuEngine<f32>, f64) {
-    const PROBES: usize = 3;
-    const BEST: usize = 50;
-    let build = |rank| CpuEngine::new(plan.engine.clone(), folded, &plan.ligand, rank);
-    let full = build(folded.full_rank());
-    if folded.full_rank() == 1 {
-        return (full, 0.0);
+/// The values that a rank is judged by: the best of a few probe rotations at full rank.
+pub(super) struct Probes {
+    /// Index of the rotation, and its best voxels with their values.
+    samples: Vec<(usize, Vec<(usize, f32)>)>,
+    /// The best of all.
+    best: f32,
+}
+
+/// An engine of the lowest rank that serves, with its error at the probes, relative to the best score there.
+pub(super) struct Chosen {
+    pub engine: CpuEngine<f32>,
+    pub error: f64,
+}
+
+impl Probes {
+    /// Correlates the probe rotations at full rank.
+    pub fn new(plan: &DockPlan, full: &CpuEngine<f32>) -> Self {
+        const PROBES: usize = 3;
+        const BEST: usize = 50;
+        let mut work = full.workspace();
+        let mut samples: Vec<(usize, Vec<(usize, f32)>)> = Vec::new();
+        let mut best = f32::MIN_POSITIVE;
+        for probe in 0..PROBES {
+            let index = (2 * probe + 1) * plan.set.len() / (2 * PROBES);
+            full.correlate(&plan.set[index], &mut work);
+            let mut order: Vec<usize> = (0..work.grid.len()).collect();
+            let count = BEST.min(order.len() - 1);
+            order.select_nth_unstable_by(count, |&a, &b| {
+                work.grid[b].total_cmp(&work.grid[a]).then(a.cmp(&b))
+            });
+            let values: Vec<(usize, f32)> =
+                order[..count].iter().map(|&v| (v, work.grid[v])).collect();
+            best = values.iter().fold(best, |best, value| best.max(value.1));
+            samples.push((index, values));
+        }
+        Self { samples, best }
     }
-    let mut work = full.workspace();
-    let mut samples: Vec<(usize, Vec<(usize, f32)>)> = Vec::new();
-    let mut best = f32::MIN_POSITIVE;
-    for probe in 0..PROBES {
-        let index = (2 * probe + 1) * plan.set.len() / (2 * PROBES);
-        full.correlate(&plan.set[index], &mut work);
-        let mut order: Vec<usize> = (0..work.grid.len()).collect();
-        let count = BEST.min(order.len() - 1);
-        order.select_nth_unstable_by(count, |&a, &b| {
-            work.grid[b].total_cmp(&work.grid[a]).then(a.cmp(&b))
-        });
-        let values: Vec<(usize, f32)> = order[..count].iter().map(|&v| (v, work.grid[v])).collect();
-        best = values.iter().fold(best, |best, value| best.max(value.1));
-        samples.push((index, values));
-    }
-    for rank in 1..folded.full_rank() {
-        let engine = build(rank);
+
+    /// Largest error of an engine at the probes' best voxels, as a share of the best.
+    fn error(&self, plan: &DockPlan, engine: &CpuEngine<f32>) -> f64 {
         let mut work = engine.workspace();
         let mut error = 0.0f32;
-        for (index, values) in &samples {
+        for (index, values) in &self.samples {
             engine.correlate(&plan.set[*index], &mut work);
             for &(voxel, exact) in values {
-                error = error.max((work.grid[voxel] - exact).abs() / best);
+                error = error.max((work.grid[voxel] - exact).abs() / self.best);
             }
         }
-        if f64::from(error) <= plan.options.tolerance / 3.0 {
-            return (engine, f64::from(error));
-        }
+        f64::from(error)
     }
-    (full, 0.0)
+}
+
+/// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance.
+pub(super) fn choose_rank(plan: &DockPlan, folded: &Folded<f32>) -> Chosen {
+    let factors = folded.factor(&plan.engine.modes);
+    let build =
+        |rank| CpuEngine::with_factors(plan.engine.clone(), folded, &factors, &plan.ligand, rank);
+    // What lies below the rounding of single precision is no rank.
+    let largest = factors.singular.first().copied().unwrap_or(0.0);
+    let numerical = factors.singular.iter().filter(|s| **s > 1e-7 * largest);
+    let full_rank = numerical.count().max(1);
+    let full = build(full_rank);
+    if full_rank == 1 {
+        return Chosen {
+            engine: full,
+            error: 0.0,
+        };
+    }
+    let probes = Probes::new(plan, &full);
+    let limit = plan.options.tolerance / 3.0;
+    (1..full_rank)
+        .map(|rank| {
+            let engine = build(rank);
+            let error = probes.error(plan, &engine);
+            Chosen { engine, error }
+        })
+        .find(|chosen| chosen.error <= limit)
+        .unwrap_or(Chosen {
+            engine: full,
+            error: 0.0,
+        })
 }
 
 /// The best peaks over all rotations, best first.

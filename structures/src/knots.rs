@@ -4,8 +4,8 @@ use num_complex::Complex64;
 
 /// A set of balls with complex weights: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
 ///
-/// The three arrays have the same length. Shape alone needs weights of one; the double-skin affinity function
-/// (B&I eq. 51) needs complex ones, which is why they are complex here.
+/// The arrays have the same length; labels may be absent altogether. Shape alone needs weights of one; the double-skin affinity
+/// function (B&I eq. 51) needs complex ones, which is why they are complex here. Labels are what further effects act on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Knots {
     /// Ball centres x_i, in Å (or the mesh's unit).
@@ -14,6 +14,10 @@ pub struct Knots {
     pub radii: Vec<f64>,
     /// Dimensionless weights c_i.
     pub weights: Vec<Complex64>,
+    /// Charges in units of the elementary charge e, one a knot; empty where the knots carry none (a mesh).
+    pub charges: Vec<f64>,
+    /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
+    pub contact_types: Vec<Option<u8>>,
 }
 
 /// Why a set of knots was refused.
@@ -56,6 +60,24 @@ pub enum KnotsError {
         /// Index of the offending knot.
         index: usize,
     },
+    /// A charge is NaN or infinite.
+    #[error("knot {index} has charge {charge}; charges must be finite")]
+    Charge {
+        /// Index of the offending knot.
+        index: usize,
+        /// Its charge in e.
+        charge: f64,
+    },
+    /// There are labels, but not one a knot.
+    #[error("{labels} {name} for {knots} knots; there must be one a knot, or none at all")]
+    Labels {
+        /// Which labels.
+        name: &'static str,
+        /// How many of them were given.
+        labels: usize,
+        /// Number of knots.
+        knots: usize,
+    },
 }
 
 impl Knots {
@@ -81,6 +103,26 @@ impl Knots {
             centers,
             radii,
             weights,
+            charges: Vec::new(),
+            contact_types: Vec::new(),
+        };
+        knots.check()?;
+        Ok(knots)
+    }
+
+    /// The same knots with charges (e) and contact types, either of which may be empty.
+    ///
+    /// # Errors
+    /// [`KnotsError`] when there are labels but not one a knot, or a charge is not finite.
+    pub fn with_labels(
+        self,
+        charges: Vec<f64>,
+        contact_types: Vec<Option<u8>>,
+    ) -> Result<Self, KnotsError> {
+        let knots = Self {
+            charges,
+            contact_types,
+            ..self
         };
         knots.check()?;
         Ok(knots)
@@ -118,7 +160,27 @@ impl Knots {
                 return Err(KnotsError::Weight { index });
             }
         }
-        Ok(())
+        let labels = [
+            ("charges", self.charges.len()),
+            ("contact types", self.contact_types.len()),
+        ];
+        for (name, labels) in labels {
+            if labels != 0 && labels != self.len() {
+                let knots = self.len();
+                return Err(KnotsError::Labels {
+                    name,
+                    labels,
+                    knots,
+                });
+            }
+        }
+        match self.charges.iter().position(|charge| !charge.is_finite()) {
+            Some(index) => Err(KnotsError::Charge {
+                index,
+                charge: self.charges[index],
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Number of knots.

@@ -3,8 +3,8 @@
 //! With few radii a field belongs to a radius, and every knot reads one. With many, knots would read all of the lifted modes; the
 //! factorisation of the lifted axis then stands for them.
 
-use crate::engine::Folded;
 use crate::engine::Plan;
+use crate::engine::{Factors, Folded};
 use crate::transform::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -48,7 +48,11 @@ pub(super) fn of<T: Real>(plan: &Plan, folded: &Folded<T>, knots: usize) -> Vec<
     if reads <= 2 * knots {
         return direct;
     }
-    let (combination, coefficients, singular) = folded.factor(&plan.modes);
+    let Factors {
+        combination,
+        coefficients,
+        singular,
+    } = folded.factor(&plan.modes);
     let largest = singular.first().copied().unwrap_or(0.0);
     let least = SINGULAR_SHARE * plan.options.tolerance * largest;
     let rank = singular.iter().filter(|&&value| value > least).count();

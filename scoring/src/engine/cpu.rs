@@ -8,7 +8,7 @@
 //! along x while they lie in the first-level cache.
 
 use super::columns::Reading;
-use super::folded::Folded;
+use super::folded::{Factors, Folded};
 use super::plan::Plan;
 use crate::se3::HalfTurn;
 use crate::transform::Real;
@@ -70,9 +70,25 @@ pub struct Workspace<T> {
 impl<T: Real> CpuEngine<T> {
     /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
     pub fn new(plan: Arc<Plan>, folded: &Folded<T>, ligand: &Knots, rank: usize) -> Self {
+        let factors = folded.factor(&plan.modes);
+        Self::with_factors(plan, folded, &factors, ligand, rank)
+    }
+
+    /// As [`Self::new`], with factors that are at hand.
+    pub fn with_factors(
+        plan: Arc<Plan>,
+        folded: &Folded<T>,
+        factors: &Factors,
+        ligand: &Knots,
+        rank: usize,
+    ) -> Self {
         let modes = Arc::clone(&plan.modes);
         let rank = rank.clamp(1, folded.full_rank());
-        let (combination, coefficients, singular) = folded.factor(&modes);
+        let Factors {
+            combination,
+            coefficients,
+            singular,
+        } = factors;
         let forward = ligand_forward::<T>(&plan, rank);
         let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
             (0..=modes.size[axis] as i32 / 2)

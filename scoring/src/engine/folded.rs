@@ -1,6 +1,7 @@
 //! The receptor's side of a correlation: its transform with the lifted kernel folded in, and the compression of the lifted axis.
 
 use super::plan::Plan;
+use crate::effect::{ActiveTerm, Effect, Label};
 use crate::lifted_axis::Fold;
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
@@ -11,17 +12,32 @@ use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 use num_complex::Complex;
 use std::sync::Arc;
 
-/// The receptor's side, uncompressed: `H[basis function][mode]`, and the ligand's basis values.
+/// The receptor's side, uncompressed: `H[function][mode]`, and the values of the functions at the ligand's knots.
+///
+/// The first functions are those of the lifted axis; each further effect adds one for every class that the ligand has.
 #[derive(Clone)]
 pub struct Folded<T> {
     pub(super) spectra: Vec<Vec<Complex<T>>>,
-    /// d_j v_b(s_j): (knots, basis functions).
+    /// d_j v_b(s_j): (knots, functions).
     pub(super) ligand: DMatrix<f64>,
     pub(super) center: [f64; 3],
+    /// The effect of each function.
+    effects: Vec<Effect>,
+}
+
+/// The factorisation of the functions, at full rank.
+pub struct Factors {
+    /// The receptor's combination: (functions, q).
+    pub combination: DMatrix<f64>,
+    /// The ligand's coefficients: (knots, q).
+    pub coefficients: DMatrix<f64>,
+    /// Singular values, largest first.
+    pub singular: Vec<f64>,
 }
 
 impl<T: Real> Folded<T> {
-    /// Transforms the receptor and folds the lifted kernel into it.
+    /// Transforms the receptor and folds the lifted kernel into it; the plan's further terms belong to the score alone, not to slices and
+    /// sensitivities.
     pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Fold) -> Self {
         let modes = &plan.modes;
         let (receptor_size, ligand_size) = plan.basis.sizes(&plan.axis);
@@ -61,16 +77,88 @@ impl<T: Real> Folded<T> {
                 });
             }
         }
-        let ligand = DMatrix::from_fn(ligand.len(), ligand_size, |j, b| {
-            ligand.weights[j].re * plan.basis.ligand_value(&plan.axis, b, ligand.radii[j])
-        });
+        let mut columns: Vec<Vec<f64>> = (0..ligand_size)
+            .map(|b| {
+                let value = |j: usize| plan.basis.ligand_value(&plan.axis, b, ligand.radii[j]);
+                (0..ligand.len())
+                    .map(|j| ligand.weights[j].re * value(j))
+                    .collect()
+            })
+            .collect();
+        let mut effects = vec![Effect::Shape; ligand_size];
+        let terms = match fold {
+            Fold::Score => plan.effects.as_slice(),
+            _ => &[],
+        };
+        for ActiveTerm { term, kernel } in terms {
+            let table = kernel.spectrum_table(modes.cut);
+            let classes = term.matrix.first().map_or(0, Vec::len);
+            for class in 0..classes {
+                let column: Vec<f64> = term
+                    .ligand
+                    .iter()
+                    .map(|label| {
+                        if label.class == class {
+                            label.value
+                        } else {
+                            0.0
+                        }
+                    })
+                    .collect();
+                // What the receptor's knots weigh for a ligand knot of this class.
+                let seen = |label: &Label| {
+                    let row = term.matrix.get(label.class);
+                    label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
+                };
+                let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = points
+                    .iter()
+                    .zip(&term.receptor)
+                    .map(|(point, label)| (*point, seen(label)))
+                    .filter(|(_, weight)| *weight != 0.0)
+                    .map(|(point, weight)| (point, T::of(weight)))
+                    .unzip();
+                if inside.is_empty() || column.iter().all(|value| *value == 0.0) {
+                    continue;
+                }
+                forward.transform(&inside, &weights, &mut work, &mut field);
+                let mut spectrum = field.clone();
+                modes.for_each(|mode, w, _| {
+                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+                    spectrum[mode] = spectrum[mode].scale(T::of(table.value(length)[0]));
+                });
+                spectra.push(spectrum);
+                columns.push(column);
+                effects.push(term.effect);
+            }
+        }
+        let ligand = DMatrix::from_fn(ligand.len(), columns.len(), |j, b| columns[b][j]);
         let scale = forward.cells_per_length();
         let center = forward.center();
         Self {
             spectra,
             ligand,
             center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
+            effects,
         }
+    }
+
+    /// The same without the functions of one effect.
+    #[must_use]
+    pub fn without(&self, effect: Effect) -> Self {
+        let kept: Vec<usize> = (0..self.spectra.len())
+            .filter(|&b| self.effects[b] != effect)
+            .collect();
+        Self {
+            spectra: kept.iter().map(|&b| self.spectra[b].clone()).collect(),
+            ligand: self.ligand.select_columns(&kept),
+            center: self.center,
+            effects: kept.iter().map(|&b| self.effects[b]).collect(),
+        }
+    }
+
+    /// The effect that a function belongs to.
+    pub fn effect(&self, function: usize) -> Effect {
+        self.effects.get(function).copied().unwrap_or(Effect::Shape)
     }
 
     /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
@@ -99,17 +187,16 @@ impl<T: Real> Folded<T> {
         self.center
     }
 
-    /// Number of basis functions: the rank that is exact.
+    /// Number of functions: the rank that is exact.
     pub fn full_rank(&self) -> usize {
         self.spectra.len()
     }
 
-    /// The factorisation of the lifted axis: for every rank q the receptor's combination (basis, q), the ligand's coefficients
-    /// (knots, q), and the singular values, largest first.
+    /// The factorisation of the functions of all effects together, into as many terms as there are functions.
     ///
     /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'; the singular vectors of
     /// H S, stacked [Re; Im] so that V stays real, give the best q terms in the mean over knots placed at random.
-    pub fn factor(&self, modes: &ModeSet) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
+    pub fn factor(&self, modes: &ModeSet) -> Factors {
         let size = self.spectra.len();
         let mut gram = DMatrix::<f64>::zeros(size, size);
         let mut multiplicities = Vec::with_capacity(modes.count);
@@ -148,10 +235,10 @@ impl<T: Real> Folded<T> {
             .iter()
             .map(|&i| eigen.eigenvalues[i].max(0.0).sqrt())
             .collect();
-        (
-            &root * &vectors,
-            &self.ligand * inverse_root * &vectors,
+        Factors {
+            combination: &root * &vectors,
+            coefficients: &self.ligand * inverse_root * &vectors,
             singular,
-        )
+        }
     }
 }

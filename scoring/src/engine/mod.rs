@@ -9,6 +9,6 @@ pub mod plan;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
-pub use folded::Folded;
+pub use folded::{Factors, Folded};
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
 pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};

@@ -8,6 +8,7 @@
 //! A plan correlates one of two pair kernels ([`PairKernel`]): the lifted cone that ranks poses, or the product kernel of rasterised
 //! bumps, for comparison with grid engines. All that follows a plan takes its kernel from [`Plan::coupling`] alone.
 
+use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::exact::center;
 use crate::kernel::product::rim_and_reach;
 use crate::kernel::ranking::KernelError;
@@ -82,6 +83,8 @@ pub struct Plan {
     pub pair: PairKernel,
     /// The ranking kernel.
     pub kernel: RankingKernel,
+    /// Terms beside shape, each with its filtered kernel.
+    pub effects: Vec<ActiveTerm>,
     /// Its lifted modes; of a product kernel the mean alone, which nothing uses.
     pub axis: LiftedAxis,
     /// Largest relative error of the lifted series at the radius sums in use, or of the product kernel's interpolation over radii.
@@ -124,7 +127,21 @@ impl Plan {
         ligand: &Knots,
         options: EngineOptions,
     ) -> Result<Self, PlanError> {
-        Self::build(receptor, ligand, options, options.tolerance, None)
+        Self::with_effects(receptor, ligand, options, options.tolerance, Vec::new())
+    }
+
+    /// Plans the correlation of shape and further terms, with the kernel of a tolerance as [`Plan::with_kernel_of`] does.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_effects(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        kernel_tolerance: f64,
+        terms: Vec<Term>,
+    ) -> Result<Self, PlanError> {
+        Self::build(receptor, ligand, options, kernel_tolerance, None, terms)
     }
 
     /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a coarser run:
@@ -138,7 +155,7 @@ impl Plan {
         options: EngineOptions,
         kernel_tolerance: f64,
     ) -> Result<Self, PlanError> {
-        Self::build(receptor, ligand, options, kernel_tolerance, None)
+        Self::with_effects(receptor, ligand, options, kernel_tolerance, Vec::new())
     }
 
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
@@ -154,7 +171,14 @@ impl Plan {
         options: EngineOptions,
         band: Band,
     ) -> Result<Self, PlanError> {
-        Self::build(receptor, ligand, options, options.tolerance, Some(band))
+        Self::build(
+            receptor,
+            ligand,
+            options,
+            options.tolerance,
+            Some(band),
+            Vec::new(),
+        )
     }
 
     fn build(
@@ -163,6 +187,7 @@ impl Plan {
         options: EngineOptions,
         kernel_tolerance: f64,
         band: Option<Band>,
+        terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
         for knots in [receptor, ligand] {
             knots.check()?;
@@ -203,12 +228,25 @@ impl Plan {
             }
             None => None,
         };
+        let effects: Vec<ActiveTerm> = terms
+            .into_iter()
+            .map(|term| ActiveTerm {
+                kernel: EffectKernel::new(kernel.filter(), &term.radial),
+                term,
+            })
+            .collect();
         let (pair, spacing, effective_reach) = match band {
             None => {
                 let widest = r_high + s_high;
                 let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
                 let spacing = chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance));
-                let reach = kernel.effective_reach(widest, tolerance * rim);
+                let reach = effects.iter().fold(
+                    kernel.effective_reach(widest, tolerance * rim),
+                    |reach, ActiveTerm { term, kernel }| {
+                        let largest = term.largest().max(f64::MIN_POSITIVE);
+                        reach.max(kernel.effective_reach(tolerance * rim / largest))
+                    },
+                );
                 (PairKernel::Lifted, spacing, reach)
             }
             Some(band) => {
@@ -289,7 +327,24 @@ impl Plan {
             ligand_center,
             ligand_radius,
             kernel,
+            effects,
         })
+    }
+
+    /// Number of functions in which the ligand meets the receptor: those of the lifted axis, and one for each class of a further term.
+    pub fn functions(&self) -> usize {
+        let classes = self.effects.iter().map(|ActiveTerm { term, .. }| {
+            let mut seen: Vec<usize> = term
+                .ligand
+                .iter()
+                .filter(|label| label.value != 0.0)
+                .map(|label| label.class)
+                .collect();
+            seen.sort_unstable();
+            seen.dedup();
+            seen.len()
+        });
+        self.basis.sizes(&self.axis).1 + classes.sum::<usize>()
     }
 
     /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays, and the

@@ -58,13 +58,14 @@ impl ExactScorer {
             gradient.force += force;
             gradient.torque += arm.cross(&force);
         }
+        score += self.effect_gradient(pose, &mut gradient);
         (score, gradient)
     }
 }
 
 /// A polynomial and its slope at u, per panel.
 #[inline(always)]
-fn value_and_slope(Line(line): &Line, u: f64) -> (f64, f64) {
+pub(super) fn value_and_slope(Line(line): &Line, u: f64) -> (f64, f64) {
     let (mut value, mut slope) = (0.0, 0.0);
     for coefficient in line.iter().rev() {
         slope = slope * u + value;

@@ -9,15 +9,18 @@
 #![allow(clippy::needless_range_loop)]
 
 mod blocks;
+mod effects;
 mod gradient;
 mod score;
 mod tables;
 #[cfg(test)]
 mod tests;
 
+use crate::effect::{ActiveTerm, Effect};
 use crate::kernel::RankingKernel;
 use crate::se3::Pose;
 use blocks::Blocks;
+use effects::PairTerm;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::{Rotation3, Vector3};
@@ -26,9 +29,11 @@ use tables::PairTables;
 /// The exact score of one pose and its parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExactScore {
-    /// G of the ranking kernel.
+    /// The score: the sum of its terms.
     pub score: f64,
-    /// Its unweighted slices at rho = 0, r0, 2 r0.
+    /// The weighted terms by effect (`Effect as usize`); shape is G of the ranking kernel.
+    pub terms: [f64; Effect::ALL.len()],
+    /// Shape's unweighted slices at rho = 0, r0, 2 r0.
     pub slices: [f64; 3],
     /// G of B&I's own kernel, without low-pass.
     pub unfiltered: f64,
@@ -48,6 +53,8 @@ pub struct ExactScorer {
     kernel: RankingKernel,
     tables: PairTables,
     receptor: Blocks,
+    /// Terms beside shape.
+    effects: Vec<PairTerm>,
     receptor_center: Vector3<f64>,
     ligand: Vec<LigandKnot>,
     ligand_center: Vector3<f64>,
@@ -64,7 +71,7 @@ struct LigandKnot {
 }
 
 impl ExactScorer {
-    /// Prepares two sets of knots; only the real parts of weights count (shape has no other).
+    /// Prepares two sets of knots for shape alone; only the real parts of weights count (shape has no other).
     ///
     /// # Errors
     /// [`KnotsError`] when a set is not usable.
@@ -72,6 +79,19 @@ impl ExactScorer {
         kernel: &RankingKernel,
         receptor: &Knots,
         ligand: &Knots,
+    ) -> Result<Self, KnotsError> {
+        Self::with_effects(kernel, receptor, ligand, &[])
+    }
+
+    /// Prepares two sets of knots for shape and further terms, whose kernels must have passed the filter of `kernel`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_effects(
+        kernel: &RankingKernel,
+        receptor: &Knots,
+        ligand: &Knots,
+        effects: &[ActiveTerm],
     ) -> Result<Self, KnotsError> {
         receptor.check()?;
         ligand.check()?;
@@ -86,8 +106,13 @@ impl ExactScorer {
             .collect();
         let weights: Vec<f64> = receptor.weights.iter().map(|c| c.re).collect();
         let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
+        let tables = PairTables::new(kernel, &receptor_radii, &ligand_radii);
         Ok(Self {
-            tables: PairTables::new(kernel, &receptor_radii, &ligand_radii),
+            effects: effects
+                .iter()
+                .map(|active| PairTerm::new(active, &tables, &points))
+                .collect(),
+            tables,
             receptor: Blocks::new(&points, &weights, &receptor_class),
             receptor_center,
             ligand: (0..ligand.len())

@@ -8,6 +8,7 @@
 use super::blocks::{Block, LANES};
 use super::tables::{Line, Places};
 use super::{ExactScore, ExactScorer};
+use crate::effect::Effect;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 
@@ -15,7 +16,7 @@ use crate::vectorized::vectorized;
 type Sums = [[f64; 4]; 2];
 
 impl ExactScorer {
-    /// The ranking kernel's score of one pose and nothing else: what poses are ranked by, at a fraction of [`Self::score`]'s price.
+    /// The score of one pose, all terms together, and nothing else: what poses are ranked by, at a fraction of [`Self::score`]'s price.
     /// Agrees with it but for rounding.
     pub fn score_only(&self, pose: &Pose) -> f64 {
         vectorized(
@@ -26,12 +27,12 @@ impl ExactScorer {
                     #[inline(always)]
                     |index| self.tables.scores().get(index).map(std::array::from_ref),
                 );
-                score
+                score + self.effect_sums(pose).iter().sum::<f64>()
             },
         )
     }
 
-    /// Score, slices and unfiltered score of one pose.
+    /// Score, terms, slices and unfiltered score of one pose.
     pub fn score(&self, pose: &Pose) -> ExactScore {
         vectorized(
             #[inline(always)]
@@ -43,9 +44,12 @@ impl ExactScorer {
                 );
                 let weights = self.kernel.options().slice_weights();
                 let weighted = |slices: [f64; 3]| (0..3).map(|i| weights[i] * slices[i]).sum();
+                let mut terms = self.effect_sums(pose);
+                // From the slices, not the score's own table: what the table shows then adds up to the last digit.
+                terms[Effect::Shape as usize] = weighted(slices);
                 ExactScore {
-                    // From the slices, not the score's own table: what the table shows then adds up to the last digit.
-                    score: weighted(slices),
+                    score: terms.iter().sum(),
+                    terms,
                     slices,
                     unfiltered: weighted(self.unfiltered_slices(pose)),
                 }

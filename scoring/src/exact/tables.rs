@@ -88,6 +88,26 @@ impl PairTables {
         }
     }
 
+    /// A radial function over the same panels, the one of zeros included.
+    pub fn lines_of(&self, value: impl Fn(f64) -> f64) -> Vec<Line> {
+        let fit = PanelFit::new();
+        let panels = self.last as usize;
+        let mut lines: Vec<Line> = (0..panels)
+            .map(|panel| {
+                let (middle, half) = (
+                    panel as f64 / self.panels_per_unit,
+                    0.5 / self.panels_per_unit,
+                );
+                let coefficients = fit.coefficients(middle, half, |d| [value(d.abs())]);
+                let scaled =
+                    |power: usize| coefficients[power][0] * f64::from(1u32 << power as u32);
+                Line(std::array::from_fn(scaled))
+            })
+            .collect();
+        lines.push(Line([0.0; TERMS]));
+        lines
+    }
+
     /// First lines of the tables that a ligand class needs, by receptor class.
     pub fn starts(&self, ligand_class: usize) -> &[u32] {
         self.starts.get(ligand_class).map_or(&[], Vec::as_slice)

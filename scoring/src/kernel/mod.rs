@@ -6,6 +6,7 @@ pub mod cone;
 pub mod low_pass;
 pub mod product;
 pub mod product_sum;
+pub mod radial_filter;
 pub mod radial_transform;
 pub mod ranking;
 #[cfg(test)]

@@ -5,13 +5,12 @@
 //! down to 0 at the stop frequency 1 / resolution) and then, in the real domain, by a window V(d) that is 1 where the kernel
 //! lives and falls C-infinity to 0 at the reach. Both steps are linear in kappa, so they apply to slices and lifted modes alike.
 //!
-//! Both integrals are trapezoidal sums of smooth even functions that vanish with all derivatives at their ends, for which that
-//! rule converges faster than any power. What the sums leave out is part of the definition: every engine and the exact sum use them.
+//! Both are the work of [`super::radial_filter`].
 
 use super::bump::{AlphaError, Bump};
 use super::cone::{Cone, Trim};
-use super::low_pass::smooth_step_down;
-use super::radial_transform::{RadialTransform, sinc};
+use super::radial_filter::RadialFilter;
+use super::radial_transform::RadialTransform;
 use super::table::Table;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -98,14 +97,7 @@ pub struct RankingKernel {
     options: KernelOptions,
     cone: Cone,
     transform: Table<1>,
-    /// Frequencies w_n = n dw below the stop and 4 pi w_n^2 W(w_n) dw.
-    frequencies: Vec<f64>,
-    band_weights: Vec<f64>,
-    /// Distances d_m = m dd below the reach and 4 pi d_m^2 V(d_m) dd.
-    distances: Vec<f64>,
-    window_weights: Vec<f64>,
-    window_start: f64,
-    reach: f64,
+    filter: RadialFilter,
 }
 
 impl RankingKernel {
@@ -129,41 +121,15 @@ impl RankingKernel {
         };
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
-        // The low-pass rings over lengths of 1 / (stop - pass); the window falls over about one such length.
-        let ring = 1.0 / (stop - pass);
-        let window_start = cone.high + 0.15 * ring;
-        let reach = window_start + reach_factor * ring;
+        let filter = RadialFilter::new(pass, stop, cone.high, reach_factor);
         let q_max = stop * (cone.high + cone.taper());
         let quadrature = RadialTransform::new(bump, q_max);
         let transform = Table::fit(q_max * 1.001, 0.125, |q| [quadrature.value(q)]);
-        let frequency_step = 1.0 / (8.0 * reach);
-        let frequencies: Vec<f64> = (0..)
-            .map(|n| f64::from(n) * frequency_step)
-            .take_while(|&w| w < stop)
-            .collect();
-        let band_weights = frequencies
-            .iter()
-            .map(|&w| 4.0 * PI * w * w * smooth_step_down(w, pass, stop) * frequency_step)
-            .collect();
-        let distance_step = 1.0 / (8.0 * stop);
-        let distances: Vec<f64> = (0..)
-            .map(|m| f64::from(m) * distance_step)
-            .take_while(|&d| d < reach)
-            .collect();
-        let window_weights = distances
-            .iter()
-            .map(|&d| 4.0 * PI * d * d * smooth_step_down(d, window_start, reach) * distance_step)
-            .collect();
         Ok(Self {
             options,
             cone,
             transform,
-            frequencies,
-            band_weights,
-            distances,
-            window_weights,
-            window_start,
-            reach,
+            filter,
         })
     }
 
@@ -177,61 +143,41 @@ impl RankingKernel {
         &self.cone
     }
 
+    /// The low-pass and window, which the kernels of further effects share.
+    pub fn filter(&self) -> &RadialFilter {
+        &self.filter
+    }
+
     /// Distance in Å from which the kernel is exactly 0.
     pub fn reach(&self) -> f64 {
-        self.reach
+        self.filter.reach()
     }
 
     /// Stop frequency 1 / resolution of the low-pass, in cycles per Å.
     pub fn stop(&self) -> f64 {
-        1.0 / self.options.resolution
+        self.filter.stop()
     }
 
     /// W kappa^ at the band's frequencies, times their quadrature weights, for one radius sum (trim included).
     fn band(&self, sigma: f64) -> Vec<f64> {
         let trim = self.cone.trim_value(sigma) * sigma.powi(3);
-        self.frequencies
-            .iter()
-            .zip(&self.band_weights)
-            .map(|(&w, weight)| weight * trim * self.transform.value((w * sigma).abs())[0])
-            .collect()
-    }
-
-    /// Low-passed, not yet windowed kernel at distance d from a band.
-    fn low_passed(&self, band: &[f64], distance: f64) -> f64 {
-        self.frequencies
-            .iter()
-            .zip(band)
-            .map(|(&w, value)| value * sinc(2.0 * w * distance))
-            .sum()
+        self.filter
+            .band(|w| trim * self.transform.value((w * sigma).abs())[0])
     }
 
     /// The kernel of one slice at distance d, sigma = r + s + rho, by its definition (slow; tables come from this).
     pub fn value(&self, distance: f64, sigma: f64) -> f64 {
-        self.low_passed(&self.band(sigma), distance) * self.window(distance)
-    }
-
-    fn window(&self, distance: f64) -> f64 {
-        smooth_step_down(distance, self.window_start, self.reach)
+        self.filter.low_passed(&self.band(sigma), distance) * self.filter.window(distance)
     }
 
     /// The windowed kernel at the distance nodes, times their quadrature weights: the input of [`Self::spectrum_of`].
     pub fn profile(&self, sigma: f64) -> Vec<f64> {
-        let band = self.band(sigma);
-        self.distances
-            .iter()
-            .zip(&self.window_weights)
-            .map(|(&d, weight)| weight * self.low_passed(&band, d))
-            .collect()
+        self.filter.profile(&self.band(sigma))
     }
 
     /// Transform at frequency w of a profile (or of any linear combination of profiles).
     pub fn spectrum_of(&self, profile: &[f64], w: f64) -> f64 {
-        self.distances
-            .iter()
-            .zip(profile)
-            .map(|(&d, value)| value * sinc(2.0 * w * d))
-            .sum()
+        self.filter.spectrum_of(profile, w)
     }
 
     /// The slices at rho = 0, r0, 2 r0 of one pair of radii as functions of distance, by their definition; 0 from the reach on.
@@ -241,23 +187,23 @@ impl RankingKernel {
             .slice_offsets()
             .map(|offset| self.band(radius_sum + offset));
         move |distance| {
-            let window = self.window(distance);
+            let window = self.filter.window(distance);
             bands
                 .each_ref()
-                .map(|band| self.low_passed(band, distance) * window)
+                .map(|band| self.filter.low_passed(band, distance) * window)
         }
     }
 
     /// Widest panel in Å on which a polynomial of degree 7 follows the kernel to about 1e-9 of its largest value.
     pub(crate) fn panel(&self) -> f64 {
-        0.125 / self.stop()
+        self.filter.panel()
     }
 
     /// Table over distance of one pair of radii: lanes are the slices at rho = 0, r0, 2 r0 and the score kernel itself.
     pub fn distance_table(&self, radius_sum: f64) -> Table<4> {
         let slices_at = self.slices_of(radius_sum);
         let weights = self.options.slice_weights();
-        Table::fit(self.reach, self.panel(), |d| {
+        Table::fit(self.reach(), self.panel(), |d| {
             let slices = slices_at(d);
             let score = (0..3).map(|i| weights[i] * slices[i]).sum();
             [slices[0], slices[1], slices[2], score]
@@ -268,7 +214,7 @@ impl RankingKernel {
     pub fn rim(&self, radius_sum: f64) -> f64 {
         let table = self.distance_table(radius_sum);
         (0..1000)
-            .map(|i| table.value(self.reach * f64::from(i) / 1000.0)[3])
+            .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
             .fold(0.0, f64::max)
     }
 
@@ -277,7 +223,7 @@ impl RankingKernel {
         let table = self.distance_table(radius_sum);
         (0..1000)
             .rev()
-            .map(|i| self.reach * f64::from(i) / 1000.0)
+            .map(|i| self.reach() * f64::from(i) / 1000.0)
             .find(|&d| table.value(d)[3].abs() > threshold)
             .unwrap_or(0.0)
     }
@@ -285,14 +231,14 @@ impl RankingKernel {
     /// Integral over |w| > f of 4 pi w^2 |transform of the score kernel|: the most that dropping those modes can move one pair.
     pub fn leak_beyond(&self, radius_sum: f64, frequency: f64) -> f64 {
         let weights = self.options.slice_weights();
-        let mut profile = vec![0.0; self.distances.len()];
+        let mut profile = vec![0.0; self.filter.nodes()];
         for (offset, weight) in self.options.slice_offsets().into_iter().zip(weights) {
             for (sum, value) in profile.iter_mut().zip(self.profile(radius_sum + offset)) {
                 *sum += weight * value;
             }
         }
         // The sum over distances repeats in w with period 8 stops; beyond 2 stops there is nothing left to count.
-        let step = 0.25 / self.reach;
+        let step = 0.25 / self.reach();
         (0..)
             .map(|i| frequency + f64::from(i) * step)
             .take_while(|&w| w < 2.0 * self.stop())
@@ -304,6 +250,7 @@ impl RankingKernel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::radial_transform::sinc;
 
     fn options() -> KernelOptions {
         KernelOptions {

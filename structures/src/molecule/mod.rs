@@ -18,11 +18,14 @@ use serde::Serialize;
 
 mod additives;
 mod alternate;
+mod charge_table;
 mod completeness;
+mod contact_types;
 mod elements;
 mod error;
 mod groups;
 mod input;
+mod labels;
 mod parse;
 mod radii;
 mod read;
@@ -33,9 +36,11 @@ mod sieve;
 mod source;
 mod write;
 
+pub use contact_types::CONTACT_TYPES;
 pub use error::ReadError;
 pub use groups::GroupKind;
 pub use input::InputSpec;
+pub use labels::{LabelReport, Labels};
 pub use read::{ReadOptions, read};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
 pub use write::{

@@ -155,7 +155,7 @@ const SIDE_CHAINS: [(&str, SideChain); 22] = [
 ];
 
 /// The residue of the table above that has the same heavy atoms.
-fn parent(residue_name: &str) -> &str {
+pub(super) fn parent(residue_name: &str) -> &str {
     match residue_name {
         "ASH" | "ASX" | "ASPP" => "ASP",
         "GLH" | "GLX" | "GLUP" => "GLU",

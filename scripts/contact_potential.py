@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Derives the contact potential of knotdock from complexes of known structure.
+
+    python3 scripts/contact_potential.py DIR [--split fit] [--exclude ID,...] [--decoys RUNS] [-o FILE]
+
+DIR is a folder as `scripts/benchmark.py` reads it; the pairs of the split give the statistics. Energies are
+e_ab = -ln(n_ab / m_ab) in units of RT, n_ab the contacts of types a and b across the bound interfaces, counted as the score
+counts them (1 up to 5 A, falling smoothly to 0 at 7 A), each complex weighing the same, and m_ab those of a reference state with
+as many contacts:
+
+- without --decoys: pairs of surface atoms at random, m_ab = s_a s_b, s the share of a type among the solvent-accessible
+  surface areas;
+- with --decoys: the contacts of docked poses, which keeps shape out of the potential (DARS, Chuang, Kozakov, Brenke,
+  Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227). RUNS is the --out folder of a `scripts/benchmark.py` run with
+  `-- --effects shape` on the same pairs; the poses of --ranks are taken.
+
+A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of the
+reference state is taken out, so that the potential counts no shape again.
+
+Needs Python 3.9 or later and NumPy.
+"""
+
+import argparse
+import csv
+import datetime
+import gzip
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
+TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
+TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
+PROBE = 1.4  # A
+RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
+
+
+def main():
+    options = parse_arguments()
+    kinds = read_types()
+    pairs = select(options)
+    size = len(TYPES)
+    native, reference = np.zeros((size, size)), np.zeros((size, size))
+    used = []
+    for pair in pairs:
+        folder = options.folder / pair
+        receptor, ligand = (read_atoms(part(folder, f"{side}_bound"), kinds) for side in ("receptor", "ligand"))
+        counts = contacts(receptor, ligand)
+        if counts.sum() == 0:
+            print(f"{pair}: no contacts, left out", file=sys.stderr)
+            continue
+        if options.decoys:
+            expected = decoy_contacts(options, folder, pair, kinds)
+            if expected is None:
+                print(f"{pair}: no decoys, left out", file=sys.stderr)
+                continue
+        else:
+            expected = np.outer(surface(receptor), surface(ligand))
+        used.append(pair)
+        native += counts / counts.sum()
+        reference += expected / expected.sum()
+    native, reference = (0.5 * (matrix + matrix.T) / matrix.sum() for matrix in (native, reference))
+    # Both are shares of all contacts, about 1,000 a complex; a pair of types expected less often than the pseudocount counts for less.
+    scale = 1000.0 * len(used)
+    energies = -np.log(
+        (native * scale + options.pseudocount) / (reference * scale + options.pseudocount)
+    )
+    energies -= (energies * reference).sum()
+    write(options, used, energies)
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
+    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
+    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
+    parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
+    parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
+    parser.add_argument("--pseudocount", type=float, default=50.0, help="expected contacts (default: 50)")
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "scoring/src/effect/contact_potential.csv")
+    return parser.parse_args()
+
+
+def select(options):
+    with open(options.folder / "manifest.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["split"] == "train"]
+    if options.split == "fit":
+        rows = [row for row in rows if not row["near_eval"].strip()]
+    return [row["id"] for row in rows if row["id"] not in options.exclude]
+
+
+def read_types():
+    with open(TYPES_FILE, newline="") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return {(row["residue"], row["atom"]): TYPES.index(row["type"]) for row in rows}
+
+
+def part(folder, name):
+    return next(path for ending in (".pdb", ".pdb.gz") if (path := folder / (name + ending)).exists())
+
+
+def read_atoms(path, kinds):
+    """Positions, types (-1: none) and radii of the heavy atoms of the first model."""
+    data = path.read_bytes()
+    text = (gzip.decompress(data) if path.suffix == ".gz" else data).decode("latin-1")
+    positions, types, radii = [], [], []
+    for line in text.split("\nENDMDL")[0].splitlines():
+        if not line.startswith(("ATOM  ", "HETATM")) or line[16] not in " A1":
+            continue
+        name, residue = line[12:16].strip(), line[17:20].strip()
+        element = re.sub(r"[^A-Z]", "", name)[:1]
+        if element in ("H", "D") or residue in ("HOH", "WAT", "DOD"):
+            continue
+        positions.append([float(line[start : start + 8]) for start in (30, 38, 46)])
+        types.append(kinds.get((residue, name), -1))
+        radii.append(RADII.get(element, 1.7))
+    return np.array(positions), np.array(types), np.array(radii)
+
+
+def smooth_step_down(x, start, stop):
+    u = np.clip((x - start) / (stop - start), 1e-9, 1 - 1e-9)
+    return 1.0 / (1.0 + np.exp(np.clip(1.0 / (1.0 - u) - 1.0 / u, -700, 700)))
+
+
+def neighbours(points, others, reach):
+    """Pairs (i, j) within reach, by a grid of cells."""
+    low = np.minimum(points.min(0), others.min(0)) - reach
+    cells = {}
+    for index, cell in enumerate(map(tuple, ((others - low) // reach).astype(int))):
+        cells.setdefault(cell, []).append(index)
+    first, second = [], []
+    for index, (x, y, z) in enumerate(((points - low) // reach).astype(int)):
+        near = [
+            member
+            for dx in (-1, 0, 1)
+            for dy in (-1, 0, 1)
+            for dz in (-1, 0, 1)
+            for member in cells.get((x + dx, y + dy, z + dz), ())
+        ]
+        first += [index] * len(near)
+        second += near
+    first, second = np.array(first, dtype=int), np.array(second, dtype=int)
+    distances = np.linalg.norm(points[first] - others[second], axis=1)
+    keep = distances < reach
+    return first[keep], second[keep], distances[keep]
+
+
+def contacts(receptor, ligand):
+    """Smoothly counted contacts by type."""
+    counts = np.zeros((len(TYPES), len(TYPES)))
+    first, second, distances = neighbours(ligand[0], receptor[0], TAPER[1])
+    a, b = receptor[1][second], ligand[1][first]
+    known = (a >= 0) & (b >= 0)
+    np.add.at(counts, (a[known], b[known]), smooth_step_down(distances[known], *TAPER))
+    return counts
+
+
+def surface(atoms):
+    """Accessible area by type (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371, 60 points an atom)."""
+    positions, types, radii = atoms
+    k = np.arange(60) + 0.5
+    height, turn = 1 - k / 30, np.pi * (1 + 5**0.5) * k
+    side = np.sqrt(1 - height**2)
+    sphere = np.stack([side * np.cos(turn), side * np.sin(turn), height], axis=1)
+    grown = radii + PROBE
+    first, second, _ = neighbours(positions, positions, 2 * grown.max())
+    starts = np.searchsorted(first, np.arange(len(positions) + 1))
+    shares = np.zeros(len(TYPES))
+    for index, kind in enumerate(types):
+        if kind < 0:
+            continue
+        near = second[starts[index] : starts[index + 1]]
+        near = near[near != index]
+        points = positions[index] + grown[index] * sphere
+        gaps = np.linalg.norm(points[:, None] - positions[near][None], axis=2)
+        free = (gaps >= grown[near]).all(axis=1).mean()
+        shares[kind] += free * grown[index] ** 2
+    return shares
+
+
+def decoy_contacts(options, folder, pair, kinds):
+    """Contacts over the poses of all runs of a pair."""
+    total = np.zeros((len(TYPES), len(TYPES)))
+    for run in sorted((options.decoys / pair).glob("seed_*")):
+        table = run / "run/poses.csv"
+        if not table.exists():
+            continue
+        receptor = read_atoms(part(folder, "receptor_unbound"), kinds)
+        positions, types, radii = read_atoms(run / "ligand_turned.pdb", kinds)
+        with open(table, newline="") as file:
+            rows = [row for row in csv.DictReader(file) if options.ranks[0] <= int(row["rank"]) <= options.ranks[1]]
+        for row in rows[:: max(1, len(rows) // 200)]:
+            w, x, y, z = (float(row[f"q{axis}"]) for axis in "wxyz")
+            rotation = np.array(
+                [
+                    [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+                ]
+            )
+            placed = positions @ rotation.T + [float(row[f"t{axis}"]) for axis in "xyz"]
+            total += contacts(receptor, (placed, types, radii))
+    return total if total.sum() > 0 else None
+
+
+def write(options, used, energies):
+    reference = f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
+    lines = [
+        "# Contact potential in units of RT, -ln(observed / expected), mean removed; lower is better.",
+        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}.",
+        f"# {len(used)} bound complexes of Docking Benchmark 5 (Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041): {' '.join(used)}",
+        "type," + ",".join(TYPES),
+    ]
+    lines += [f"{name}," + ",".join(f"{value:.4f}" for value in row) for name, row in zip(TYPES, energies)]
+    partial = options.output.with_suffix(".partial")
+    partial.write_text("\n".join(lines) + "\n")
+    partial.replace(options.output)
+    print(f"{len(used)} complexes; table in {options.output}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

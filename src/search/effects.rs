@@ -1,0 +1,235 @@
+//! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
+
+use super::options::{DockOptions, SearchError};
+use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
+use knotdock_structures::Knots;
+use knotdock_structures::molecule::{LabelReport, Molecule};
+use serde::{Deserialize, Serialize};
+
+/// Effects as asked for: `auto`, or names with commas between them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum EffectChoice {
+    /// Whatever the inputs call for.
+    #[default]
+    Auto,
+    /// These, and shape.
+    Only(Vec<Effect>),
+}
+
+impl From<EffectChoice> for String {
+    fn from(choice: EffectChoice) -> Self {
+        match choice {
+            EffectChoice::Auto => "auto".to_owned(),
+            EffectChoice::Only(effects) => effects
+                .iter()
+                .map(|effect| effect.name())
+                .collect::<Vec<_>>()
+                .join(","),
+        }
+    }
+}
+
+impl TryFrom<String> for EffectChoice {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        // Shape is always on, and the order in which effects are named says nothing.
+        let mut effects = vec![Effect::Shape];
+        for name in text.split(',').map(str::trim) {
+            let known = Effect::ALL.into_iter().find(|effect| effect.name() == name);
+            effects.push(known.ok_or_else(|| {
+                let names = Effect::ALL.map(Effect::name).join(", ");
+                format!("there is no effect '{name}'; there is auto, or any of {names}")
+            })?);
+        }
+        effects.sort_unstable();
+        effects.dedup();
+        Ok(Self::Only(effects))
+    }
+}
+
+impl std::str::FromStr for EffectChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.to_owned().try_into()
+    }
+}
+
+/// Whether an effect is on, and why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Decision {
+    /// The effect.
+    pub effect: Effect,
+    /// Whether it is on.
+    pub on: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// Two bodies with the terms that act between them.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The receptor, labelled where an effect needs it.
+    pub receptor: Knots,
+    /// The ligand, likewise.
+    pub ligand: Knots,
+    /// Terms beside shape.
+    pub terms: Vec<Term>,
+    /// One decision for each effect, in the order of [`Effect::ALL`].
+    pub decisions: Vec<Decision>,
+    /// What was assumed in labelling receptor and ligand.
+    pub labels: [LabelReport; 2],
+}
+
+/// Share of a molecule's atoms that must have contact types for the contact potential to speak for it.
+const TYPED_SHARE: f64 = 0.5;
+
+impl Scene {
+    /// The scene of two molecules.
+    ///
+    /// # Errors
+    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is asked for that the molecules cannot feed.
+    pub fn new(
+        receptor: &Molecule,
+        ligand: &Molecule,
+        options: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        options.check_effects()?;
+        let molecules = [receptor, ligand];
+        let labels = molecules.map(|molecule| molecule.labels(options.ph));
+        let why_not = |effect: Effect| {
+            let sides = ["receptor", "ligand"]
+                .into_iter()
+                .zip(molecules)
+                .zip(&labels);
+            sides
+                .map(|((side, molecule), labels)| lacking(effect, side, molecule, &labels.report))
+                .find_map(|reason| reason)
+        };
+        let mut decisions = Vec::new();
+        for effect in Effect::ALL {
+            let asked = match &options.effects {
+                EffectChoice::Auto => None,
+                EffectChoice::Only(effects) => Some(effects.contains(&effect)),
+            };
+            let (on, reason) = match (effect, asked, why_not(effect)) {
+                (Effect::Shape, ..) => (true, "always on".to_owned()),
+                (_, Some(false), _) => (false, "not asked for".to_owned()),
+                (_, Some(true), Some(reason)) => {
+                    return Err(SearchError::Effect { effect, reason });
+                }
+                (_, Some(true), None) => (true, "asked for".to_owned()),
+                (_, None, Some(reason)) => (false, reason),
+                (Effect::Electrostatics, None, None) => {
+                    (true, "both sides carry charges".to_owned())
+                }
+                (Effect::Contact, None, None) => (
+                    true,
+                    "both sides are proteins of known atom types".to_owned(),
+                ),
+            };
+            decisions.push(Decision { effect, on, reason });
+        }
+        let [receptor_labels, ligand_labels] = labels;
+        let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
+        // A label that no effect reads is left off.
+        let label = |knots: Knots, charges, types| {
+            let charges = if on(Effect::Electrostatics) {
+                charges
+            } else {
+                Vec::new()
+            };
+            let types = if on(Effect::Contact) {
+                types
+            } else {
+                Vec::new()
+            };
+            knots.with_labels(charges, types)
+        };
+        let receptor = label(
+            receptor.knots()?,
+            receptor_labels.charges,
+            receptor_labels.contact_types,
+        )?;
+        let ligand = label(
+            ligand.knots()?,
+            ligand_labels.charges,
+            ligand_labels.contact_types,
+        )?;
+        let mut terms = Vec::new();
+        if on(Effect::Electrostatics) {
+            let weight = options.electrostatics_weight;
+            terms.push(electrostatics::term(&receptor, &ligand, weight));
+        }
+        if on(Effect::Contact) {
+            terms.push(contact::term(&receptor, &ligand, options.contact_weight));
+        }
+        Ok(Self {
+            receptor,
+            ligand,
+            terms,
+            decisions,
+            labels: [receptor_labels.report, ligand_labels.report],
+        })
+    }
+}
+
+/// What one molecule lacks for an effect; `None` when it can feed it.
+fn lacking(
+    effect: Effect,
+    side: &str,
+    molecule: &Molecule,
+    labels: &LabelReport,
+) -> Option<String> {
+    match effect {
+        Effect::Electrostatics if labels.charged_atoms == 0 => {
+            Some(format!("no atom of the {side} carries a charge"))
+        }
+        Effect::Contact
+            if (labels.typed_atoms as f64) < TYPED_SHARE * molecule.atoms.len() as f64
+                || labels.typed_atoms == 0 =>
+        {
+            Some(format!(
+                "only {} of the {side}'s {} atoms are of known contact types",
+                labels.typed_atoms,
+                molecule.atoms.len()
+            ))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_structures::molecule::CONTACT_TYPES;
+
+    #[test]
+    fn choices_are_read_and_written_alike() {
+        for text in [
+            "auto",
+            "shape",
+            "shape,electrostatics",
+            "shape,electrostatics,contact",
+        ] {
+            let choice: EffectChoice = text.parse().unwrap();
+            assert_eq!(String::from(choice), text);
+        }
+        let choice: EffectChoice = "contact, electrostatics,contact".parse().unwrap();
+        assert_eq!(String::from(choice), "shape,electrostatics,contact");
+        for bad in ["", "gravity", "shape,", "auto,shape"] {
+            assert!(bad.parse::<EffectChoice>().is_err(), "{bad}");
+        }
+    }
+
+    /// Two crates hold the names, since neither may know the other's files.
+    #[test]
+    fn the_types_of_molecules_are_those_of_the_potential() {
+        assert_eq!(CONTACT_TYPES, contact::TYPES);
+    }
+}
