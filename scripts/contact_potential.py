@@ -79,6 +79,7 @@ def parse_arguments():
     parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
     parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
     parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
+    parser.add_argument("--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)")
     parser.add_argument("--pseudocount", type=float, default=50.0, help="expected contacts (default: 50)")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "scoring/src/effect/contact_potential.csv")
     return parser.parse_args()
@@ -192,7 +193,7 @@ def decoy_contacts(options, folder, pair, kinds):
         positions, types, radii = read_atoms(run / "ligand_turned.pdb", kinds)
         with open(table, newline="") as file:
             rows = [row for row in csv.DictReader(file) if options.ranks[0] <= int(row["rank"]) <= options.ranks[1]]
-        for row in rows[:: max(1, len(rows) // 200)]:
+        for row in rows[:: max(1, len(rows) // options.poses)]:
             w, x, y, z = (float(row[f"q{axis}"]) for axis in "wxyz")
             rotation = np.array(
                 [

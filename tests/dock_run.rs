@@ -10,7 +10,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0";
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact";
 
 /// A folder with the made-up receptor and ligand.
 fn place() -> tempfile::TempDir {
@@ -100,12 +100,13 @@ fn the_table_says_what_its_columns_promise() {
             .iter()
             .sum();
         assert!((length - 1.0).abs() < 1e-12 && number(row, "qw") >= 0.0);
-        // Behandish & Ilies' score with its sign: the slices alone give the shape term, which is all of the score.
+        // Behandish & Ilies' score with its sign: the slices alone give the shape term.
         let shape = -lambda * lambda * number(row, "slice_0")
             + 2.0 * lambda * number(row, "slice_r0")
             - number(row, "slice_2r0");
         assert!((shape - number(row, "shape")).abs() <= 1e-9 * best);
-        assert!((score - number(row, "shape")).abs() <= 1e-9 * best);
+        let terms = number(row, "shape") + number(row, "electrostatics") + number(row, "contact");
+        assert!((score - terms).abs() <= 1e-9 * best);
         // Shortest digits: printing what was read gives the field back.
         for column in ["score", "qx", "tx", "score_grid", "slice_0"] {
             assert_eq!(number(row, column).to_string(), row[column]);

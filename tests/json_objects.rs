@@ -109,7 +109,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             .lines()
             .next()
             .unwrap()
-            .ends_with("slice_2r0,irmsd,lrmsd,fnat,dockq,capri")
+            .ends_with("slice_2r0,electrostatics,contact,irmsd,lrmsd,fnat,dockq,capri")
     );
 }
 

@@ -1,6 +1,5 @@
 //! Values of options, checked as they are read.
 
-
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
 

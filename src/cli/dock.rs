@@ -61,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 24] = [
+const RECORDED: [&str; 25] = [
     "receptor",
     "ligand",
     "rotations",
@@ -76,6 +76,7 @@ const RECORDED: [&str; 24] = [
     "effects",
     "electrostatics_weight",
     "contact_weight",
+    "contact_potential",
     "ph",
     "per_rotation",
     "poses",
@@ -101,7 +102,7 @@ impl Dock {
             ligand: Input::read(ligand)?,
             native: self.native.read()?,
             options: RunOptions {
-                dock: self.search.options(),
+                dock: self.search.options()?,
                 write_top: self.write_top,
             },
         })

@@ -55,7 +55,7 @@ impl Score {
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
         let options = ScoreOptions {
-            engine: self.kernel.options().engine(),
+            engine: self.kernel.options()?.engine(),
             modes: self.modes,
             order: match self.order {
                 Order::LowFrequency => ModeOrder::LowFrequency,
@@ -70,7 +70,7 @@ impl Score {
         };
         let receptor = read(&self.receptor, "Receptor")?;
         let ligand = read(&self.ligand, "Ligand")?;
-        let scene = Scene::new(&receptor, &ligand, &self.kernel.options()).map_err(refused)?;
+        let scene = Scene::new(&receptor, &ligand, &self.kernel.options()?).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         console.say(format!("\n{}", told(&scored)));
         if !scored.reached {

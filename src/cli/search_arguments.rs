@@ -1,10 +1,14 @@
 //! Options of the search, with their units and defaults.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use knotdock::search::options::PASS_RATIO;
 use knotdock::search::{DockOptions, EffectChoice};
+use knotdock_scoring::effect::contact::Potential;
 
 use super::arguments::{above_zero, at_least_one, not_negative, rotations_of_angle};
+use super::failure::Failure;
 
 const TRADE_OFFS: &str = "Accuracy against time";
 const SCORE: &str = "Score";
@@ -51,6 +55,9 @@ pub struct KernelArguments {
     /// Weight of the contact potential: score per RT.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().contact_weight, help_heading = SCORE)]
     contact_weight: f64,
+    /// Contact potential to use in place of the program's own, as scripts/contact_potential.py writes it.
+    #[arg(long, value_name = "CSV", help_heading = SCORE)]
+    contact_potential: Option<PathBuf>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -86,8 +93,16 @@ pub struct SearchArguments {
 
 impl KernelArguments {
     /// The options with everything else at its default.
-    pub fn options(&self) -> DockOptions {
-        DockOptions {
+    ///
+    /// # Errors
+    /// [`Failure`] when the contact potential cannot be read.
+    pub fn options(&self) -> Result<DockOptions, Failure> {
+        let contact_potential = match &self.contact_potential {
+            Some(path) => Some(read_potential(path)?),
+            None => None,
+        };
+        Ok(DockOptions {
+            contact_potential,
             resolution: self.resolution,
             pass_length: self.pass_length,
             spacing: self.spacing,
@@ -100,21 +115,37 @@ impl KernelArguments {
             contact_weight: self.contact_weight,
             ph: self.ph,
             ..DockOptions::default()
-        }
+        })
     }
 }
 
 impl SearchArguments {
     /// The options as the search takes them; the machine's are at their defaults.
-    pub fn options(&self) -> DockOptions {
-        DockOptions {
+    ///
+    /// # Errors
+    /// As [`KernelArguments::options`].
+    pub fn options(&self) -> Result<DockOptions, Failure> {
+        Ok(DockOptions {
             rotations: self.angle.unwrap_or(self.rotations),
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,
             cluster_radius: self.cluster_radius,
             every_pose: self.no_cluster,
-            ..self.kernel.options()
-        }
+            ..self.kernel.options()?
+        })
     }
+}
+
+fn read_potential(path: &Path) -> Result<Potential, Failure> {
+    let remedy =
+        "give a table as scripts/contact_potential.py writes it, or leave --contact-potential out";
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Failure::input(&error).at(path).remedy(remedy))?;
+    Potential::parse(&text).map_err(|error| {
+        Failure::input(&error)
+            .at(path)
+            .on_line(Some(error.line as u64))
+            .remedy(remedy)
+    })
 }

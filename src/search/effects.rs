@@ -167,7 +167,13 @@ impl Scene {
             terms.push(electrostatics::term(&receptor, &ligand, weight));
         }
         if on(Effect::Contact) {
-            terms.push(contact::term(&receptor, &ligand, options.contact_weight));
+            let potential = options.contact_potential.clone().unwrap_or_default();
+            terms.push(contact::term(
+                &receptor,
+                &ligand,
+                options.contact_weight,
+                &potential,
+            ));
         }
         Ok(Self {
             receptor,

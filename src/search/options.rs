@@ -2,6 +2,7 @@
 
 use super::effects::EffectChoice;
 use knotdock_scoring::effect::Effect;
+use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_structures::knots::KnotsError;
@@ -32,6 +33,8 @@ pub struct DockOptions {
     pub electrostatics_weight: f64,
     /// Weight of the contact potential: score per RT.
     pub contact_weight: f64,
+    /// The contact potential; `None`: the one that the program carries.
+    pub contact_potential: Option<Potential>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -68,6 +71,7 @@ impl Default for DockOptions {
             effects: EffectChoice::Auto,
             electrostatics_weight: 8.0,
             contact_weight: 0.6,
+            contact_potential: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,

@@ -2,7 +2,7 @@
 
 use super::effects::{Decision, Scene};
 use super::options::{DockOptions, SearchError};
-use super::rotations::{covering_radius, rotation_set};
+use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::field::ReceptorField;
@@ -109,6 +109,7 @@ pub fn plan(
                 + ReceptorField::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
                 + 64 * options.rotations as u64
+                + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
                 + 400 * options.poses as u64
                 + (16 << 20);
         (fixed, per_rotation)
@@ -146,7 +147,7 @@ pub fn plan(
     };
     Ok(DockPlan {
         rotations: options.rotations,
-        rotation_set: "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed",
+        rotation_set: set_name(options.rotations),
         covering_radius_degrees: covering_radius(&set).to_degrees(),
         grid: engine.size(),
         spacing: engine.spacing,

@@ -201,3 +201,66 @@ impl Candidate {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+    use knotdock_structures::Knots;
+    use nalgebra::Vector3;
+
+    struct Silent;
+    impl Progress for Silent {
+        fn stage(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64) {}
+    }
+
+    fn scorer() -> ExactScorer {
+        let options = KernelOptions {
+            lambda: 10.0,
+            offset: 2.2,
+            alpha: 2.0,
+            resolution: 4.5,
+            pass_length: 9.0,
+            trim: Trim::FlatTop,
+        };
+        let ball = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
+        let kernel = RankingKernel::new(options, 3.4, 3.4, 1.15).unwrap();
+        ExactScorer::new(&kernel, &ball, &ball).unwrap()
+    }
+
+    fn at(x: f64) -> Pose {
+        Pose {
+            translation: Vector3::new(x, 0.0, 0.0),
+            ..Pose::identity()
+        }
+    }
+
+    /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
+    #[test]
+    fn an_undone_climb_is_reported_as_unrefined() {
+        let scorer = scorer();
+        let exact = |x: f64| scorer.score_only(&at(x));
+        let (touching, overlapping) = (4.2, 0.5);
+        assert!(exact(touching) > exact(overlapping));
+        let climbed = |from: f64, to: f64| {
+            let peak = Peak {
+                score: exact(from) as f32,
+                rotation: 0,
+                voxel: 0,
+            };
+            // The fast path claims a gain of one.
+            let refined = [(at(to), f64::from(peak.score) + 1.0)];
+            let candidates = candidates(&[peak], &[at(from)], &refined, &[]);
+            let on = [true, false, false];
+            let ranking = report(&scorer, &candidates, &[0], on, true, 0.0, &Silent);
+            ranking.poses[0].clone()
+        };
+        let undone = climbed(touching, overlapping);
+        assert!(!undone.refined && undone.pose == at(touching));
+        assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
+        let stands = climbed(overlapping, touching);
+        assert!(stands.refined && stands.pose == at(touching));
+        assert_eq!(stands.terms[1..], [None, None]);
+    }
+}

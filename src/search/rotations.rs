@@ -28,13 +28,15 @@ fn rotation(index: usize, count: usize) -> UnitQuaternion<f64> {
 /// A set of `count` rotations that the half-turns about x, y and z map onto itself: rotation 4 i + f is half-turn f after rotation 4 i,
 /// so that one transform of the ligand serves four rotations. Where `count` is no multiple of four the last images are left out.
 ///
-/// The rotations of a spiral that lie in one domain of the half-turns (w the largest part of the quaternion) and their images are
-/// relaxed as charges that push each other apart, which evens out the domain's edges and leaves every rotation a nearer neighbour on
+/// Up to 100,000, the rotations of a spiral that lie in one domain of the half-turns (w the largest part of the quaternion) and their
+/// images are relaxed as charges that push each other apart, which evens out the domain's edges and leaves every rotation a nearer neighbour on
 /// average than the spiral itself does.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
     let quarter = count.div_ceil(4);
     let mut base = domain(quarter);
-    relax(&mut base);
+    if count <= MOST_RELAXED {
+        relax(&mut base);
+    }
     base.iter()
         .flat_map(|&point| {
             let rotation = UnitQuaternion::from_quaternion(Quaternion::from(
@@ -44,6 +46,21 @@ pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
         })
         .take(count)
         .collect()
+}
+
+/// Largest set that is relaxed: beyond, the spiral is fine enough, and time and memory would go into a gain that nothing shows.
+pub(super) const MOST_RELAXED: usize = 100_000;
+
+/// Bytes that a set takes while it is made, per rotation relaxed (points and images, sorted by cell).
+pub(super) const BYTES_RELAXED: u64 = 250;
+
+/// What a set of `count` rotations is called.
+pub(super) fn set_name(count: usize) -> &'static str {
+    if count <= MOST_RELAXED {
+        "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed"
+    } else {
+        "super-Fibonacci (Alexa 2022), closed under half-turns"
+    }
 }
 
 /// (w, x, y, z).

@@ -8,6 +8,7 @@
 use super::{Effect, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
 use knotdock_structures::Knots;
+use serde::{Deserialize, Serialize};
 
 /// Names of the types, in the order of their numbers.
 pub const TYPES: [&str; 18] = [
@@ -31,22 +32,98 @@ fn count(distance: f64) -> f64 {
 /// The potential as its script wrote it: lines of `#`, a header, and a row for each type.
 const TABLE: &str = include_str!("contact_potential.csv");
 
+/// Why a table is no contact potential.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct PotentialError {
+    /// 1-based line.
+    pub line: usize,
+    /// What is wrong with it.
+    pub message: String,
+}
+
 /// Energy of a contact, [type][type], symmetric, in units of RT; lower is better.
-pub fn potential() -> Vec<Vec<f64>> {
-    let rows = TABLE
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .skip(1)
-        .take(TYPES.len());
-    rows.map(|row| {
-        let values = row.split(',').skip(1).map(|value| value.trim().parse());
-        values.map(|value| value.unwrap_or(0.0)).collect()
-    })
-    .collect()
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]
+pub struct Potential(Vec<Vec<f64>>);
+
+impl Default for Potential {
+    /// The potential that this crate carries.
+    fn default() -> Self {
+        // A test holds the table to its form.
+        Self::parse(TABLE).unwrap_or_else(|_| Self(vec![vec![0.0; TYPES.len()]; TYPES.len()]))
+    }
+}
+
+impl From<Potential> for Vec<Vec<f64>> {
+    fn from(potential: Potential) -> Self {
+        potential.0
+    }
+}
+
+impl TryFrom<Vec<Vec<f64>>> for Potential {
+    type Error = String;
+
+    fn try_from(rows: Vec<Vec<f64>>) -> Result<Self, String> {
+        let size = TYPES.len();
+        if rows.len() != size || rows.iter().any(|row| row.len() != size) {
+            return Err(format!(
+                "a contact potential has {size} rows of {size} energies"
+            ));
+        }
+        for (a, row) in rows.iter().enumerate() {
+            for (b, value) in row.iter().enumerate() {
+                if !value.is_finite() {
+                    return Err(format!(
+                        "the energy of {} and {} is {value}",
+                        TYPES[a], TYPES[b]
+                    ));
+                }
+                if *value != rows[b][a] {
+                    return Err(format!(
+                        "{} and {} have energy {value} one way and {} the other",
+                        TYPES[a], TYPES[b], rows[b][a]
+                    ));
+                }
+            }
+        }
+        Ok(Self(rows))
+    }
+}
+
+impl Potential {
+    /// Reads a table: lines of `#`, a header `type,` and the names of [`TYPES`], and a row for each type in that order.
+    ///
+    /// # Errors
+    /// [`PotentialError`] with the line that is not so, or when the energies are not finite and symmetric.
+    pub fn parse(text: &str) -> Result<Self, PotentialError> {
+        let mut lines = (1..)
+            .zip(text.lines())
+            .filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
+        let wrong = |line: usize, message: String| PotentialError { line, message };
+        let expected = format!("type,{}", TYPES.join(","));
+        match lines.next() {
+            Some((_, header)) if header.trim() == expected => {}
+            Some((line, _)) => return Err(wrong(line, format!("the header is not `{expected}`"))),
+            None => return Err(wrong(1, "the table is empty".to_owned())),
+        }
+        let mut rows = Vec::new();
+        let mut last = 1;
+        for ((line, text), name) in lines.zip(TYPES) {
+            last = line;
+            let mut fields = text.split(',').map(str::trim);
+            if fields.next() != Some(name) {
+                return Err(wrong(line, format!("this should be the row of {name}")));
+            }
+            let row: Result<Vec<f64>, _> = fields.map(str::parse).collect();
+            rows.push(row.map_err(|_| wrong(line, "an energy is not a number".to_owned()))?);
+        }
+        rows.try_into().map_err(|message| wrong(last, message))
+    }
 }
 
 /// The term for two sets of knots with contact types: `weight` times minus the potential's sum.
-pub fn term(receptor: &Knots, ligand: &Knots, weight: f64) -> Term {
+pub fn term(receptor: &Knots, ligand: &Knots, weight: f64, potential: &Potential) -> Term {
     let labels = |knots: &Knots| {
         (0..knots.len())
             .map(|index| match knots.contact_types.get(index) {
@@ -58,11 +135,11 @@ pub fn term(receptor: &Knots, ligand: &Knots, weight: f64) -> Term {
             })
             .collect()
     };
-    let scaled = |row: Vec<f64>| row.into_iter().map(|value| -weight * value).collect();
+    let scaled = |row: &Vec<f64>| row.iter().map(|value| -weight * value).collect();
     Term {
         effect: Effect::Contact,
         radial: RADIAL,
-        matrix: potential().into_iter().map(scaled).collect(),
+        matrix: potential.0.iter().map(scaled).collect(),
         receptor: labels(receptor),
         ligand: labels(ligand),
     }
@@ -73,32 +150,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_whole_and_symmetric() {
-        let potential = potential();
-        assert_eq!(potential.len(), TYPES.len());
-        let header = TABLE.lines().find(|line| !line.starts_with('#'));
-        let names: Vec<&str> = header
-            .into_iter()
-            .flat_map(|line| line.split(','))
-            .collect();
-        assert_eq!(names[1..], TYPES);
-        let fields = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
-        for (line, name) in fields.zip(TYPES) {
-            let mut fields = line.split(',');
-            assert_eq!(fields.next(), Some(name));
-            assert!(fields.all(|field| field.trim().parse::<f64>().is_ok_and(f64::is_finite)));
-        }
-        for (a, row) in potential.iter().enumerate() {
-            assert_eq!(row.len(), TYPES.len());
-            for (b, value) in row.iter().enumerate() {
-                assert_eq!(*value, potential[b][a]);
-            }
-        }
+    fn the_table_is_whole_and_says_what_chemistry_does() {
+        let Potential(potential) = Potential::parse(TABLE).unwrap();
+        assert!(potential.iter().flatten().any(|value| *value != 0.0));
         // Opposite charges attract, like ones repel, fat sticks to fat.
         let of = |a: &str, b: &str| {
             let index = |name: &str| TYPES.iter().position(|kind| *kind == name).unwrap();
             potential[index(a)][index(b)]
         };
         assert!(of("KNZ", "DOD") < of("KNZ", "KNZ") && of("LCD", "LCD") < of("LCD", "DOD"));
+    }
+    #[test]
+    fn tables_that_are_none_are_refused_by_line() {
+        let line_of = |text: &str| Potential::parse(text).unwrap_err().line;
+        assert_eq!(line_of(""), 1);
+        assert_eq!(line_of("# x\ntype,A,B\n"), 2);
+        let spoilt = |from: &str, to: &str| Potential::parse(&TABLE.replacen(from, to, 1));
+        assert!(spoilt("\nKNZ,", "\nXXX,").is_err());
+        assert!(spoilt("\nKNZ,", "\nKNZ,NaN,").is_err());
+        assert!(
+            spoilt("\nKNZ,-", "\nKNZ,").is_err(),
+            "not symmetric any more"
+        );
     }
 }

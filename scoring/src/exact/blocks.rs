@@ -48,6 +48,8 @@ struct Group {
 /// All knots of a receptor.
 pub(super) struct Blocks {
     blocks: Vec<Block>,
+    /// Indices of the knots, block by block.
+    order: Vec<usize>,
     groups: Vec<Group>,
 }
 
@@ -92,15 +94,29 @@ impl Blocks {
                 }
             })
             .collect();
-        Self { blocks, groups }
+        Self {
+            blocks,
+            order,
+            groups,
+        }
     }
 
-    /// Visits the blocks whose boxes lie within `reach` of `x`, always in the same order.
+    /// Something of each knot, laid out as the blocks are, `filler` where a block is not full.
+    pub fn arranged<L: Copy>(&self, filler: L, of: impl Fn(usize) -> L) -> Vec<[L; LANES]> {
+        self.order
+            .chunks(LANES)
+            .map(|members| {
+                std::array::from_fn(|lane| members.get(lane).map_or(filler, |&index| of(index)))
+            })
+            .collect()
+    }
+
+    /// Visits the blocks whose boxes lie within `reach` of `x`, with their indices, always in the same order.
     ///
     /// Whether a box is within reach is a coin toss that no branch predictor wins, so blocks are listed always and counted only
     /// when near.
     #[inline(always)]
-    pub fn near(&self, x: &[f64; 3], reach: f64, mut visit: impl FnMut(&Block)) {
+    pub fn near(&self, x: &[f64; 3], reach: f64, mut visit: impl FnMut(usize, &Block)) {
         let square_reach = reach * reach;
         let mut listed = [0u32; LISTED + GROUP];
         let mut groups = self.groups.iter().zip((0u32..).step_by(GROUP));
@@ -129,9 +145,9 @@ impl Blocks {
                     break;
                 }
             }
-            for block in &listed[..count] {
-                if let Some(block) = self.blocks.get(*block as usize) {
-                    visit(block);
+            for &index in &listed[..count] {
+                if let Some(block) = self.blocks.get(index as usize) {
+                    visit(index as usize, block);
                 }
             }
             if count < LISTED {
@@ -200,7 +216,7 @@ mod tests {
                     let reach = 9.0;
                     let x = from.into();
                     let mut found = Vec::new();
-                    blocks.near(&x, reach, |block| {
+                    blocks.near(&x, reach, |_, block| {
                         for (square, weight) in block.squares(&x).iter().zip(block.weights) {
                             if *square < reach * reach && weight > 0.0 {
                                 found.push(weight);

@@ -21,7 +21,7 @@ impl ExactScorer {
         let (rotation, center) = self.placed(pose);
         let mut score = 0.0;
         let mut gradient = PoseGradient::default();
-        for knot in &self.ligand {
+        for (index, knot) in self.ligand.iter().enumerate() {
             let arm = rotation * knot.position;
             let x: [f64; 3] = (arm + center).into();
             let starts = self.tables.starts(knot.class);
@@ -31,21 +31,33 @@ impl ExactScorer {
                 &x,
                 self.kernel.reach(),
                 #[inline(always)]
-                |block| {
+                |number, block| {
                     let squares = block.squares(&x);
                     let places = self.tables.place(&squares);
                     for lane in 0..LANES {
+                        let (panel, u) = (places.panels[lane], places.offsets[lane]);
                         let start = starts.get(block.classes[lane] as usize).copied();
-                        let index = (start.unwrap_or(0) + places.panels[lane]) as usize;
-                        let Some(line) = self.tables.scores().get(index) else {
+                        let line = self
+                            .tables
+                            .scores()
+                            .get((start.unwrap_or(0) + panel) as usize);
+                        let Some(line) = line else {
                             continue;
                         };
-                        let (kernel, slope) = value_and_slope(line, places.offsets[lane]);
-                        value += block.weights[lane] * kernel;
+                        let (kernel, slope) = value_and_slope(line, u);
+                        let weight = knot.weight * block.weights[lane];
+                        let (mut kernel, mut slope) = (weight * kernel, weight * slope);
+                        for term in &self.effects {
+                            let weight = term.weight(index, number, lane);
+                            let (more, steeper) = value_and_slope(term.line(panel), u);
+                            kernel += weight * more;
+                            slope += weight * steeper;
+                        }
+                        value += kernel;
                         let distance = squares[lane].sqrt();
                         // Coincident knots: the kernel is even and smooth there, so its force is zero.
                         if distance > 0.0 {
-                            let pull = block.weights[lane] * slope / distance;
+                            let pull = slope / distance;
                             for axis in 0..3 {
                                 force[axis] += (x[axis] - block.positions[axis][lane]) * pull;
                             }
@@ -53,19 +65,18 @@ impl ExactScorer {
                     }
                 },
             );
-            score += knot.weight * value;
-            let force = Vector3::from(force) * (knot.weight * self.tables.panels_per_unit());
+            score += value;
+            let force = Vector3::from(force) * self.tables.panels_per_unit();
             gradient.force += force;
             gradient.torque += arm.cross(&force);
         }
-        score += self.effect_gradient(pose, &mut gradient);
         (score, gradient)
     }
 }
 
 /// A polynomial and its slope at u, per panel.
 #[inline(always)]
-pub(super) fn value_and_slope(Line(line): &Line, u: f64) -> (f64, f64) {
+fn value_and_slope(Line(line): &Line, u: f64) -> (f64, f64) {
     let (mut value, mut slope) = (0.0, 0.0);
     for coefficient in line.iter().rev() {
         slope = slope * u + value;

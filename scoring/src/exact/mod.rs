@@ -107,13 +107,14 @@ impl ExactScorer {
         let weights: Vec<f64> = receptor.weights.iter().map(|c| c.re).collect();
         let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
         let tables = PairTables::new(kernel, &receptor_radii, &ligand_radii);
+        let blocks = Blocks::new(&points, &weights, &receptor_class);
         Ok(Self {
             effects: effects
                 .iter()
-                .map(|active| PairTerm::new(active, &tables, &points))
+                .map(|active| PairTerm::new(active, &tables, &blocks))
                 .collect(),
             tables,
-            receptor: Blocks::new(&points, &weights, &receptor_class),
+            receptor: blocks,
             receptor_center,
             ligand: (0..ligand.len())
                 .map(|j| LigandKnot {

@@ -6,14 +6,12 @@
 //! Closures are inlined by order: what the compiler leaves outside the dispatched function is compiled without its vector features.
 
 use super::blocks::{Block, LANES};
+use super::effects::Sums;
 use super::tables::{Line, Places};
 use super::{ExactScore, ExactScorer};
 use crate::effect::Effect;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
-
-/// Partial sums of one ligand knot: four lanes, twice, so that one addition need not wait for the other.
-type Sums = [[f64; 4]; 2];
 
 impl ExactScorer {
     /// The score of one pose, all terms together, and nothing else: what poses are ranked by, at a fraction of [`Self::score`]'s price.
@@ -22,12 +20,12 @@ impl ExactScorer {
         vectorized(
             #[inline(always)]
             || {
-                let [score] = self.sums(
+                let ([score], terms) = self.sums(
                     pose,
                     #[inline(always)]
                     |index| self.tables.scores().get(index).map(std::array::from_ref),
                 );
-                score + self.effect_sums(pose).iter().sum::<f64>()
+                score + terms.iter().sum::<f64>()
             },
         )
     }
@@ -37,14 +35,13 @@ impl ExactScorer {
         vectorized(
             #[inline(always)]
             || {
-                let slices = self.sums(
+                let (slices, mut terms) = self.sums(
                     pose,
                     #[inline(always)]
                     |index| self.tables.slices().get(index),
                 );
                 let weights = self.kernel.options().slice_weights();
                 let weighted = |slices: [f64; 3]| (0..3).map(|i| weights[i] * slices[i]).sum();
-                let mut terms = self.effect_sums(pose);
                 // From the slices, not the score's own table: what the table shows then adds up to the last digit.
                 terms[Effect::Shape as usize] = weighted(slices);
                 ExactScore {
@@ -57,35 +54,61 @@ impl ExactScorer {
         )
     }
 
-    /// Sums over all pairs of the kernels whose lines `lines` holds.
+    /// Sums over all pairs of the shape kernels whose lines `lines` holds, and of the terms beside shape by effect.
     #[inline(always)]
     fn sums<'a, const KERNELS: usize>(
         &self,
         pose: &Pose,
         lines: impl Fn(usize) -> Option<&'a [Line; KERNELS]>,
-    ) -> [f64; KERNELS] {
+    ) -> ([f64; KERNELS], [f64; Effect::ALL.len()]) {
+        // A loop over no terms would still cost shape alone a quarter more.
+        if self.effects.is_empty() {
+            self.sums_with::<KERNELS, false>(pose, lines)
+        } else {
+            self.sums_with::<KERNELS, true>(pose, lines)
+        }
+    }
+
+    #[inline(always)]
+    fn sums_with<'a, const KERNELS: usize, const EFFECTS: bool>(
+        &self,
+        pose: &Pose,
+        lines: impl Fn(usize) -> Option<&'a [Line; KERNELS]>,
+    ) -> ([f64; KERNELS], [f64; Effect::ALL.len()]) {
         let (rotation, center) = self.placed(pose);
         let reach = self.kernel.reach();
         let mut totals = [0.0; KERNELS];
-        for knot in &self.ligand {
+        let mut terms = [0.0; Effect::ALL.len()];
+        for (index, knot) in self.ligand.iter().enumerate() {
             let x = (rotation * knot.position + center).into();
             let starts = self.tables.starts(knot.class);
             let mut sums = [Sums::default(); KERNELS];
+            let mut term_sums = [Sums::default(); Effect::ALL.len()];
             self.receptor.near(
                 &x,
                 reach,
                 #[inline(always)]
-                |block| {
+                |number, block| {
                     let places = self.tables.place(&block.squares(&x));
                     add_block(block, &places, starts, &lines, &mut sums);
+                    if EFFECTS {
+                        for (term, sums) in self.effects.iter().zip(&mut term_sums) {
+                            if let Some((_, row)) = term.of(index) {
+                                term.add_block(number, &places, row, sums);
+                            }
+                        }
+                    }
                 },
             );
-            for (total, [even, odd]) in totals.iter_mut().zip(&sums) {
-                let four: [f64; 4] = std::array::from_fn(|k| even[k] + odd[k]);
-                *total += knot.weight * ((four[0] + four[2]) + (four[1] + four[3]));
+            for (total, sums) in totals.iter_mut().zip(&sums) {
+                *total += knot.weight * across(sums);
+            }
+            for (term, sums) in self.effects.iter().zip(&term_sums) {
+                let value = term.of(index).map_or(0.0, |(value, _)| value);
+                terms[term.effect as usize] += value * across(sums);
             }
         }
-        totals
+        (totals, terms)
     }
 
     /// Slices of B&I's own kernel, evaluated directly.
@@ -103,7 +126,7 @@ impl ExactScorer {
                 &x,
                 self.unfiltered_reach,
                 #[inline(always)]
-                |block| {
+                |_, block| {
                     let squares = block.squares(&x);
                     for lane in 0..LANES {
                         let Some(radius_sum) = radius_sums.get(block.classes[lane] as usize) else {
@@ -129,6 +152,13 @@ impl ExactScorer {
         }
         totals
     }
+}
+
+/// The sum of partial sums.
+#[inline(always)]
+fn across([even, odd]: &Sums) -> f64 {
+    let four: [f64; 4] = std::array::from_fn(|k| even[k] + odd[k]);
+    (four[0] + four[2]) + (four[1] + four[3])
 }
 
 /// Adds the kernels of eight receptor knots.

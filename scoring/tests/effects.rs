@@ -1,0 +1,346 @@
+//! Effects beside shape: each by the fast path, run alone, against its exact pair sum, that against a plain double loop, and scenes
+//! whose answer is known.
+
+use knotdock_scoring::effect::contact::{self, Potential};
+use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan};
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::Real;
+use knotdock_structures::Knots;
+use nalgebra::{UnitQuaternion, Vector3};
+use std::sync::Arc;
+
+fn options(tolerance: f64) -> EngineOptions {
+    EngineOptions {
+        kernel: KernelOptions {
+            lambda: 10.0,
+            offset: 2.2,
+            alpha: 2.0,
+            resolution: 4.5,
+            pass_length: 9.0,
+            trim: Trim::FlatTop,
+        },
+        spacing: None,
+        tolerance,
+        rank: None,
+    }
+}
+
+/// Labelled knots strewn over a ball: a third without charge, one in seven of no contact type.
+fn cloud(count: usize, size: f64, seed: u64) -> Knots {
+    let mut state = seed;
+    let mut next = move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut centers = Vec::new();
+    while centers.len() < count {
+        let p: [f64; 3] = std::array::from_fn(|_| size * (2.0 * next() - 1.0));
+        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
+            centers.push(p);
+        }
+    }
+    let radii = [1.42, 1.64, 1.88];
+    let charges = (0..count)
+        .map(|i| if i % 3 == 0 { 0.0 } else { next() - 0.5 })
+        .collect();
+    let types = (0..count)
+        .map(|i| (i % 7 != 0).then_some((i * 5 % 18) as u8))
+        .collect();
+    Knots::new(centers, (0..count).map(|i| radii[i % 3]).collect())
+        .unwrap()
+        .with_labels(charges, types)
+        .unwrap()
+}
+
+fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
+    vec![
+        electrostatics::term(a, b, 8.0),
+        contact::term(a, b, 0.7, &Potential::default()),
+    ]
+}
+
+fn plan(a: &Knots, b: &Knots, tolerance: f64) -> Arc<Plan> {
+    let options = options(tolerance);
+    Arc::new(Plan::with_effects(a, b, options, tolerance, terms(a, b)).unwrap())
+}
+
+fn scorer(plan: &Plan, a: &Knots, b: &Knots) -> ExactScorer {
+    ExactScorer::with_effects(&plan.kernel, a, b, &plan.effects).unwrap()
+}
+
+fn turn() -> UnitQuaternion<f64> {
+    Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
+}
+
+/// Largest error over the grid's best and a sweep of it, as a share of the largest exact value there, of `effect` alone or of all.
+fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) -> f64 {
+    let plan = plan(a, b, tolerance);
+    let scorer = scorer(&plan, a, b);
+    let mut folded = Folded::<T>::new(&plan, a, b, Fold::Score);
+    if let Some(effect) = effect {
+        for other in Effect::ALL.into_iter().filter(|other| *other != effect) {
+            folded = folded.without(other);
+        }
+    }
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let mut work = engine.workspace();
+    engine.correlate(&turn(), &mut work);
+    let mut order: Vec<usize> = (0..work.grid.len()).collect();
+    order.sort_by(|&x, &y| work.grid[y].partial_cmp(&work.grid[x]).unwrap());
+    let sweep = order.iter().copied().step_by(order.len() / 200);
+    let (mut error, mut best) = (0.0f64, 0.0f64);
+    for voxel in order[..100].iter().copied().chain(sweep) {
+        let place = plan.receptor_center + engine.position(voxel);
+        let exact = scorer.score(&Pose::about(turn(), plan.ligand_center, place));
+        let value = effect.map_or(exact.score, |effect| exact.terms[effect as usize]);
+        error = error.max((value - work.grid[voxel].wide()).abs());
+        best = best.max(value);
+    }
+    error / best
+}
+
+#[test]
+fn each_term_alone_and_all_together_meet_the_tolerance_asked() {
+    let (a, b) = (cloud(160, 12.0, 1), cloud(60, 8.0, 2));
+    for effect in [Some(Effect::Electrostatics), Some(Effect::Contact), None] {
+        for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+            let error = worst::<f64>(&a, &b, tolerance, effect);
+            assert!(error <= tolerance, "{effect:?} at {tolerance:e}: {error:e}");
+        }
+        for tolerance in [1e-2, 1e-4] {
+            let error = worst::<f32>(&a, &b, tolerance, effect);
+            assert!(
+                error <= tolerance,
+                "{effect:?}, f32 at {tolerance:e}: {error:e}"
+            );
+        }
+    }
+}
+
+/// The tables and blocks of the exact sum against a double loop over the kernels' definition; terms add up to the score; the gradient is
+/// that of central differences.
+#[test]
+fn the_exact_terms_are_the_plain_double_sum() {
+    let (a, b) = (cloud(90, 10.0, 3), cloud(40, 7.0, 4));
+    let plan = plan(&a, &b, 1e-2);
+    let scorer = scorer(&plan, &a, &b);
+    for shift in [[0.0, 0.0, 0.0], [9.0, -5.0, 6.0], [14.0, 9.0, -8.0]] {
+        let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], shift);
+        let exact = scorer.score(&pose);
+        for ActiveTerm { term, kernel } in &plan.effects {
+            let mut plain = 0.0;
+            for (y, ligand) in b.centers.iter().zip(&term.ligand) {
+                let y = Vector3::from(pose.apply(*y));
+                for (x, receptor) in a.centers.iter().zip(&term.receptor) {
+                    let weight = receptor.value * ligand.value;
+                    plain += weight
+                        * term.matrix[receptor.class][ligand.class]
+                        * kernel.value((y - Vector3::from(*x)).norm());
+                }
+            }
+            let value = exact.terms[term.effect as usize];
+            assert!((value - plain).abs() < 1e-7 * plain.abs().max(10.0));
+        }
+        assert!((exact.terms.iter().sum::<f64>() - exact.score).abs() < 1e-9);
+        assert!((scorer.score_only(&pose) - exact.score).abs() < 1e-8 * exact.score.abs());
+        let (value, gradient) = scorer.gradient(&pose);
+        assert!((value - exact.score).abs() < 1e-8 * exact.score.abs());
+        let h = 1e-5;
+        for axis in 0..3 {
+            let mut step = Vector3::zeros();
+            step[axis] = h;
+            let moved = |sign: f64| {
+                let translation = pose.translation + step * sign;
+                scorer.score_only(&Pose {
+                    translation,
+                    ..pose
+                })
+            };
+            let turned = |sign: f64| {
+                let turn = UnitQuaternion::new(step * sign);
+                let arm = pose.rotation * scorer.ligand_center();
+                scorer.score_only(&Pose {
+                    rotation: turn * pose.rotation,
+                    translation: pose.translation + arm - turn * arm,
+                })
+            };
+            let slopes = [
+                (moved(1.0) - moved(-1.0), gradient.force),
+                (turned(1.0) - turned(-1.0), gradient.torque),
+            ];
+            for (difference, slope) in slopes {
+                let error = difference / (2.0 * h) - slope[axis];
+                assert!(error.abs() < 1e-5 * slope.norm(), "{error} of {slope}");
+            }
+        }
+    }
+}
+
+/// The receptor's field, which adds up classes before it samples, reads the same score and slope.
+#[test]
+fn the_field_reads_all_terms() {
+    let (a, b) = (cloud(160, 12.0, 5), cloud(60, 8.0, 6));
+    let plan = plan(&a, &b, 1e-2);
+    let scorer = scorer(&plan, &a, &b);
+    let folded = Folded::<f32>::new(&plan, &a, &b, Fold::Score);
+    let field = ReceptorField::new(&plan, &folded, &b);
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let mut work = engine.workspace();
+    engine.correlate(&turn(), &mut work);
+    let scale = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
+    // Strewn knots touch in few places: their best score is a tenth of a protein's, against which errors are small.
+    let bound = 2e-2;
+    for shift in [[15.0, -9.0, 6.0], [14.0, 9.0, -8.0], [0.0, 17.0, 5.0]] {
+        let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], shift);
+        let ((value, slope), (exact, gradient)) = (field.gradient(&pose), scorer.gradient(&pose));
+        assert!((value - exact).abs() < bound * scale, "{value} {exact}");
+        assert!((slope.force - gradient.force).norm() < bound * gradient.force.norm().max(scale));
+        // Torques are forces times arms of up to 8 Å.
+        let torque = gradient.torque.norm().max(8.0 * scale);
+        assert!((slope.torque - gradient.torque).norm() < bound * torque);
+    }
+}
+
+/// A label that no term reads changes not one bit, and neither does a term once it is taken out.
+#[test]
+fn an_effect_that_is_off_changes_not_one_bit() {
+    let (a, b) = (cloud(80, 10.0, 7), cloud(40, 7.0, 8));
+    let bare = |knots: &Knots| Knots::new(knots.centers.clone(), knots.radii.clone()).unwrap();
+    let grid = |a: &Knots, b: &Knots| {
+        let plan = Arc::new(Plan::new(a, b, options(1e-2)).unwrap());
+        let folded = Folded::<f32>::new(&plan, a, b, Fold::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+        let mut work = engine.workspace();
+        engine.correlate(&turn(), &mut work);
+        (folded.full_rank(), work.grid)
+    };
+    let (rank, plain) = grid(&bare(&a), &bare(&b));
+    assert_eq!(grid(&a, &b), (rank, plain));
+    let plan = plan(&a, &b, 1e-2);
+    let whole = Folded::<f32>::new(&plan, &a, &b, Fold::Score);
+    let without = whole
+        .without(Effect::Contact)
+        .without(Effect::Electrostatics);
+    assert!(whole.full_rank() > rank);
+    assert_eq!(without.full_rank(), rank);
+}
+
+/// One knot on each side, at some distance along x.
+fn pair(charges: [f64; 2], types: [&str; 2], distance: f64) -> [f64; 3] {
+    let kind = |name: &str| {
+        contact::TYPES
+            .iter()
+            .position(|known| *known == name)
+            .map(|i| i as u8)
+    };
+    let knot = |charge: f64, name: &str| {
+        Knots::new(vec![[0.0; 3]], vec![1.7])
+            .unwrap()
+            .with_labels(vec![charge], vec![kind(name)])
+            .unwrap()
+    };
+    let (a, b) = (knot(charges[0], types[0]), knot(charges[1], types[1]));
+    let plan = plan(&a, &b, 1e-2);
+    let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [distance, 0.0, 0.0]);
+    scorer(&plan, &a, &b).score(&pose).terms
+}
+
+/// Opposite charges attract, like ones repel by as much, and less so farther apart; a neutral knot feels nothing.
+#[test]
+fn charges_attract_and_repel() {
+    let electrostatics = Effect::Electrostatics as usize;
+    let at = |charges, distance| pair(charges, ["N", "N"], distance)[electrostatics];
+    let (near, far) = (at([1.0, -1.0], 4.0), at([1.0, -1.0], 7.0));
+    assert!(near > far && far > 0.0, "{near} {far}");
+    assert_eq!(at([1.0, 1.0], 4.0), -near);
+    assert_eq!(at([0.0, 1.0], 4.0), 0.0);
+    // -8 times the energy in kcal/mol; the low-pass to 4.5 Å takes some of it at this distance.
+    let energy = -8.0 * (electrostatics::RADIAL.value)(4.0);
+    assert!(
+        (near + energy).abs() < 0.35 * energy.abs(),
+        "{near} {energy}"
+    );
+}
+
+/// Fat on fat scores, charge on fat and like charge on like do not, and beyond the contact's reach nothing does.
+#[test]
+fn contacts_know_their_types() {
+    let contact = Effect::Contact as usize;
+    let at = |types, distance| pair([0.0, 0.0], types, distance)[contact];
+    assert!(at(["FCZ", "FCZ"], 4.0) > 0.0);
+    assert!(at(["KNZ", "LCD"], 4.0) < 0.0);
+    assert!(at(["KNZ", "KNZ"], 4.0) < at(["KNZ", "DOD"], 4.0));
+    assert!(at(["FCZ", "FCZ"], 12.0).abs() < 0.05 * at(["FCZ", "FCZ"], 4.0));
+}
+
+/// A solid sphere of knots of one label, with a patch of another about +x.
+fn patched(charge: [f64; 2], types: [&str; 2], patch: f64) -> Knots {
+    let kind = |name: &str| {
+        contact::TYPES
+            .iter()
+            .position(|known| *known == name)
+            .map(|i| i as u8)
+    };
+    let shell = |(radius, count): (f64, usize)| {
+        (0..count).map(move |k| {
+            let height = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
+            let side = (1.0 - height * height).sqrt();
+            let turn = 2.399963 * k as f64;
+            [side * turn.cos(), side * turn.sin(), height].map(|x| radius * x)
+        })
+    };
+    let shells = [(11.0, 240), (8.0, 120), (5.0, 50), (2.0, 8)];
+    let centers: Vec<[f64; 3]> = shells.into_iter().flat_map(shell).collect();
+    let inside = |x: &[f64; 3]| usize::from(x[0] > patch);
+    let charges = centers.iter().map(|x| charge[inside(x)]).collect();
+    let kinds = centers.iter().map(|x| kind(types[inside(x)])).collect();
+    let count = centers.len();
+    Knots::new(centers, vec![1.8; count])
+        .unwrap()
+        .with_labels(charges, kinds)
+        .unwrap()
+}
+
+/// The direction from the receptor's centre in which the best voxel of a correlation lies.
+fn best_direction(a: &Knots, b: &Knots) -> Vector3<f64> {
+    let plan = plan(a, b, 1e-2);
+    let folded = Folded::<f32>::new(&plan, a, b, Fold::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let mut work = engine.workspace();
+    engine.correlate(&UnitQuaternion::identity(), &mut work);
+    let best = (0..work.grid.len())
+        .max_by(|&x, &y| work.grid[x].total_cmp(&work.grid[y]))
+        .unwrap();
+    engine.position(best).normalize()
+}
+
+/// Round bodies fit alike from everywhere: it is the effect that finds the patch.
+#[test]
+fn a_ball_finds_the_patch_that_is_made_for_it() {
+    let ball = |charge: f64, name: &str| {
+        let mut ball = patched([charge; 2], [name; 2], 0.0);
+        for x in &mut ball.centers {
+            *x = x.map(|x| 0.5 * x);
+        }
+        ball
+    };
+    // A greasy patch on a polar body, and a greasy ball.
+    let body = patched([0.0; 2], ["DOD", "LCD"], 8.0);
+    let found = best_direction(&body, &ball(0.0, "LCD"));
+    assert!(found[0] > 0.9, "{found}");
+    // A negative patch on a neutral body attracts a positive ball, and a negative one goes elsewhere.
+    let body = patched([0.0, -0.3], ["SOG"; 2], 8.0);
+    let (found, elsewhere) = (
+        best_direction(&body, &ball(0.2, "SOG")),
+        best_direction(&body, &ball(-0.2, "SOG")),
+    );
+    assert!(found[0] > 0.9, "{found}");
+    assert!(elsewhere[0] < 0.5, "{elsewhere}");
+}
