@@ -42,7 +42,7 @@ pub struct PotentialError {
     pub message: String,
 }
 
-/// Energy of a contact, [type][type], symmetric, in units of RT; lower is better.
+/// Energy of a contact, `[type][type]`, symmetric, in units of RT; lower is better.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]
 pub struct Potential(Vec<Vec<f64>>);

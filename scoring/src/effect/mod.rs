@@ -2,7 +2,7 @@
 //!
 //! # Conventions
 //!
-//! A term is sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|): every knot has a class c and a value (a charge, or 1), the class matrix M
+//! A term is `sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|)`: every knot has a class c and a value (a charge, or 1), the class matrix M
 //! carries the term's weight and its sign, and k is one radial function. As in the whole engine a higher score is better, so an
 //! energy enters with a minus.
 //!
@@ -77,7 +77,7 @@ pub struct Term {
     pub effect: Effect,
     /// Its radial function k.
     pub radial: RadialFunction,
-    /// M[receptor class][ligand class], weight and sign included, in units of score per unit of k.
+    /// `M[receptor class][ligand class]`, weight and sign included, in units of score per unit of k.
     pub matrix: Vec<Vec<f64>>,
     /// A label for each knot of the receptor.
     pub receptor: Vec<Label>,
