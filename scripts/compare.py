@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Compares benchmark runs with different settings: success, its uncertainty, what each setting gains on the first, and its cost.
+
+    python3 scripts/compare.py shape=runs/shape all=runs/all ... [--ranking poses] [--resamples 10000] [--output FILE]
+
+Each folder is the --out of a `scripts/benchmark.py` run; pairs and seeds that all of them hold are compared. Success among the first N
+is the number of pairs, as the mean over seeds. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
+a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none.
+
+Needs Python 3.9 or later and nothing else.
+"""
+
+import argparse
+import csv
+import math
+import random
+import statistics
+from pathlib import Path
+
+DEPTHS = (1, 10, 100, 1000)
+CRITERIA = (("acceptable", "first_acceptable_rank"), ("near-native", "first_near_native_rank"))
+
+
+def main():
+    options = parse_arguments()
+    runs = {name: read(folder / f"{options.ranking}.csv") for name, folder in options.runs}
+    shared = set.intersection(*(set(rows) for rows in runs.values()))
+    pairs = sorted({pair for pair, _ in shared})
+    seeds = sorted({seed for _, seed in shared})
+    complete = [pair for pair in pairs if all((pair, seed) in shared for seed in seeds)]
+    if not complete:
+        raise SystemExit("no pair with all its seeds is in every run")
+    source = random.Random(1)
+    draws = [[source.randrange(len(complete)) for _ in complete] for _ in range(options.resamples)]
+    lines = [
+        f"{len(complete)} pairs, seeds {', '.join(seeds)}, ranking of {options.ranking}; in brackets 95% by bootstrap over pairs.",
+        "",
+        "| setting | " + " | ".join(f"{name} top {depth}" for name, _ in CRITERIA for depth in DEPTHS) + " | CPU s |",
+        "|---" * (2 + len(CRITERIA) * len(DEPTHS)) + "|",
+    ]
+    first = None
+    for name, rows in runs.items():
+        columns = {}
+        for _, column in CRITERIA:
+            for depth in DEPTHS:
+                columns[column, depth] = [
+                    statistics.fmean(rows[pair, seed][column] <= depth for seed in seeds) for pair in complete
+                ]
+        cells = [cell(values, draws) for values in columns.values()]
+        cpu = statistics.fmean(rows[pair, seed]["cpu_seconds"] for pair in complete for seed in seeds)
+        lines.append(f"| {name} | " + " | ".join(cells) + f" | {cpu:.1f} |")
+        if first is None:
+            first = columns
+        else:
+            gains = [
+                cell([a - b for a, b in zip(values, first[key])], draws, signed=True)
+                for key, values in columns.items()
+            ]
+            lines.append("| gain | " + " | ".join(gains) + " | |")
+    text = "\n".join(lines) + "\n"
+    if options.output:
+        partial = options.output.with_suffix(".partial")
+        partial.write_text(text)
+        partial.replace(options.output)
+    print(text, end="")
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("runs", nargs="+", type=named, metavar="NAME=FOLDER", help="a setting's name and the folder of its runs")
+    parser.add_argument("--ranking", default="poses", choices=("poses", "clusters"))
+    parser.add_argument("--resamples", type=int, default=10000, help="draws of the bootstrap (default: 10000)")
+    parser.add_argument("--output", type=Path, help="write the table to a file, too")
+    return parser.parse_args()
+
+
+def named(text):
+    name, equals, folder = text.partition("=")
+    if not (name and equals and folder):
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FOLDER")
+    return name, Path(folder)
+
+
+def read(path):
+    """Rows by pair and seed; what was not found has an infinite rank."""
+    rows = {}
+    with open(path, newline="") as file:
+        for row in csv.DictReader(file):
+            ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
+            rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}
+    return rows
+
+
+def cell(values, draws, signed=False):
+    """Sum over pairs with its interval."""
+    sums = sorted(sum(values[index] for index in draw) for draw in draws)
+    low, high = (sums[int(share * (len(sums) - 1))] for share in (0.025, 0.975))
+    sign = "+" if signed else ""
+    return f"{sum(values):{sign}.1f} [{low:{sign}.1f}, {high:{sign}.1f}]"
+
+
+if __name__ == "__main__":
+    main()
