@@ -15,7 +15,8 @@ as many contacts:
   `-- --effects shape` on the same pairs; the poses of --ranks are taken.
 
 A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of the
-reference state is taken out, so that the potential counts no shape again.
+reference state is taken out, so that the potential counts no shape again. Of the table's eigenvectors (types weighed by their share of
+the contacts) the strongest --rank are kept: they hold what is known of it, and each further one costs a transform in the search.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -69,7 +70,7 @@ def main():
         (native * scale + options.pseudocount) / (reference * scale + options.pseudocount)
     )
     energies -= (energies * reference).sum()
-    write(options, used, energies)
+    write(options, used, low_rank(energies, reference.sum(axis=0), options.rank))
 
 
 def parse_arguments():
@@ -81,6 +82,7 @@ def parse_arguments():
     parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
     parser.add_argument("--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)")
     parser.add_argument("--pseudocount", type=float, default=50.0, help="expected contacts (default: 50)")
+    parser.add_argument("--rank", type=int, default=4, help="eigenvectors kept (default: 4)")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "scoring/src/effect/contact_potential.csv")
     return parser.parse_args()
 
@@ -207,15 +209,24 @@ def decoy_contacts(options, folder, pair, kinds):
     return total if total.sum() > 0 else None
 
 
+def low_rank(energies, shares, rank):
+    """The symmetric table of a rank that is nearest in the mean over contacts of types with these shares."""
+    root = np.sqrt(np.maximum(shares, 1e-6))
+    values, vectors = np.linalg.eigh(root[:, None] * energies * root[None, :])
+    kept = np.argsort(-np.abs(values))[:rank]
+    nearest = (vectors[:, kept] * values[kept]) @ vectors[:, kept].T / root[:, None] / root[None, :]
+    return 0.5 * (nearest + nearest.T)
+
+
 def write(options, used, energies):
     reference = f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
     lines = [
         "# Contact potential in units of RT, -ln(observed / expected), mean removed; lower is better.",
-        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}.",
+        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}; rank {options.rank}.",
         f"# {len(used)} bound complexes of Docking Benchmark 5 (Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041): {' '.join(used)}",
         "type," + ",".join(TYPES),
     ]
-    lines += [f"{name}," + ",".join(f"{value:.4f}" for value in row) for name, row in zip(TYPES, energies)]
+    lines += [f"{name}," + ",".join(f"{value:.6f}" for value in row) for name, row in zip(TYPES, energies)]
     partial = options.output.with_suffix(".partial")
     partial.write_text("\n".join(lines) + "\n")
     partial.replace(options.output)

@@ -88,7 +88,7 @@ fn the_table_says_what_its_columns_promise() {
     assert!(!text.contains('\r') && !text.contains("NaN"));
     let rows = rows(&run);
     assert!(!rows.is_empty());
-    let (lambda, best) = (10.0, number(&rows[0], "score").abs());
+    let (lambda, best) = (9.0, number(&rows[0], "score").abs());
     let mut last = f64::INFINITY;
     for (index, row) in rows.iter().enumerate() {
         assert_eq!(row["rank"], (index + 1).to_string());

@@ -97,7 +97,7 @@ pub fn climb(
         }
         let gain = next_value - value;
         (pose, value, gradient) = (next_pose, next_value, next_gradient);
-        if gain < 1e-5 * value.abs() {
+        if gain < 1e-4 * value.abs() {
             break;
         }
     }
