@@ -61,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 25] = [
+const RECORDED: [&str; 26] = [
     "receptor",
     "ligand",
     "rotations",
@@ -72,6 +72,7 @@ const RECORDED: [&str; 25] = [
     "lambda",
     "offset",
     "alpha",
+    "core_weight",
     "tolerance",
     "effects",
     "electrostatics_weight",

@@ -42,6 +42,9 @@ pub struct KernelArguments {
     /// Exponent of the bump kernel (dimensionless); large values harden the balls.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha, help_heading = SCORE)]
     alpha: f64,
+    /// Weight in shape of atoms that no water reaches, against 1 for the others.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().core_weight, help_heading = SCORE)]
+    core_weight: f64,
     /// Error of the fast path that is allowed, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
@@ -80,7 +83,7 @@ pub struct SearchArguments {
     /// Poses kept of all rotations.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().poses, help_heading = TRADE_OFFS)]
     poses: usize,
-    /// Best poses to refine off the grid.
+    /// Best poses to refine off the grid: tighter fits, in time, but no better a ranking (docs/effects.md).
     #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine, help_heading = TRADE_OFFS)]
     refine: usize,
     /// Ligand CA RMSD within which poses form a cluster, in Å.
@@ -109,6 +112,7 @@ impl KernelArguments {
             lambda: self.lambda,
             offset: self.offset,
             alpha: self.alpha,
+            core_weight: self.core_weight,
             tolerance: self.tolerance,
             effects: self.effects.clone(),
             electrostatics_weight: self.electrostatics_weight,

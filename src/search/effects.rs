@@ -135,6 +135,7 @@ impl Scene {
             };
             decisions.push(Decision { effect, on, reason });
         }
+        let cores = molecules.map(|molecule| core_weights(molecule, options.core_weight));
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
         // A label that no effect reads is left off.
@@ -175,6 +176,15 @@ impl Scene {
                 &potential,
             ));
         }
+        // Terms count atoms; how much a buried one weighs is a matter of shape.
+        let [receptor, ligand] =
+            [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
+                let mut knots = knots;
+                for (weight, core) in knots.weights.iter_mut().zip(core) {
+                    *weight *= core;
+                }
+                knots
+            });
         Ok(Self {
             receptor,
             ligand,
@@ -183,6 +193,21 @@ impl Scene {
             labels: [receptor_labels.report, ligand_labels.report],
         })
     }
+}
+
+/// Points a sphere at which atoms are asked whether water reaches them.
+const SURFACE_POINTS: usize = 64;
+
+/// The weight in shape of each atom; empty where all weigh 1.
+fn core_weights(molecule: &Molecule, weight: f64) -> Vec<f64> {
+    if weight == 1.0 {
+        return Vec::new();
+    }
+    molecule
+        .accessible_areas(SURFACE_POINTS)
+        .into_iter()
+        .map(|area| if area == 0.0 { weight } else { 1.0 })
+        .collect()
 }
 
 /// What one molecule lacks for an effect; `None` when it can feed it.

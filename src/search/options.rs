@@ -25,6 +25,8 @@ pub struct DockOptions {
     pub offset: f64,
     /// Exponent alpha of the bump function.
     pub alpha: f64,
+    /// Weight in shape of atoms that no water reaches, against 1 for the others.
+    pub core_weight: f64,
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
     /// Terms of the score.
@@ -57,7 +59,8 @@ pub struct DockOptions {
 pub const PASS_RATIO: f64 = 2.0;
 
 impl Default for DockOptions {
-    /// Resolution and offset were chosen on training pairs, the rest is the literature's or this project's first measured setting.
+    /// Resolution, offset, lambda, the weights of effects and that nothing is refined were chosen on training pairs; the rest is the
+    /// literature's or this project's first measured setting.
     fn default() -> Self {
         Self {
             rotations: 3600,
@@ -67,6 +70,7 @@ impl Default for DockOptions {
             lambda: 9.0,
             offset: 2.2,
             alpha: 2.0,
+            core_weight: 1.0,
             tolerance: 1e-2,
             effects: EffectChoice::Auto,
             electrostatics_weight: 24.0,
@@ -75,7 +79,7 @@ impl Default for DockOptions {
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
-            refine: 300,
+            refine: 0,
             cluster_radius: 5.0,
             every_pose: false,
             threads: 0,
@@ -105,6 +109,7 @@ impl DockOptions {
     /// Refuses weights and a pH that mean nothing.
     pub(super) fn check_effects(&self) -> Result<(), SearchError> {
         let numbers = [
+            ("core-weight", self.core_weight, 1e3),
             ("electrostatics-weight", self.electrostatics_weight, 1e6),
             ("contact-weight", self.contact_weight, 1e6),
             ("ph", self.ph, 14.0),

@@ -16,6 +16,7 @@
 
 use serde::Serialize;
 
+mod accessible;
 mod additives;
 mod alternate;
 mod charge_table;
@@ -36,6 +37,7 @@ mod sieve;
 mod source;
 mod write;
 
+pub use accessible::PROBE;
 pub use contact_types::CONTACT_TYPES;
 pub use error::ReadError;
 pub use groups::GroupKind;
