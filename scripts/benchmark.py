@@ -201,13 +201,14 @@ def dock_and_measure(options, folder, files, name, seed):
     with open(run / "poses.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     ranked = [quality[int(row["rank"])] for row in rows]
+    # Rows come best first, so the first of a cluster is its best; clusters are numbered in their own order.
     clusters = {}
     for row, measure in zip(rows, ranked):
-        clusters.setdefault(row["cluster"] or f"pose {row['rank']}", measure)
+        clusters.setdefault(int(row["cluster"]), measure)
     return {
         **cost,
         "poses": first_ranks(ranked),
-        "clusters": first_ranks(list(clusters.values())),
+        "clusters": first_ranks([measure for _, measure in sorted(clusters.items())]),
     }
 
 

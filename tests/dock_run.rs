@@ -10,7 +10,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact";
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score";
 
 /// A folder with the made-up receptor and ligand.
 fn place() -> tempfile::TempDir {
@@ -123,6 +123,11 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
     let mut seen = std::collections::HashSet::new();
     let mut firsts = rows(&folder.path().join("all"));
     firsts.retain(|row| seen.insert(row["cluster"].clone()));
+    firsts.sort_by_key(|row| row["cluster"].parse::<usize>().unwrap());
+    for row in &firsts {
+        let excess = number(row, "cluster_score") - number(row, "score");
+        assert_eq!(excess > 1e-9, row["cluster_size"] != "1", "company counts");
+    }
     let clusters = rows(&folder.path().join("clusters"));
     assert!(clusters.len() > 1 && clusters.len() < rows(&folder.path().join("all")).len());
     for (index, row) in clusters.iter().enumerate() {

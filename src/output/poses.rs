@@ -16,7 +16,7 @@ use super::staging::{StagingError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 21] = [
+pub const COLUMNS: [&str; 22] = [
     "rank",
     "score",
     "cluster",
@@ -38,6 +38,7 @@ pub const COLUMNS: [&str; 21] = [
     "slice_2r0",
     "electrostatics",
     "contact",
+    "cluster_score",
 ];
 
 /// A column to append: its name and one field a row.
@@ -90,6 +91,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         number(slice_2r0),
         term(Effect::Electrostatics),
         term(Effect::Contact),
+        row.cluster_score.map_or(String::new(), number),
     ]
 }
 
@@ -216,6 +218,7 @@ mod tests {
             score: 1.0 / 3.0,
             cluster: None,
             cluster_size: Some(4),
+            cluster_score: None,
             refined: true,
             rotation: 17,
             score_grid: f64::NAN,
@@ -237,9 +240,9 @@ mod tests {
         assert_eq!(
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact\n\
+             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3\n"
+             1000000000000000000000,,-3,\n"
         );
     }
 

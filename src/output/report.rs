@@ -43,12 +43,15 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
 /// Places of the poses that stand for their clusters: the first of each, and each pose that belongs to none.
 pub fn firsts(ranking: &[RankedPose]) -> Vec<usize> {
     let mut seen = std::collections::HashSet::new();
-    ranking
-        .iter()
-        .enumerate()
-        .filter(|(_, row)| row.cluster.is_none_or(|cluster| seen.insert(cluster)))
-        .map(|(index, _)| index)
-        .collect()
+    let mut firsts: Vec<usize> = (0..ranking.len())
+        .filter(|&index| {
+            ranking[index]
+                .cluster
+                .is_none_or(|cluster| seen.insert(cluster))
+        })
+        .collect();
+    firsts.sort_by_key(|&index| ranking[index].cluster.unwrap_or(usize::MAX));
+    firsts
 }
 
 /// Lines of fields as text, each column flush right.
@@ -86,6 +89,7 @@ mod tests {
             pose: Pose::identity(),
             score,
             cluster,
+            cluster_score: None,
             cluster_size: cluster.map(|_| 2),
             refined: false,
             rotation: 0,
@@ -106,7 +110,8 @@ mod tests {
             pose(5.0, None),
             pose(4.0, Some(2)),
         ];
-        assert_eq!(firsts(&ranking), [0, 2, 3, 4]);
+        // In the order of the clusters; what belongs to none comes last.
+        assert_eq!(firsts(&ranking), [0, 3, 2, 4]);
         let irmsd = Column {
             name: "irmsd".to_owned(),
             fields: ["1.234", "", "", "3.5"].map(str::to_owned).to_vec(),
@@ -115,8 +120,8 @@ mod tests {
             best_clusters(&ranking, &[irmsd]),
             "  rank  score  cluster size  unfiltered  irmsd\n\
              \x20    1    9.0             2         9.0   1.23\n\
-             \x20    3    7.0                       7.0\n\
              \x20    4    6.0             2         6.0   3.50\n\
+             \x20    3    7.0                       7.0\n\
              \x20    5    5.0                       5.0"
         );
     }

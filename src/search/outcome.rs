@@ -17,6 +17,8 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(score / T) over its poses, at least the best pose's score.
+    pub cluster_score: Option<f64>,
     /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
     pub refined: bool,
     /// Index in the rotation set of the grid pose that this row came from.

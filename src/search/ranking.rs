@@ -2,7 +2,11 @@
 //!
 //! The fast path's error is measured in every run and far below what sets clusters apart, while an exact sum costs as much as a whole
 //! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
-//! pose was refined); rows of the table carry exact scores and are ordered, and their clusters numbered, by these.
+//! pose was refined); rows of the table carry exact scores.
+//!
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses: the best pose's score where it stands alone, more where many
+//! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
+//! twentieth to a fifth ranked better than the best pose alone (docs/effects.md).
 
 use super::cluster::{RigidBody, greedy};
 use super::outcome::RankedPose;
@@ -107,8 +111,11 @@ pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
     greedy(body, &poses, radius)
 }
 
-/// Exactly scored rows: every pose, or the best of each cluster. Ordered by their exact scores, ties in the order given; clusters
-/// are numbered in the order of their best poses.
+/// T as a share of the run's best score.
+const CLUSTER_TEMPERATURE: f64 = 0.1;
+
+/// Exactly scored rows: every pose, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
+/// clusters are numbered; ties in the order given.
 ///
 /// `on` says which effects are on, by effect.
 ///
@@ -124,12 +131,17 @@ pub(super) fn report(
 ) -> Ranking {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
+    let mut weights = vec![0.0; count];
+    let best = candidates.first().map_or(0.0, |best| best.score.abs());
+    let temperature = (CLUSTER_TEMPERATURE * best).max(f64::MIN_POSITIVE);
     let mut founders = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
     for (candidate, &cluster) in candidates.iter().zip(clusters) {
         sizes[cluster] += 1;
         // The founder comes first, being the best by the fast path.
         founders[cluster] = founders[cluster].max(candidate.score);
+        // Scores against the founder's, so that nothing overflows.
+        weights[cluster] += ((candidate.score - founders[cluster]) / temperature).exp();
         if every_pose || candidate.score >= founders[cluster] - margin {
             wanted.push((candidate, cluster));
         }
@@ -145,26 +157,38 @@ pub(super) fn report(
         .filter(|(row, _)| row.score.is_finite() && row.score_unfiltered.is_finite())
         .collect();
     rows.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
-    let mut numbers: Vec<Option<usize>> = vec![None; count];
-    let mut found = 0;
-    let mut poses = Vec::with_capacity(rows.len());
-    for (row, cluster) in rows {
-        let first = numbers[cluster].is_none();
-        let number = *numbers[cluster].get_or_insert_with(|| {
-            found += 1;
-            found
-        });
-        if first || every_pose {
-            poses.push(RankedPose {
-                cluster: Some(number),
-                cluster_size: Some(sizes[cluster]),
-                ..row
-            });
+    // Rows come best first: the first of a cluster is its best.
+    let mut order: Vec<(usize, f64)> = Vec::new();
+    let mut seen = vec![false; count];
+    for (row, cluster) in &rows {
+        if !std::mem::replace(&mut seen[*cluster], true) {
+            order.push((*cluster, row.score + temperature * weights[*cluster].ln()));
         }
+    }
+    order.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let mut places: Vec<Option<(usize, f64)>> = vec![None; count];
+    for (place, &(cluster, score)) in order.iter().enumerate() {
+        places[cluster] = Some((place, score));
+    }
+    let mut poses: Vec<RankedPose> = rows
+        .into_iter()
+        .filter_map(|(row, cluster)| {
+            let (place, score) = places[cluster]?;
+            let first = std::mem::replace(&mut seen[cluster], false);
+            (first || every_pose).then_some(RankedPose {
+                cluster: Some(place + 1),
+                cluster_size: Some(sizes[cluster]),
+                cluster_score: Some(score),
+                ..row
+            })
+        })
+        .collect();
+    if !every_pose {
+        poses.sort_by_key(|row| row.cluster);
     }
     Ranking {
         poses,
-        clusters: found,
+        clusters: order.len(),
     }
 }
 
@@ -192,6 +216,7 @@ impl Candidate {
             score: terms.score,
             cluster: None,
             cluster_size: None,
+            cluster_score: None,
             refined,
             rotation: self.rotation,
             score_grid: self.score_grid,
