@@ -97,6 +97,7 @@ def parse_arguments():
         choices=("eval", "train", "fit", "all"),
         help="pairs to run; `fit` is those of `train` without a relative in `eval` (default: eval)",
     )
+    parser.add_argument("--fold", type=fold, help="K/N: of the chosen pairs in order of their ids every N-th from the K-th on, from 0")
     parser.add_argument("--ids", type=lambda text: text.split(","), help="only these pairs, separated by commas")
     parser.add_argument(
         "--seeds",
@@ -119,6 +120,14 @@ def parse_arguments():
     return options
 
 
+def fold(text):
+    """K/N as two numbers."""
+    part, count = map(int, text.split("/"))
+    if not 0 <= part < count:
+        raise argparse.ArgumentTypeError(f"{text} is not K/N with 0 <= K < N")
+    return part, count
+
+
 def select_pairs(options):
     with open(options.folder / "manifest.csv", newline="") as file:
         pairs = list(csv.DictReader(file))
@@ -131,6 +140,9 @@ def select_pairs(options):
         if unknown:
             sys.exit(f"not in split {options.split} of the manifest: {', '.join(sorted(unknown))}")
         pairs = [pair for pair in pairs if pair["id"] in options.ids]
+    if options.fold:
+        part, count = options.fold
+        pairs = sorted(pairs, key=lambda pair: pair["id"])[part::count]
     if not pairs:
         sys.exit(f"no pair in split {options.split}")
     return pairs

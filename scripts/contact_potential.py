@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Derives the contact potential of knotdock from complexes of known structure.
 
-    python3 scripts/contact_potential.py DIR [--split fit] [--exclude ID,...] [--decoys RUNS] [-o FILE]
+    python3 scripts/contact_potential.py DIR [--split fit] [--without-fold K/N] [--exclude ID,...] [--decoys RUNS] [-o FILE]
 
 DIR is a folder as `scripts/benchmark.py` reads it; the pairs of the split give the statistics. Energies are
 e_ab = -ln(n_ab / m_ab) in units of RT, n_ab the contacts of types a and b across the bound interfaces, counted as the score
@@ -77,6 +77,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
     parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
+    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
     parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
     parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
     parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
@@ -87,12 +88,22 @@ def parse_arguments():
     return parser.parse_args()
 
 
+def fold(text):
+    """K/N as two numbers."""
+    part, count = map(int, text.split("/"))
+    return part, count
+
+
 def select(options):
     with open(options.folder / "manifest.csv", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["split"] == "train"]
     if options.split == "fit":
         rows = [row for row in rows if not row["near_eval"].strip()]
-    return [row["id"] for row in rows if row["id"] not in options.exclude]
+    pairs = sorted(row["id"] for row in rows)
+    if options.without_fold:
+        part, count = options.without_fold
+        options.exclude = options.exclude + pairs[part::count]
+    return [pair for pair in pairs if pair not in options.exclude]
 
 
 def read_types():
