@@ -214,3 +214,18 @@ fn a_reader_that_goes_away_does_not_stop_the_run() {
     assert!(!told.contains("panic"), "{told}");
     assert!(folder.path().join("run/run.json").is_file());
 }
+
+#[test]
+fn inspect_tells_what_was_read_and_assumed() {
+    let folder = place();
+    let output = run(folder.path(), "inspect receptor.pdb:A --json");
+    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(keys(&object), ["accessible_area", "input", "labels"]);
+    assert_eq!(object["input"]["chains"], serde_json::json!(["A"]));
+    // A helix of sixteen alanines: its two ends cancel.
+    assert_eq!(object["input"]["atoms"], 80);
+    assert_eq!(object["labels"]["net_charge"], 0.0);
+    assert_eq!(object["labels"]["termini"], serde_json::json!([1, 1]));
+    assert_eq!(object["labels"]["typed_atoms"], 80);
+    assert!(object["accessible_area"].as_f64().unwrap() > 1000.0);
+}

@@ -8,6 +8,7 @@ mod dock;
 mod evaluate;
 mod failure;
 mod input;
+mod inspect;
 mod memory;
 mod native;
 mod ranks;
@@ -46,6 +47,7 @@ enum Command {
     Complex(complex::Complex),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
+    Inspect(inspect::Inspect),
 }
 
 fn version() -> &'static str {
@@ -69,6 +71,7 @@ pub fn main() -> ExitCode {
         Command::Complex(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
+        Command::Inspect(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
