@@ -57,9 +57,14 @@ pub enum PlanError {
         /// Its range.
         bound: &'static str,
     },
-    /// A weight has an imaginary part, or the grid is beyond what can be indexed.
+    /// A weight has an imaginary part.
     #[error("the fast engine takes real weights; knot {0} has a complex one")]
     ComplexWeight(usize),
+    /// A body's weights are so large or small that scores would leave the range of single precision.
+    #[error(
+        "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
+    )]
+    WeightRange(f64),
     /// The box would need more grid points than any machine holds.
     #[error("a grid of {0:.2e} points is needed; use a coarser spacing")]
     TooLarge(f64),
@@ -189,12 +194,7 @@ impl Plan {
         band: Option<Band>,
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
-        for knots in [receptor, ligand] {
-            knots.check()?;
-            if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
-                return Err(PlanError::ComplexWeight(index));
-            }
-        }
+        check_bodies(receptor, ligand)?;
         let tolerance = options.tolerance;
         for value in [tolerance, kernel_tolerance] {
             if !(1e-8..=0.1).contains(&value) {
@@ -214,7 +214,9 @@ impl Plan {
         let (r_low, r_high) = ends(&receptor_radii);
         let (s_low, s_high) = ends(&ligand_radii);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
-        let reach_factor = 1.15 + 0.75 * (1e-2 / kernel_tolerance).log10().max(0.0);
+        // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors, by lambda.
+        let severity = (options.kernel.lambda.abs() / 20.0).max(1.0);
+        let reach_factor = 1.15 + 0.75 * (1e-2 * severity / kernel_tolerance).log10().max(0.0);
         let kernel =
             RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
         let chosen = match options.spacing {
@@ -272,6 +274,7 @@ impl Plan {
         // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
         // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
         let share = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
+        let share = share / severity;
         let width =
             SpreadingKernel::<f64>::width_for(share * tolerance, ratio * 1.2).min(MAX_WIDTH);
         let mut points = 1.0;
@@ -385,10 +388,27 @@ impl Plan {
     }
 }
 
+/// Refuses knots that no engine can correlate: unusable ones, complex weights, and weights that leave single precision.
+pub(super) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
+    for knots in [receptor, ligand] {
+        knots.check()?;
+        if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
+            return Err(PlanError::ComplexWeight(index));
+        }
+        let size: f64 = knots.weights.iter().map(|c| c.re.abs()).sum();
+        // No weight at all is a body that scores nothing, which every precision holds.
+        if size != 0.0 && !(1e-9..=1e9).contains(&size) {
+            return Err(PlanError::WeightRange(size));
+        }
+    }
+    Ok(())
+}
+
 /// Grid spacing that keeps all modes of the ranking kernel that count.
 fn ranking_spacing(kernel: &RankingKernel, widest: f64, tolerance: f64) -> f64 {
     let stop = kernel.stop();
-    let cut = if tolerance >= 1e-2 {
+    // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any tolerance.
+    let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
         stop
     } else {
         let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);

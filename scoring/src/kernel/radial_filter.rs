@@ -29,9 +29,7 @@ impl RadialFilter {
     /// A filter that passes all below `pass`, nothing from `stop` on, for kernels that live within `support`. The low-pass rings over
     /// lengths of 1 / (stop - pass); the window falls over `reach_factor` of them, beginning soon after the support.
     pub(crate) fn new(pass: f64, stop: f64, support: f64, reach_factor: f64) -> Self {
-        let ring = 1.0 / (stop - pass);
-        let window_start = support + 0.15 * ring;
-        let reach = window_start + reach_factor * ring;
+        let [window_start, reach] = Self::window_ends(pass, stop, support, reach_factor);
         let frequency_step = 1.0 / (8.0 * reach);
         let frequencies: Vec<f64> = (0..)
             .map(|n| f64::from(n) * frequency_step)
@@ -59,6 +57,13 @@ impl RadialFilter {
             window_start,
             reach,
         }
+    }
+
+    /// Where the window of such a filter begins to fall, and where it ends.
+    pub(super) fn window_ends(pass: f64, stop: f64, support: f64, reach_factor: f64) -> [f64; 2] {
+        let ring = 1.0 / (stop - pass);
+        let start = support + 0.15 * ring;
+        [start, start + reach_factor * ring]
     }
 
     /// Distance from which every filtered kernel is exactly 0.
