@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::search::options::PASS_RATIO;
+use knotdock::search::options::{PASS_RATIO, REFINED_BY_SHAPE};
 use knotdock::search::{DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::Potential;
 
@@ -16,6 +16,13 @@ fn pass_length_help() -> String {
     format!(
         "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å [default: {PASS_RATIO} \
          times the resolution]"
+    )
+}
+
+fn refine_help() -> String {
+    format!(
+        "Best poses to refine off the grid [default: {REFINED_BY_SHAPE} with shape alone, none beside other effects, where \
+         tighter fits make no better a ranking]"
     )
 }
 
@@ -83,9 +90,8 @@ pub struct SearchArguments {
     /// Poses kept of all rotations.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().poses, help_heading = TRADE_OFFS)]
     poses: usize,
-    /// Best poses to refine off the grid: tighter fits, in time, but no better a ranking (docs/effects.md).
-    #[arg(long, value_name = "N", default_value_t = DockOptions::default().refine, help_heading = TRADE_OFFS)]
-    refine: usize,
+    #[arg(long, value_name = "N", help = refine_help(), help_heading = TRADE_OFFS)]
+    refine: Option<usize>,
     /// Ligand CA RMSD within which poses form a cluster, in Å.
     #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().cluster_radius, help_heading = RANKING)]
     cluster_radius: f64,

@@ -43,8 +43,8 @@ pub struct DockOptions {
     pub per_rotation: usize,
     /// Poses kept over all rotations.
     pub poses: usize,
-    /// Best poses that are refined off the grid.
-    pub refine: usize,
+    /// Best poses that are refined off the grid; `None`: [`REFINED_BY_SHAPE`] where shape is the only effect, else none.
+    pub refine: Option<usize>,
     /// Radius of clusters, ligand CA RMSD.
     pub cluster_radius: f64,
     /// Whether every pose is a row, rather than one a cluster.
@@ -54,6 +54,9 @@ pub struct DockOptions {
     /// Bytes that the run may take; `None`: no limit.
     pub memory: Option<u64>,
 }
+
+/// Poses refined by default when shape is all there is: on training pairs that gained ranks, and beside other effects it cost some.
+pub const REFINED_BY_SHAPE: usize = 300;
 
 /// Default pass length as a multiple of the resolution.
 pub const PASS_RATIO: f64 = 2.0;
@@ -79,7 +82,7 @@ impl Default for DockOptions {
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
-            refine: 0,
+            refine: None,
             cluster_radius: 5.0,
             every_pose: false,
             threads: 0,

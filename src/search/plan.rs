@@ -1,7 +1,7 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use super::effects::{Decision, Scene};
-use super::options::{DockOptions, SearchError};
+use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
 use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
@@ -173,6 +173,17 @@ pub fn plan(
 }
 
 impl DockPlan {
+    /// Number of poses to refine.
+    pub fn refined(&self) -> usize {
+        let alone = self
+            .decisions
+            .iter()
+            .all(|decision| decision.effect == Effect::Shape || !decision.on);
+        self.options
+            .refine
+            .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
+    }
+
     /// Whether an effect is on.
     pub fn is_on(&self, effect: Effect) -> bool {
         self.decisions.iter().any(|d| d.effect == effect && d.on)

@@ -118,7 +118,7 @@ fn dock_in_pool(
 
     let points = cluster_points(ligand);
     let body = RigidBody::new(&points);
-    let refined_count = options.refine.min(peaks.len());
+    let refined_count = plan.refined().min(peaks.len());
     progress.stage("refine", refined_count as u64);
     let refined: Vec<(Pose, f64)> = if refined_count == 0 {
         Vec::new()

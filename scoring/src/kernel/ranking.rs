@@ -143,7 +143,7 @@ impl RankingKernel {
             high: sum_high + 2.0 * options.offset,
         };
         // Written so that NaN is refused with the rest.
-        if !(cone.high >= SMALLEST * options.resolution) {
+        if !(SMALLEST * options.resolution..).contains(&cone.high) {
             return Err(KernelError::Length {
                 name: "largest sum of radii and skins",
                 value: cone.high,
@@ -153,7 +153,7 @@ impl RankingKernel {
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
         let [_, reach] = RadialFilter::window_ends(pass, stop, cone.high, reach_factor);
-        if !(reach / options.resolution <= LONGEST) {
+        if !(0.0..=LONGEST).contains(&(reach / options.resolution)) {
             return Err(KernelError::TooLong {
                 reach,
                 resolution: options.resolution,
