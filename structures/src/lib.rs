@@ -7,10 +7,18 @@
 //! - Chains carry the author's names (`auth_asym_id` in mmCIF), residues the author's numbers and insertion codes.
 //!
 //! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes
-//! PDB and mmCIF files; without it only [`Knots`] remains, which is all that the scoring crate needs.
+//! PDB and mmCIF files, with the feature `mesh` (default) it reads meshes and samples solids by balls; without them only
+//! [`Knots`] remains, which is all that the scoring crate needs.
 
 pub mod knots;
+#[cfg(feature = "mesh")]
+pub mod mesh;
 #[cfg(feature = "molecule")]
 pub mod molecule;
+
+#[cfg(feature = "mesh")]
+pub mod sampler;
+#[cfg(feature = "mesh")]
+pub mod sphere_tree;
 
 pub use knots::Knots;

@@ -1,0 +1,79 @@
+//! Lines of words of a text format, with their numbers, and numbers of words.
+
+use super::super::error::MeshErrorKind;
+
+/// A line that has words: its 1-based number, and its text up to a comment.
+#[derive(Clone, Copy, Debug)]
+pub struct Line<'a> {
+    /// 1-based number in the file.
+    pub number: usize,
+    /// The text, without comment and surrounding blanks.
+    pub text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    /// The words.
+    pub fn words(&self) -> std::str::SplitAsciiWhitespace<'a> {
+        self.text.split_ascii_whitespace()
+    }
+
+    /// A fault on this line.
+    pub fn fault(&self, what: impl Into<String>) -> MeshErrorKind {
+        MeshErrorKind::Syntax {
+            line: Some(self.number),
+            what: what.into(),
+        }
+    }
+
+    /// A number, whatever it is; the caller says what it is for.
+    pub fn number<T: std::str::FromStr>(
+        &self,
+        word: Option<&str>,
+        what: &str,
+    ) -> Result<T, MeshErrorKind> {
+        let word =
+            word.ok_or_else(|| self.fault(format!("the line ends where {what} is needed")))?;
+        word.parse().map_err(|_| {
+            self.fault(format!(
+                "'{}' stands where {what} is needed",
+                shortened(word)
+            ))
+        })
+    }
+
+    /// Three coordinates from the next words.
+    pub fn point<'w>(
+        &self,
+        words: &mut impl Iterator<Item = &'w str>,
+    ) -> Result<[f64; 3], MeshErrorKind> {
+        let mut point = [0.0; 3];
+        for value in &mut point {
+            *value = self.number(words.next(), "a coordinate")?;
+        }
+        Ok(point)
+    }
+}
+
+/// A word as far as a message needs it.
+fn shortened(word: &str) -> String {
+    word.chars().take(40).collect()
+}
+
+/// The lines of a text that are not blank; what follows `#` is a comment where the format has them.
+///
+/// Bytes that are no UTF-8 stand only in names and comments of real files, so they are replaced and not refused.
+pub fn lines(text: &str, comments: bool) -> impl Iterator<Item = Line<'_>> {
+    text.split('\n')
+        .enumerate()
+        .filter_map(move |(index, text)| {
+            let text = match text.find('#') {
+                Some(end) if comments => text.get(..end).unwrap_or_default(),
+                _ => text,
+            };
+            let text = text.trim();
+            (!text.is_empty()).then_some(Line {
+                number: index + 1,
+                text,
+            })
+        })
+}

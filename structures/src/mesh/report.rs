@@ -1,0 +1,173 @@
+//! What a mesh file held and how sound its surface is.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::read::MeshFormat;
+use super::topology::Topology;
+use super::vector::{add, norm};
+use super::{Mesh, doubled_normal};
+
+/// What was read, and what is amiss with it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshReport {
+    /// Format of the file; none for a mesh made in memory.
+    pub format: Option<MeshFormat>,
+    /// Vertices in the file.
+    pub file_vertices: usize,
+    /// Triangles in the file, larger faces cut up.
+    pub file_triangles: usize,
+    /// Distinct vertices.
+    pub vertices: usize,
+    /// Triangles kept.
+    pub triangles: usize,
+    /// Triangles dropped because two of their corners are one vertex, and kept ones without area.
+    pub degenerate_triangles: usize,
+    /// Edges of one triangle only.
+    pub open_edges: usize,
+    /// Length of the open edges, in the file's unit.
+    pub open_length: f64,
+    /// Edges of more than two triangles.
+    pub nonmanifold_edges: usize,
+    /// Edges run through more often one way than the other: none in a closed mesh.
+    pub unbalanced_edges: usize,
+    /// Area that is missing at least, as a share of the area that is there: the length of the sum of area vectors, which is
+    /// zero for a closed surface.
+    pub missing_share: f64,
+    /// Sets of triangles connected across edges of two.
+    pub parts: usize,
+    /// Triangles that were turned to agree with their neighbours.
+    pub turned_triangles: usize,
+    /// Parts that faced inward and were turned.
+    pub inverted_parts: usize,
+    /// Volume, in the file's unit cubed; see [`Mesh::volume`].
+    pub volume: f64,
+    /// Area, in the file's unit squared.
+    pub area: f64,
+    /// Smallest coordinate on each axis, in the file's unit.
+    pub low: [f64; 3],
+    /// Largest coordinate on each axis, in the file's unit.
+    pub high: [f64; 3],
+}
+
+impl MeshReport {
+    pub(super) fn new(
+        mesh: &Mesh,
+        format: Option<MeshFormat>,
+        file_vertices: usize,
+        file_triangles: usize,
+        collapsed: usize,
+        topology: &Topology,
+    ) -> Self {
+        let slivers = mesh
+            .triangles
+            .iter()
+            .filter(|&&t| mesh.is_sliver(t))
+            .count();
+        let missing = mesh
+            .triangles
+            .iter()
+            .map(|&triangle| doubled_normal(mesh.corners(triangle)))
+            .fold([0.0; 3], add);
+        let area = mesh.area();
+        let (low, high) = mesh.bounds();
+        Self {
+            format,
+            file_vertices,
+            file_triangles,
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            degenerate_triangles: collapsed + slivers,
+            open_edges: topology.open_edges,
+            open_length: topology.open_length,
+            nonmanifold_edges: topology.nonmanifold_edges,
+            unbalanced_edges: topology.unbalanced_edges,
+            // The sum of a closed surface is zero but for rounding.
+            missing_share: if topology.unbalanced_edges == 0 {
+                0.0
+            } else {
+                norm(missing) / 2.0 / area
+            },
+            parts: topology.parts,
+            turned_triangles: topology.turned_triangles,
+            inverted_parts: topology.inverted_parts,
+            volume: mesh.volume(),
+            area,
+            low,
+            high,
+        }
+    }
+
+    /// Whether the surface bounds a solid: every edge is run through as often one way as the other.
+    pub fn is_closed(&self) -> bool {
+        self.unbalanced_edges == 0
+    }
+
+    /// Whether the file's surface was closed and faced outward as it came, which is what `--strict` asks for.
+    pub fn is_sound(&self) -> bool {
+        self.is_closed() && self.turned_triangles == 0 && self.inverted_parts == 0
+    }
+
+    /// What a user has to know before trusting what is made of the mesh, a sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if !self.is_closed() {
+            warnings.push(format!(
+                "the mesh is not closed: {} of its edges do not balance ({} open, {:.6} long in all; {} of more than two triangles) and \
+                 holes take at least {:.3}% of its area; inside is where the generalised winding number is above one half",
+                self.unbalanced_edges,
+                self.open_edges,
+                self.open_length,
+                self.nonmanifold_edges,
+                100.0 * self.missing_share
+            ));
+        }
+        if self.turned_triangles > 0 {
+            warnings.push(format!(
+                "{} of {} triangles faced the other way than their neighbours and were turned",
+                self.turned_triangles, self.triangles
+            ));
+        }
+        if self.inverted_parts > 0 {
+            warnings.push(format!(
+                "{} of {} parts faced inward and were turned",
+                self.inverted_parts, self.parts
+            ));
+        }
+        warnings
+    }
+}
+
+impl fmt::Display for MeshReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} triangles on {} vertices in {} {}, {}",
+            self.triangles,
+            self.vertices,
+            self.parts,
+            if self.parts == 1 { "part" } else { "parts" },
+            if self.is_closed() { "closed" } else { "open" }
+        )?;
+        if self.nonmanifold_edges > 0 {
+            write!(f, ", {} non-manifold edges", self.nonmanifold_edges)?;
+        }
+        if self.degenerate_triangles > 0 {
+            write!(f, ", {} degenerate triangles", self.degenerate_triangles)?;
+        }
+        let size: Vec<String> = self
+            .low
+            .iter()
+            .zip(self.high)
+            .map(|(low, high)| format!("{:.6}", high - low))
+            .collect();
+        write!(
+            f,
+            "; {} across, volume {:.6}, area {:.6}",
+            size.join(" x "),
+            self.volume,
+            self.area
+        )
+    }
+}

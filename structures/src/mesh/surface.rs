@@ -1,0 +1,126 @@
+//! Samples of a surface, as dense as one asks.
+
+use super::triangle_tree::centroid;
+use super::vector::{add, norm, scale, subtract};
+use super::{Solid, doubled_normal};
+
+/// A point that stands for a small piece of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceSample {
+    /// The middle of the piece.
+    pub point: [f64; 3],
+    /// Unit outward normal.
+    pub normal: [f64; 3],
+    /// Area of the piece.
+    pub area: f64,
+}
+
+impl Solid {
+    /// Number of triangles that have samples; see [`samples_of`](Self::samples_of).
+    pub fn sampled_triangles(&self) -> usize {
+        self.tree().triangles().len()
+    }
+
+    /// Samples of one triangle, none of whose points is farther than `spacing` from a sample, in the solid's coordinates.
+    ///
+    /// The triangle is halved at its longest side until its pieces are small enough, which suits needles too. A piece about
+    /// `point` for which `skip(point, reach)` says true, `reach` being no less than the distance of any of its points, is left
+    /// out whole: a bound over many samples at the price of one.
+    pub fn samples_of(
+        &self,
+        triangle: usize,
+        spacing: f64,
+        mut skip: impl FnMut([f64; 3], f64) -> bool,
+        mut visit: impl FnMut(SurfaceSample),
+    ) {
+        let corners = self.tree().triangles()[triangle];
+        let normal = doubled_normal(corners);
+        let doubled_area = norm(normal);
+        let normal = scale(normal, 1.0 / doubled_area);
+        let mut stack = vec![(corners, 0.5 * doubled_area)];
+        while let Some((corners, area)) = stack.pop() {
+            let middle = centroid(corners);
+            let reach = corners
+                .iter()
+                .map(|&corner| norm(subtract(corner, middle)))
+                .fold(0.0, f64::max);
+            if reach <= spacing {
+                visit(SurfaceSample {
+                    point: middle,
+                    normal,
+                    area,
+                });
+                continue;
+            }
+            if skip(middle, reach) {
+                continue;
+            }
+            let [a, b, c] = turned_to_longest(corners);
+            let halved = scale(add(a, b), 0.5);
+            stack.push(([a, halved, c], 0.5 * area));
+            stack.push(([halved, b, c], 0.5 * area));
+        }
+    }
+}
+
+/// The corners in the same order, the longest side first.
+fn turned_to_longest([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let squared = |p: [f64; 3], q: [f64; 3]| {
+        let side = subtract(p, q);
+        side[0] * side[0] + side[1] * side[1] + side[2] * side[2]
+    };
+    let (ab, bc, ca) = (squared(a, b), squared(b, c), squared(c, a));
+    if ab >= bc && ab >= ca {
+        [a, b, c]
+    } else if bc >= ca {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Cuts the surface within `reach` of `point` into pieces no larger than `radius` about their middle and calls `visit` with
+/// the middle and area of each; whole clusters of triangles count as one piece where they are small enough.
+pub(crate) fn surface_pieces(
+    solid: &Solid,
+    point: [f64; 3],
+    reach: f64,
+    radius: f64,
+    mut visit: impl FnMut([f64; 3], f64),
+) {
+    let mut stack = Vec::new();
+    solid.tree().visit(|cluster| {
+        if norm(subtract(cluster.center, point)) - cluster.radius > reach {
+            return false;
+        }
+        if cluster.radius <= radius {
+            visit(cluster.center, cluster.area);
+            return false;
+        }
+        let Some(triangles) = cluster.leaf else {
+            return true;
+        };
+        for &corners in triangles {
+            stack.push((corners, 0.5 * norm(doubled_normal(corners))));
+            while let Some((corners, area)) = stack.pop() {
+                let middle = centroid(corners);
+                let own = corners
+                    .iter()
+                    .map(|&corner| norm(subtract(corner, middle)))
+                    .fold(0.0, f64::max);
+                if norm(subtract(middle, point)) - own > reach {
+                    continue;
+                }
+                if own <= radius {
+                    visit(middle, area);
+                    continue;
+                }
+                let [a, b, c] = turned_to_longest(corners);
+                let halved = scale(add(a, b), 0.5);
+                stack.push(([a, halved, c], 0.5 * area));
+                stack.push(([halved, b, c], 0.5 * area));
+            }
+        }
+        false
+    });
+}

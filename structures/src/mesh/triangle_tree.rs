@@ -1,0 +1,143 @@
+//! Triangles in a binary tree of clusters, with what sums over far clusters need of each.
+
+use super::vector::{add, distance, norm, scale};
+use super::{Mesh, doubled_normal};
+
+/// Triangles in a leaf.
+const LEAF: usize = 8;
+
+/// A binary tree over triangles that have an area; halves at the median of the longest side.
+#[derive(Debug)]
+pub(crate) struct TriangleTree {
+    /// Corners, in the order of the leaves.
+    triangles: Vec<[[f64; 3]; 3]>,
+    /// Nodes in depth-first order.
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug)]
+struct Node {
+    /// Area-weighted middle.
+    center: [f64; 3],
+    /// No corner is farther from the middle.
+    radius: f64,
+    /// Sum of areas.
+    area: f64,
+    /// Sum of area times outward normal.
+    area_vector: [f64; 3],
+    /// Its triangles.
+    first: u32,
+    count: u32,
+    /// Nodes below this one, which follow it.
+    below: u32,
+}
+
+/// A cluster of triangles as a visitor sees it.
+pub(crate) struct Cluster<'a> {
+    /// Area-weighted middle.
+    pub center: [f64; 3],
+    /// No corner is farther from the middle.
+    pub radius: f64,
+    /// Sum of areas.
+    pub area: f64,
+    /// Sum of area times outward normal.
+    pub area_vector: [f64; 3],
+    /// Its triangles, if it has no clusters below.
+    pub leaf: Option<&'a [[[f64; 3]; 3]]>,
+}
+
+impl TriangleTree {
+    /// Builds the tree. Triangles without area have no solid angle and no share of any integral, so they are left out.
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut triangles: Vec<[[f64; 3]; 3]> = mesh
+            .triangles
+            .iter()
+            .filter(|&&triangle| !mesh.is_sliver(triangle))
+            .map(|&triangle| mesh.corners(triangle))
+            .collect();
+        let mut nodes = Vec::with_capacity(4 * triangles.len() / LEAF + 1);
+        build(&mut triangles, 0, &mut nodes);
+        Self { triangles, nodes }
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[[[f64; 3]; 3]] {
+        &self.triangles
+    }
+
+    /// Walks the clusters from the largest down; `enter` says whether to go on to those below.
+    pub fn visit(&self, mut enter: impl FnMut(Cluster<'_>) -> bool) {
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            let triangles =
+                &self.triangles[node.first as usize..(node.first + node.count) as usize];
+            let down = enter(Cluster {
+                center: node.center,
+                radius: node.radius,
+                area: node.area,
+                area_vector: node.area_vector,
+                leaf: (node.below == 0).then_some(triangles),
+            });
+            at += 1 + if down { 0 } else { node.below as usize };
+        }
+    }
+}
+
+/// Puts the tree over `triangles`, which are numbers `first` and on, at the end of `nodes`.
+fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
+    let mut area = 0.0;
+    let mut area_vector = [0.0; 3];
+    let mut moment = [0.0; 3];
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for &corners in &*triangles {
+        let normal = scale(doubled_normal(corners), 0.5);
+        let own = norm(normal);
+        area += own;
+        area_vector = add(area_vector, normal);
+        let middle = centroid(corners);
+        moment = add(moment, scale(middle, own));
+        for axis in 0..3 {
+            low[axis] = low[axis].min(middle[axis]);
+            high[axis] = high[axis].max(middle[axis]);
+        }
+    }
+    let center = if area > 0.0 {
+        scale(moment, 1.0 / area)
+    } else {
+        scale(add(low, high), 0.5)
+    };
+    let corners = triangles.iter().flatten();
+    let radius = corners
+        .map(|&corner| distance(corner, center))
+        .fold(0.0, f64::max);
+    let place = nodes.len();
+    nodes.push(Node {
+        center,
+        radius,
+        area,
+        area_vector,
+        first: first as u32,
+        count: triangles.len() as u32,
+        below: 0,
+    });
+    if triangles.len() <= LEAF {
+        return;
+    }
+    let axis = (0..3)
+        .max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b])))
+        .unwrap_or(0);
+    let middle = triangles.len() / 2;
+    triangles.select_nth_unstable_by(middle, |a, b| {
+        centroid(*a)[axis].total_cmp(&centroid(*b)[axis])
+    });
+    let (left, right) = triangles.split_at_mut(middle);
+    build(left, first, nodes);
+    build(right, first + middle, nodes);
+    nodes[place].below = (nodes.len() - place - 1) as u32;
+}
+
+/// The middle of a triangle.
+pub(crate) fn centroid([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    scale(add(a, add(b, c)), 1.0 / 3.0)
+}

@@ -1,0 +1,39 @@
+//! Samplers: from a solid to balls.
+//!
+//! # Conventions
+//!
+//! - All coordinates, lengths and volumes are in the solid's own [`crate::mesh::Frame`]; what is written for users is in the
+//!   file's unit.
+//! - A depth is a signed distance to the surface, above zero inside.
+//! - S is the solid, S(A) the union of the balls of a set A, X the nodes of the grid strictly inside S.
+//!
+//! # The samplers
+//!
+//! Behandish and Ilieş' ([`decomposition`]), Weller and Zachmann's distance-greedy packing ([`packing`]), balls about the
+//! cells of an octree ([`octree`]) and about voxels ([`voxels`]): all on one [`grid`], all covering the same nodes X, and all
+//! judged by the same [`hausdorff`] measurement.
+
+pub mod ball_tree;
+pub mod cover;
+pub mod decomposition;
+pub mod grid;
+pub mod hausdorff;
+pub mod octree;
+pub mod packing;
+pub mod sample;
+pub mod skeletal_density;
+pub mod voxels;
+pub mod weights;
+
+pub use ball_tree::Ball;
+pub use sample::{BallSet, Method, Sampling, SetName, Step, knots, sample};
+
+/// Why a solid could not be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SampleError {
+    /// No node of the grid is inside; for Algorithm 1, nor any point under the surface.
+    #[error(
+        "no ball fits inside the mesh: none of the grid's nodes is inside it, or it bounds no solid"
+    )]
+    NothingInside,
+}

@@ -1,0 +1,160 @@
+//! Weights that make the summed bumps come closest to one inside the solid.
+//!
+//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times and the volume
+//! integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum of
+//! (sum_i c_i psi(|x - x_i| / r_i) - 1)^2 over the inside nodes: nonnegative least squares with a sparse matrix, by coordinate
+//! descent (each weight in turn to its best value or zero), which falls at every step and whose limit is the minimum, the
+//! problem being convex.
+
+use std::f64::consts::PI;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::ball_tree::Ball;
+use super::grid::DepthField;
+
+/// Rounds over all weights at most.
+const ROUNDS: usize = 300;
+
+/// Ends when no weight of a round moves by more than this.
+const SETTLED: f64 = 1e-4;
+
+/// The bump psi_alpha(x) = exp(1 / (1 - |x|^-alpha)) for |x| < 1, else 0 (B&I eq. 10): one at 0, and the indicator of the ball as
+/// alpha grows.
+pub fn bump(x: f64, alpha: f64) -> f64 {
+    let u = x.abs().powf(alpha);
+    if u >= 1.0 {
+        0.0
+    } else {
+        (-u / (1.0 - u)).exp()
+    }
+}
+
+/// The integral of the bump over its unit ball, 4 pi times that of psi x^2 from 0 to 1.
+pub fn bump_volume(alpha: f64) -> f64 {
+    let steps = 20_000;
+    let width = 1.0 / f64::from(steps);
+    let sum: f64 = (0..steps)
+        .map(|i| (f64::from(i) + 0.5) * width)
+        .map(|x| bump(x, alpha) * x * x)
+        .sum();
+    4.0 * PI * sum * width
+}
+
+/// What fitting did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedWeights {
+    /// A weight a ball, zero or above.
+    #[serde(skip)]
+    pub weights: Vec<f64>,
+    /// The bump's exponent.
+    pub alpha: f64,
+    /// Balls of weight zero.
+    pub zeros: usize,
+    /// Root mean square over the inside nodes of the summed bumps less one, with weights of one.
+    pub rms_unit: f64,
+    /// The same with the fitted weights.
+    pub rms_fitted: f64,
+    /// Integral of the summed bumps with weights of one, over the volume of the solid.
+    pub volume_unit: f64,
+    /// The same with the fitted weights.
+    pub volume_fitted: f64,
+    /// Rounds over all weights.
+    pub rounds: usize,
+}
+
+/// One ball's bump at the inside nodes that it reaches: number among the inside nodes, and value.
+type Column = Vec<(u32, f32)>;
+
+/// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that reaches no node keeps weight one.
+pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> FittedWeights {
+    let mut number = vec![u32::MAX; field.depth.len()];
+    let mut nodes = 0u32;
+    for (number, depth) in number.iter_mut().zip(&field.depth) {
+        if *depth > 0.0 {
+            *number = nodes;
+            nodes += 1;
+        }
+    }
+    let columns: Vec<Column> = balls
+        .par_iter()
+        .map(|ball| {
+            let mut column = Column::new();
+            field
+                .grid
+                .visit_ball(ball.center, ball.radius, |node, squared| {
+                    let value = bump(squared.sqrt() / ball.radius, alpha) as f32;
+                    if number[node] != u32::MAX && value > 0.0 {
+                        column.push((number[node], value));
+                    }
+                });
+            column
+        })
+        .collect();
+    let squares: Vec<f64> = columns
+        .iter()
+        .map(|column| {
+            column
+                .iter()
+                .map(|(_, value)| f64::from(*value).powi(2))
+                .sum()
+        })
+        .collect();
+    let mut weights = vec![1.0; balls.len()];
+    // One less the summed bumps at each inside node.
+    let mut left = vec![1.0; nodes as usize];
+    for column in &columns {
+        for &(node, value) in column {
+            left[node as usize] -= f64::from(value);
+        }
+    }
+    let rms =
+        |left: &[f64]| (left.iter().map(|v| v * v).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    let rms_unit = rms(&left);
+    let mut rounds = 0;
+    while rounds < ROUNDS {
+        rounds += 1;
+        let mut moved = 0.0f64;
+        for ((column, square), weight) in columns.iter().zip(&squares).zip(&mut weights) {
+            if *square == 0.0 {
+                continue;
+            }
+            let pull: f64 = column
+                .iter()
+                .map(|&(node, value)| f64::from(value) * left[node as usize])
+                .sum();
+            let change = (pull / square).max(-*weight);
+            if change != 0.0 {
+                *weight += change;
+                moved = moved.max(change.abs());
+                for &(node, value) in column {
+                    left[node as usize] -= change * f64::from(value);
+                }
+            }
+        }
+        if moved < SETTLED {
+            break;
+        }
+    }
+    let unit = bump_volume(alpha);
+    let integral = |weights: &mut dyn Iterator<Item = f64>| -> f64 {
+        balls
+            .iter()
+            .zip(weights)
+            .map(|(ball, weight)| weight * ball.radius.powi(3))
+            .sum::<f64>()
+            * unit
+            / volume
+    };
+    FittedWeights {
+        alpha,
+        zeros: weights.iter().filter(|&&weight| weight == 0.0).count(),
+        rms_unit,
+        rms_fitted: rms(&left),
+        volume_unit: integral(&mut std::iter::repeat(1.0)),
+        volume_fitted: integral(&mut weights.iter().copied()),
+        rounds,
+        weights,
+    }
+}

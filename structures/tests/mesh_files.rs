@@ -1,0 +1,286 @@
+//! Reading meshes: every format gives the same mesh, faults are named with their line, and nothing panics.
+
+mod solids;
+
+use std::fs;
+
+use knotdock_structures::mesh::{MeshErrorKind, MeshFormat, Solid, parse, read};
+use solids::{Surface, cuboid, scattered, sphere};
+
+fn unit_cube() -> Surface {
+    cuboid([0.0; 3], [1.0; 3])
+}
+
+fn all_formats(surface: &Surface) -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
+    vec![
+        ("a.obj", MeshFormat::Obj, surface.obj().into_bytes()),
+        ("a.off", MeshFormat::Off, surface.off().into_bytes()),
+        ("text.stl", MeshFormat::Stl, surface.stl_text().into_bytes()),
+        ("binary.stl", MeshFormat::Stl, surface.stl_binary()),
+        ("text.ply", MeshFormat::Ply, surface.ply_text().into_bytes()),
+        ("little.ply", MeshFormat::Ply, surface.ply_binary(false)),
+        ("big.ply", MeshFormat::Ply, surface.ply_binary(true)),
+    ]
+}
+
+#[test]
+fn every_format_gives_the_same_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    // A quarter and a half survive the 24 bits of binary STL.
+    let surface = cuboid([-0.25, 0.5, 1.0], [0.75, 2.5, 4.0]).and(
+        &sphere([9.0, 0.0, 0.0], 1.0, 4).mapped(|p| p.map(|value| (value * 64.0).round() / 64.0)),
+    );
+    let mut volumes = Vec::new();
+    for (name, format, bytes) in all_formats(&surface) {
+        let path = folder.path().join(name);
+        fs::write(&path, &bytes).unwrap();
+        let (mesh, report) = read(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(report.format, Some(format), "{name}");
+        assert_eq!(report.triangles, surface.triangles.len(), "{name}");
+        assert_eq!(report.vertices, surface.positions.len(), "{name}: welded");
+        assert!(report.is_sound() && report.parts == 2, "{name}: {report}");
+        volumes.push(mesh.volume());
+    }
+    assert!(
+        volumes
+            .iter()
+            .all(|volume| (volume - volumes[0]).abs() < 1e-12),
+        "{volumes:?}"
+    );
+    let (_, report) = surface.mesh();
+    assert!((report.volume - volumes[0]).abs() < 1e-12);
+}
+
+#[test]
+fn a_text_format_keeps_every_digit() {
+    let surface = unit_cube().mapped(|p| p.map(|value| 1e6 + value / 3.0));
+    for (name, format, bytes) in all_formats(&surface) {
+        if name == "binary.stl" {
+            continue;
+        }
+        let (mesh, _) = parse(&bytes, format).unwrap();
+        let mut found = mesh.positions().to_vec();
+        let mut expected = surface.positions.clone();
+        found.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
+#[test]
+fn dialects() {
+    // Quads, counting back, continued lines, groups, no final newline; CRLF.
+    let obj = "g x\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0 0 1\r\nv 1 0 1\r\nv 1 1 1\r\nv 0 1 1\r\nvn 0 0 1\r\n\
+               f 1 4 3 2\r\nf 5 6 \\\r\n7 8\r\nusemtl y\r\nf 1 2 6 5\r\nf 2 3 7 6\r\nf 3 4 8 7\r\nf -8 -4 -1 -5";
+    let (mesh, report) = parse(obj.as_bytes(), MeshFormat::Obj).unwrap();
+    assert_eq!(report.triangles, 12);
+    assert!((mesh.volume() - 1.0).abs() < 1e-15 && report.is_sound());
+    // Counts on the line of the keyword, and a colour a vertex.
+    let off = "COFF 4 4 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1 # last\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let (mesh, report) = parse(off.as_bytes(), MeshFormat::Off).unwrap();
+    assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15 && report.is_sound());
+    // Two solids in one file, and upper case.
+    let stl = unit_cube().stl_text() + &cuboid([2.0; 3], [3.0; 3]).stl_text().to_uppercase();
+    let (mesh, report) = parse(stl.as_bytes(), MeshFormat::Stl).unwrap();
+    assert_eq!(report.parts, 2);
+    assert!((mesh.volume() - 2.0).abs() < 1e-12);
+}
+
+fn line_of(text: &str, format: MeshFormat) -> Option<usize> {
+    match parse(text.as_bytes(), format).unwrap_err() {
+        MeshErrorKind::Syntax { line, .. }
+        | MeshErrorKind::Coordinate { line, .. }
+        | MeshErrorKind::Index { line, .. } => line,
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn faults_name_their_line() {
+    let cube = unit_cube();
+    for (text, format, word, line) in [
+        (cube.obj(), MeshFormat::Obj, "v 1.0 1.0 0.0", 6),
+        (cube.off(), MeshFormat::Off, "1.0 1.0 0.0", 7),
+        (cube.stl_text(), MeshFormat::Stl, "vertex 0.0 0.0 1.0", 5),
+        (cube.ply_text(), MeshFormat::Ply, "1.0 1.0 0.0", 14),
+    ] {
+        assert!(text.contains(word));
+        for value in ["nan", "inf", "1e300", "x"] {
+            let broken = word.replace("0.0", value);
+            let damaged = text.replacen(word, &broken, 1);
+            assert_eq!(line_of(&damaged, format), Some(line), "{format:?} {broken}");
+        }
+    }
+    for (text, format, word, broken, line) in [
+        (
+            cube.obj(),
+            MeshFormat::Obj,
+            "f 2/1/1 4//2 8",
+            "f 2/1/1 4//2 9",
+            13,
+        ),
+        (cube.obj(), MeshFormat::Obj, "f 2/1/1 4//2 8", "f 0 4 8", 13),
+        (cube.obj(), MeshFormat::Obj, "f 2/1/1 4//2 8", "f 2 4", 13),
+        (cube.off(), MeshFormat::Off, "3 1 3 7", "3 1 3 8", 14),
+        (cube.off(), MeshFormat::Off, "3 1 3 7", "3 1 3 -1", 14),
+        (cube.off(), MeshFormat::Off, "8 12 0", "eight 12 0", 3),
+        (cube.ply_text(), MeshFormat::Ply, "3 1 3 7", "3 1 3 8", 21),
+        (
+            cube.stl_text(),
+            MeshFormat::Stl,
+            " endloop\n",
+            " vortex\n",
+            7,
+        ),
+    ] {
+        assert!(text.contains(word), "{word}");
+        assert_eq!(
+            line_of(&text.replacen(word, broken, 1), format),
+            Some(line),
+            "{format:?} {broken}"
+        );
+    }
+}
+
+#[test]
+fn what_bounds_no_solid_is_refused() {
+    let kind = |text: &str, format| parse(text.as_bytes(), format).unwrap_err();
+    assert!(matches!(
+        kind("v 0 0 0\nv 1 0 0\nv 0 1 0\n", MeshFormat::Obj),
+        MeshErrorKind::Empty
+    ));
+    assert!(matches!(
+        kind("OFF\n0 0 0\n", MeshFormat::Off),
+        MeshErrorKind::Empty
+    ));
+    assert!(matches!(
+        kind("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", MeshFormat::Obj),
+        MeshErrorKind::Degenerate { triangles: 1 }
+    ));
+    assert!(matches!(
+        kind("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", MeshFormat::Obj),
+        MeshErrorKind::Degenerate { .. }
+    ));
+    // A square in a tilted plane.
+    assert!(matches!(
+        kind(
+            "v 0 0 0\nv 1 0 1\nv 1 1 2\nv 0 1 1\nf 1 2 3 4\n",
+            MeshFormat::Obj
+        ),
+        MeshErrorKind::Flat
+    ));
+    let tiny = unit_cube().mapped(|p| p.map(|value| 1e-120 * value));
+    assert!(matches!(
+        kind(&tiny.obj(), MeshFormat::Obj),
+        MeshErrorKind::Tiny { .. }
+    ));
+}
+
+#[test]
+fn files_that_are_no_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let kind = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let error = read(&path).unwrap_err();
+        assert_eq!(error.file(), Some(path.as_path()));
+        assert!(!error.remedy().is_empty());
+        error.kind
+    };
+    assert!(matches!(
+        kind("letter.txt", b"Dear all"),
+        MeshErrorKind::UnknownFormat
+    ));
+    assert!(matches!(
+        kind("letter.stl", b"Dear all"),
+        MeshErrorKind::Syntax { .. }
+    ));
+    assert!(matches!(
+        kind("letter.ply", b"Dear all"),
+        MeshErrorKind::Syntax { .. }
+    ));
+    assert!(matches!(
+        kind("empty.stl", b""),
+        MeshErrorKind::Syntax { .. }
+    ));
+    assert!(matches!(kind("empty.obj", b""), MeshErrorKind::Empty));
+    let binary = unit_cube().stl_binary();
+    assert!(matches!(
+        kind("cut.stl", &binary[..binary.len() - 7]),
+        MeshErrorKind::Syntax { .. }
+    ));
+    // The first bytes decide before the name.
+    let path = folder.path().join("odd.obj");
+    fs::write(&path, unit_cube().ply_text()).unwrap();
+    assert_eq!(read(&path).unwrap().1.format, Some(MeshFormat::Ply));
+    assert!(matches!(
+        read(folder.path()).unwrap_err().kind,
+        MeshErrorKind::Directory
+    ));
+    assert!(matches!(
+        read(&folder.path().join("none.stl")).unwrap_err().kind,
+        MeshErrorKind::Missing
+    ));
+}
+
+/// Every file cut at every byte, and every byte changed: an answer or an error, never a panic, an endless loop or a huge
+/// allocation.
+#[test]
+fn damaged_files_never_panic() {
+    let tetrahedron = Surface {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    };
+    for (_, format, bytes) in all_formats(&tetrahedron) {
+        for end in 0..bytes.len() {
+            let _ = parse(&bytes[..end], format);
+        }
+        for place in 0..bytes.len() {
+            for value in [
+                0,
+                b' ',
+                b'\n',
+                b'-',
+                b'9',
+                b'e',
+                0x7f,
+                0xff,
+                bytes[place] ^ 1,
+            ] {
+                let mut damaged = bytes.clone();
+                damaged[place] = value;
+                if let Ok((mesh, _)) = parse(&damaged, format) {
+                    let solid = Solid::new(&mesh).unwrap();
+                    assert!(solid.depth([0.1, 0.05, -0.1]).is_finite());
+                }
+            }
+        }
+    }
+    // Counts that no file could hold must not be allocated up front.
+    for text in [
+        "OFF\n99999999999999 1 0\n0 0 0\n",
+        "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n",
+    ] {
+        let format = if text.starts_with("OFF") {
+            MeshFormat::Off
+        } else {
+            MeshFormat::Ply
+        };
+        assert!(matches!(
+            parse(text.as_bytes(), format),
+            Err(MeshErrorKind::Syntax { .. })
+        ));
+    }
+}
+
+#[test]
+fn doubling_every_length_keeps_the_bits() {
+    let surface = sphere([0.3, -0.2, 0.1], 0.7, 9);
+    let once = surface.solid();
+    let doubled = surface.mapped(|p| p.map(|value| 2.0 * value)).solid();
+    assert_eq!(doubled.frame().unit, 2.0 * once.frame().unit);
+    for point in scattered(200, 0.5) {
+        assert_eq!(once.depth(point).to_bits(), doubled.depth(point).to_bits());
+    }
+}
