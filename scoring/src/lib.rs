@@ -7,13 +7,15 @@
 //! - Fourier: f^(w) = sum f(x) exp(-2 pi i w.x); the inverse carries 1 / volume.
 //! - The score is G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), g(rho) the correlation's slice at radius sum r + s + rho
 //!   (Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text, see [`affinity`]).
+//! - Further effects are weighted terms that add to it, in the same sense and through the same filter.
 //! - Errors are relative: of a score to the best exact score, of a slice to its largest value.
 //!
 //! # The way through
 //!
-//! [`kernel`] defines what is scored, [`exact`] scores one pose by the plain pair sum, [`lifted_axis`] and [`transform`] carry
-//! kernel and knots to modes, [`engine`] correlates over all translations at a rotation, [`configuration`] sums
-//! chosen modes at one pose, and [`field`] reads the correlation between its grid points. Fast paths stand beside a slow exact one that tests hold them to.
+//! [`kernel`] defines what shape scores and [`effect`] what may come beside it, [`exact`] scores one pose by the plain
+//! pair sum, [`lifted_axis`] and [`transform`] carry kernel and knots to modes, [`engine`] correlates over all translations at a
+//! rotation, [`configuration`] sums chosen modes at one pose, and [`field`] reads the correlation between its grid points. Fast paths
+//! stand beside a slow exact one that tests hold them to.
 
 pub mod affinity;
 pub mod configuration;

@@ -135,6 +135,14 @@ impl Dock {
         let plan = search::plan(receptor, ligand, &request.options.dock)
             .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
         console.say(format!("\n{plan}"));
+        for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
+            if count > 0 {
+                console.warn(format!(
+                    "{count} balls of the {side} are too small for a resolution of {} Å, which leaves less than a tenth of their overlap",
+                    request.options.dock.resolution
+                ));
+            }
+        }
         for (side, labels) in ["receptor", "ligand"].into_iter().zip(&plan.labels) {
             if let Some(text) = assumed(side, labels, &plan) {
                 console.say(text);

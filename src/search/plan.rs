@@ -173,6 +173,11 @@ pub fn plan(
 }
 
 impl DockPlan {
+    /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
+    pub fn unresolved(&self) -> [usize; 2] {
+        [&self.receptor, &self.ligand].map(|knots| self.engine.unresolved(knots).len())
+    }
+
     /// Number of poses to refine.
     pub fn refined(&self) -> usize {
         let alone = self
