@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock::output::poses::PoseTable;
-use knotdock::search::DockOptions;
+use knotdock::search::{DockOptions, Scene};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
@@ -39,16 +39,22 @@ fn a_near_native_pose_is_among_the_first_ten() {
     );
 
     // The printed poses score what is printed: to 1e-6 of the score, by the pair sum alone.
-    let knots = |name: &str| {
+    let molecule = |name: &str| {
         let input = InputSpec::whole(example(name));
-        read(&input, &ReadOptions::default())
-            .unwrap()
-            .knots()
-            .unwrap()
+        read(&input, &ReadOptions::default()).unwrap()
     };
-    let (receptor, ligand) = (knots("receptor_unbound"), knots("ligand_unbound"));
-    let plan = Plan::new(&receptor, &ligand, DockOptions::default().engine()).unwrap();
-    let scorer = ExactScorer::new(&plan.kernel, &receptor, &ligand).unwrap();
+    let options = DockOptions::default();
+    let (receptor, ligand) = (molecule("receptor_unbound"), molecule("ligand_unbound"));
+    let Scene {
+        receptor,
+        ligand,
+        terms,
+        ..
+    } = Scene::new(&receptor, &ligand, &options).unwrap();
+    let engine = options.engine();
+    let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
+    let scorer =
+        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
     let path = run.join("poses.csv");
     let table = PoseTable::read(&path).unwrap();
     let mut scores = csv::Reader::from_path(&path).unwrap();
