@@ -12,6 +12,7 @@ mod memory;
 mod native;
 mod ranks;
 mod request;
+mod sample;
 mod score;
 mod search_arguments;
 
@@ -23,7 +24,7 @@ use clap::{Parser, Subcommand};
 use console::Console;
 use failure::Failure;
 
-/// Docks two structures by correlating their spherical decompositions, and evaluates and writes the poses.
+/// Docks two structures by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
 /// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, angles in degrees.
 /// Exit codes: 0 done, 2 bad input, 1 any other failure.
@@ -46,6 +47,7 @@ enum Command {
     Complex(complex::Complex),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
+    Sample(sample::Sample),
 }
 
 fn version() -> &'static str {
@@ -69,6 +71,7 @@ pub fn main() -> ExitCode {
         Command::Complex(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
+        Command::Sample(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
