@@ -32,6 +32,38 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
+const MOST_NODES: usize = 512;
+
+/// Nodes an axis of a grid of M nodes, M given as 2^18 or 262144: the cube root, to the nearest whole number.
+///
+/// # Errors
+/// When M is no whole number from 8 to 512^3.
+pub fn grid(text: &str) -> Result<usize, String> {
+    let nodes = match text.split_once('^') {
+        Some((base, power)) => match (base.trim().parse::<u64>(), power.trim().parse::<u32>()) {
+            (Ok(base), Ok(power)) => base.checked_pow(power),
+            _ => None,
+        },
+        None => text.parse::<u64>().ok(),
+    };
+    let most = (MOST_NODES as u64).pow(3);
+    match nodes.filter(|nodes| (8..=most).contains(nodes)) {
+        Some(nodes) => Ok((nodes as f64).cbrt().round() as usize),
+        None => Err(format!(
+            "a whole number of nodes from 8 to {most} is needed, such as 2^18 or 262144"
+        )),
+    }
+}
+
+/// A protrusion factor, from 0 to 1.
+pub fn protrusion(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value + 0.0),
+        _ => Err("a number from 0 to 1 is needed".to_owned()),
+    }
+}
+
 /// A whole number above zero.
 pub fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
@@ -52,6 +84,29 @@ mod tests {
         for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
             assert!(rotations_of_angle(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn grids_are_cubes() {
+        for (text, per_axis) in [
+            ("2^12", 16),
+            ("2^21", 128),
+            ("262144", 64),
+            ("64^3", 64),
+            ("1000", 10),
+            ("8", 2),
+        ] {
+            assert_eq!(grid(text), Ok(per_axis), "{text}");
+        }
+        for text in ["", "7", "2^28", "9^99", "2^x", "-8", "1e6", "2^", "nan"] {
+            assert!(grid(text).is_err(), "{text}");
+        }
+        assert_eq!(protrusion("1"), Ok(1.0));
+        assert!(
+            ["-0.1", "1.1", "nan", ""]
+                .iter()
+                .all(|text| protrusion(text).is_err())
+        );
     }
 
     #[test]

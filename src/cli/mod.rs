@@ -13,6 +13,7 @@ mod memory;
 mod native;
 mod ranks;
 mod request;
+mod sample;
 mod score;
 mod search_arguments;
 
@@ -24,7 +25,7 @@ use clap::{Parser, Subcommand};
 use console::Console;
 use failure::Failure;
 
-/// Docks two structures by correlating their spherical decompositions, and evaluates and writes the poses.
+/// Docks two structures by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
 /// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, angles in degrees.
 /// Exit codes: 0 done, 2 bad input, 1 any other failure.
@@ -48,6 +49,7 @@ enum Command {
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
+    Sample(sample::Sample),
 }
 
 fn version() -> &'static str {
@@ -72,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
+        Command::Sample(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,5 @@
-//! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` ..., `run.json`, and the words on the terminal.
+//! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` ..., `run.json`, and the words on the terminal; and what
+//! `knotdock sample` does: `knots.csv`, and balls as a mesh, as pseudo-atoms or in a picture.
 //!
 //! # Conventions
 //!
@@ -9,6 +10,7 @@
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
+pub mod balls;
 pub mod complexes;
 pub mod input_record;
 pub mod manifest;
@@ -18,4 +20,5 @@ pub mod quality;
 pub mod recorded_run;
 pub mod report;
 pub mod run_options;
+pub mod sample_picture;
 pub mod staging;

@@ -1,5 +1,7 @@
 //! Reading meshes: every format gives the same mesh, faults are named with their line, and nothing panics.
 
+#![cfg(feature = "mesh")]
+
 mod solids;
 
 use std::fs;

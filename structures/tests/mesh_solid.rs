@@ -1,5 +1,7 @@
 //! Distances, winding numbers, orientation and soundness, against closed forms and slow sums.
 
+#![cfg(feature = "mesh")]
+
 mod solids;
 
 use knotdock_structures::mesh::{Solid, from_triangles};

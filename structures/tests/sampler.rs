@@ -1,5 +1,7 @@
 //! Samplers against closed forms and against what the paper promises of them.
 
+#![cfg(feature = "mesh")]
+
 mod solids;
 
 use std::f64::consts::PI;

@@ -93,12 +93,13 @@ mod tests {
             let kernel = EffectKernel::new(&filter, &radial);
             let scale = (radial.value)(0.0).abs();
             for d in [0.0, 1.3, 3.0, 5.7, 6.4, 9.0, 11.0] {
-                assert!((kernel.value(d) - (radial.value)(d)).abs() < 1e-6 * scale);
+                let difference = kernel.value(d) - (radial.value)(d);
+                assert!(difference.abs() < 1e-4 * scale, "{d}: {difference}");
             }
             let whole = transform(&radial, 0.0, STEPS);
             for w in [0.0, 0.1, 0.3] {
                 let difference = kernel.spectrum(w) - transform(&radial, w, STEPS);
-                assert!(difference.abs() < 1e-6 * whole.abs());
+                assert!(difference.abs() < 1e-4 * whole.abs(), "{w}: {difference}");
             }
         }
     }

@@ -20,11 +20,9 @@ pub(crate) fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
     2.0 * volume.atan2(below)
 }
 
-/// A cluster counts as a dipole beyond this many times its radius.
-const FAR: f64 = 3.0;
-
-/// Closer to one half than this, the dipoles' sum does not decide. Their error at [`FAR`] was below 0.01 wherever tried.
-const DOUBT: f64 = 0.1;
+/// Rounds of the inside test: a cluster counts as a dipole beyond this many times its radius, and the sum decides when it is
+/// farther than this from one half. A dipole's error falls with the square of the first number.
+const ROUNDS: [(f64, f64); 2] = [(3.0, 0.1), (10.0, 0.01)];
 
 /// The winding number at `point`, every triangle summed.
 pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
@@ -35,13 +33,13 @@ pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
         / (4.0 * PI)
 }
 
-/// The winding number at `point`, far clusters as dipoles.
-pub(crate) fn fast(tree: &TriangleTree, point: [f64; 3]) -> f64 {
+/// The winding number at `point`, clusters farther than `far` times their radius as dipoles.
+fn fast(tree: &TriangleTree, point: [f64; 3], far: f64) -> f64 {
     let mut sum = 0.0;
     tree.visit(|node| {
         let away = subtract(node.center, point);
         let distance = norm(away);
-        if distance > FAR * node.radius {
+        if distance > far * node.radius {
             sum += dot(away, node.area_vector) / (distance * distance * distance);
             return false;
         }
@@ -59,10 +57,11 @@ pub(crate) fn fast(tree: &TriangleTree, point: [f64; 3]) -> f64 {
 
 /// Whether `point` is inside: its winding number is above one half.
 pub(crate) fn is_inside(tree: &TriangleTree, point: [f64; 3]) -> bool {
-    let winding = fast(tree, point);
-    if (winding - 0.5).abs() > DOUBT {
-        winding > 0.5
-    } else {
-        exact(tree, point) > 0.5
+    for (far, doubt) in ROUNDS {
+        let winding = fast(tree, point, far);
+        if (winding - 0.5).abs() > doubt {
+            return winding > 0.5;
+        }
     }
+    exact(tree, point) > 0.5
 }

@@ -1,10 +1,11 @@
-//! Weights that make the summed bumps come closest to one inside the solid.
+//! Weights that make the summed bumps come closest to one inside the solid and to zero outside.
 //!
 //! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times and the volume
 //! integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum of
-//! (sum_i c_i psi(|x - x_i| / r_i) - 1)^2 over the inside nodes: nonnegative least squares with a sparse matrix, by coordinate
+//! (sum_i c_i psi(|x - x_i| / r_i) - 1_S(x))^2 over the nodes: nonnegative least squares with a sparse matrix, by coordinate
 //! descent (each weight in turn to its best value or zero), which falls at every step and whose limit is the minimum, the
-//! problem being convex.
+//! problem being convex. Nodes outside have a part in it because without them the balls that reach out of the solid are free:
+//! on the bunny at m = 2^12 their weights then made the integral 3.9 times the volume, where weights of one make it 2.3 times.
 
 use std::f64::consts::PI;
 
@@ -42,6 +43,10 @@ pub fn bump_volume(alpha: f64) -> f64 {
     4.0 * PI * sum * width
 }
 
+/// A ball whose bump squared sums to less than this over the nodes is one that the grid hardly sees: the tail of a bump at a
+/// node or two would decide its weight, and could make it thousands.
+const SEEN: f64 = 0.1;
+
 /// What fitting did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedWeights {
@@ -52,7 +57,7 @@ pub struct FittedWeights {
     pub alpha: f64,
     /// Balls of weight zero.
     pub zeros: usize,
-    /// Root mean square over the inside nodes of the summed bumps less one, with weights of one.
+    /// Root mean square over the nodes inside of the summed bumps less one, with weights of one.
     pub rms_unit: f64,
     /// The same with the fitted weights.
     pub rms_fitted: f64,
@@ -64,19 +69,11 @@ pub struct FittedWeights {
     pub rounds: usize,
 }
 
-/// One ball's bump at the inside nodes that it reaches: number among the inside nodes, and value.
+/// One ball's bump at the nodes that it reaches: node, and value.
 type Column = Vec<(u32, f32)>;
 
-/// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that reaches no node keeps weight one.
+/// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that the nodes hardly see keeps weight one.
 pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> FittedWeights {
-    let mut number = vec![u32::MAX; field.depth.len()];
-    let mut nodes = 0u32;
-    for (number, depth) in number.iter_mut().zip(&field.depth) {
-        if *depth > 0.0 {
-            *number = nodes;
-            nodes += 1;
-        }
-    }
     let columns: Vec<Column> = balls
         .par_iter()
         .map(|ball| {
@@ -85,8 +82,9 @@ pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> Fitte
                 .grid
                 .visit_ball(ball.center, ball.radius, |node, squared| {
                     let value = bump(squared.sqrt() / ball.radius, alpha) as f32;
-                    if number[node] != u32::MAX && value > 0.0 {
-                        column.push((number[node], value));
+                    // On the surface itself the indicator is neither.
+                    if field.depth[node] != 0.0 && value > 0.0 {
+                        column.push((node as u32, value));
                     }
                 });
             column
@@ -102,22 +100,29 @@ pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> Fitte
         })
         .collect();
     let mut weights = vec![1.0; balls.len()];
-    // One less the summed bumps at each inside node.
-    let mut left = vec![1.0; nodes as usize];
+    // The indicator of the solid less the summed bumps, at each node.
+    let mut left: Vec<f64> = field
+        .depth
+        .iter()
+        .map(|&depth| if depth > 0.0 { 1.0 } else { 0.0 })
+        .collect();
     for column in &columns {
         for &(node, value) in column {
             left[node as usize] -= f64::from(value);
         }
     }
-    let rms =
-        |left: &[f64]| (left.iter().map(|v| v * v).sum::<f64>() / left.len().max(1) as f64).sqrt();
+    let inside = field.inside();
+    let rms = |left: &[f64]| {
+        let sum: f64 = inside.iter().map(|&node| left[node] * left[node]).sum();
+        (sum / inside.len().max(1) as f64).sqrt()
+    };
     let rms_unit = rms(&left);
     let mut rounds = 0;
     while rounds < ROUNDS {
         rounds += 1;
         let mut moved = 0.0f64;
         for ((column, square), weight) in columns.iter().zip(&squares).zip(&mut weights) {
-            if *square == 0.0 {
+            if *square < SEEN {
                 continue;
             }
             let pull: f64 = column

@@ -1,0 +1,277 @@
+//! `knotdock sample` as its users see it: files, JSON, refusals.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+
+struct Place {
+    folder: tempfile::TempDir,
+}
+
+/// A box 4 by 2 by 1 as OBJ.
+fn box_obj() -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        text += &format!("v {} {} {}\n", 4 * (i & 1), 2 * (i >> 1 & 1), i >> 2 & 1);
+    }
+    text + "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n"
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("box.obj"), box_obj()).unwrap();
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = cargo_bin_cmd!("knotdock");
+        command
+            .current_dir(self.folder.path())
+            .arg("sample")
+            .args(arguments);
+        command
+    }
+
+    fn sample(&self, arguments: &[&str]) -> Value {
+        let output = self.command(arguments).arg("--json").output().unwrap();
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{words}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+
+    /// The error object of what must be refused with exit code 2 and without a trace.
+    fn refused(&self, arguments: &[&str]) -> Value {
+        let before = self.files();
+        let output = self.command(arguments).arg("--json").output().unwrap();
+        let words = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words}");
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = object["error"].clone();
+        assert!(words.contains(error["message"].as_str().unwrap()));
+        assert!(!error["remedy"].as_str().unwrap().is_empty());
+        assert_eq!(self.files(), before);
+        error
+    }
+
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+fn table(path: &Path) -> Vec<[f64; 5]> {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("x,y,z,r,weight"));
+    lines
+        .map(|line| {
+            let row: Vec<f64> = line
+                .split(',')
+                .map(|field| field.parse().unwrap())
+                .collect();
+            row.try_into().unwrap()
+        })
+        .collect()
+}
+
+#[test]
+fn a_mesh_becomes_a_table_of_balls_with_measured_bounds() {
+    let place = Place::new();
+    let object = place.sample(&[
+        "box.obj",
+        "--grid",
+        "2^12",
+        "--picture",
+        "box.svg",
+        "--export",
+        "balls.obj",
+    ]);
+    assert_eq!(object["set"], "a3");
+    assert_eq!(object["grid"]["per_axis"], 16);
+    let epsilon = object["grid"]["epsilon"].as_f64().unwrap();
+    assert!((epsilon - 3f64.sqrt() * 2.0 / 15.0).abs() < 1e-12);
+    assert!((object["mesh"]["volume"].as_f64().unwrap() - 8.0).abs() < 1e-12);
+    let sets = object["sets"].as_array().unwrap();
+    for (set, name) in sets.iter().zip(["a1", "a2", "a3"]) {
+        assert_eq!(set["set"], name);
+        assert_eq!(set["inside_nodes"], object["inside_nodes"]);
+        assert_eq!(set["epsilon"].as_f64(), Some(epsilon));
+        let length = |key: &str| set[key].as_f64().unwrap();
+        assert!(
+            length("hausdorff_inward") <= epsilon
+                && length("hausdorff_outward") <= epsilon * (1.0 + 1e-12)
+        );
+        assert!(length("seconds") > 0.0 && set["balls"].as_u64() > Some(0));
+    }
+    // The table lies in the file's own frame.
+    let rows = table(&place.path("knots.csv"));
+    assert_eq!(rows.len() as u64, sets[2]["balls"].as_u64().unwrap());
+    for [x, y, z, r, weight] in rows {
+        assert!((0.0..=4.0).contains(&x) && (0.0..=2.0).contains(&y) && (0.0..=1.0).contains(&z));
+        assert!(r > epsilon && r <= 0.5 + epsilon + 1e-12 && weight == 1.0);
+    }
+    assert!(
+        fs::read_to_string(place.path("box.svg"))
+            .unwrap()
+            .ends_with("</svg>\n")
+    );
+    let files: Vec<&str> = object["files"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| f.as_str().unwrap())
+        .collect();
+    assert_eq!(files, ["knots.csv", "balls.obj", "box.svg"]);
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let place = Place::new();
+    for (threads, output) in [("1", "one.csv"), ("3", "three.csv")] {
+        let mut command = place.command(&[
+            "box.obj",
+            "--grid",
+            "4096",
+            "--weights",
+            "fitted",
+            "-o",
+            output,
+            "--picture",
+        ]);
+        command
+            .arg(output.replace("csv", "svg"))
+            .env("RAYON_NUM_THREADS", threads);
+        assert!(command.output().unwrap().status.success());
+    }
+    for ending in ["csv", "svg"] {
+        let [one, three] =
+            ["one", "three"].map(|name| fs::read(place.path(&format!("{name}.{ending}"))).unwrap());
+        assert!(one == three, "{ending}");
+    }
+}
+
+#[test]
+fn methods_sets_levels_and_weights() {
+    let place = Place::new();
+    let count = |arguments: &[&str]| {
+        let mut all = vec!["box.obj", "--grid", "2^12", "--force"];
+        all.extend(arguments);
+        let object = place.sample(&all);
+        assert_eq!(
+            table(&place.path("knots.csv")).len() as u64,
+            object["balls"].as_u64().unwrap()
+        );
+        (object["balls"].as_u64().unwrap(), object)
+    };
+    let (a1, _) = count(&["--set", "a1", "--mu", "0.5"]);
+    let (a2, _) = count(&["--set", "a2", "--mu", "0.5"]);
+    let (a3, _) = count(&["--mu", "0.5"]);
+    assert!(a1 == a2 && a3 < a2);
+    let (voxels, object) = count(&["--method", "voxels"]);
+    assert_eq!(object["inside_nodes"].as_u64(), Some(voxels));
+    assert!(count(&["--method", "octree"]).0 < voxels);
+    assert_eq!(count(&["--method", "wz"]).1["sets"][0]["nodes_missed"], 0);
+    let (seven, object) = count(&["--level", "7"]);
+    assert_eq!(seven, 7);
+    assert_eq!(object["level"]["nodes_missed"], 0);
+    let (_, object) = count(&["--weights", "fitted"]);
+    let share = |key: &str| object["weights"][key].as_f64().unwrap();
+    assert!(share("rms_fitted") < share("rms_unit"));
+    assert!(share("volume_fitted") < share("volume_unit"));
+}
+
+#[test]
+fn files_that_are_there_stay_there() {
+    let place = Place::new();
+    fs::write(place.path("knots.csv"), "mine").unwrap();
+    let error = place.refused(&["box.obj", "--grid", "64"]);
+    assert_eq!(error["file"], "knots.csv");
+    assert_eq!(fs::read_to_string(place.path("knots.csv")).unwrap(), "mine");
+    place.sample(&["box.obj", "--grid", "64", "--force"]);
+    assert!(
+        fs::read_to_string(place.path("knots.csv"))
+            .unwrap()
+            .starts_with("x,y,z")
+    );
+    place.refused(&["box.obj", "-o", "none/knots.csv"]);
+    place.refused(&["box.obj", "-o", "box.obj", "--force"]);
+    place.refused(&["box.obj", "-o", "a.svg", "--picture", "a.svg"]);
+    place.refused(&["box.obj", "-o", "a.csv", "--export", "a.xyz"]);
+}
+
+#[test]
+fn bad_meshes_are_refused_with_their_line() {
+    let place = Place::new();
+    let write = |name: &str, text: &str| fs::write(place.path(name), text).unwrap();
+    write("nan.obj", &box_obj().replacen("v 4 2 0", "v 4 nan 0", 1));
+    let error = place.refused(&["nan.obj"]);
+    assert_eq!(
+        (error["line"].as_u64(), error["file"].as_str()),
+        (Some(4), Some("nan.obj"))
+    );
+    write("empty.obj", "v 0 0 0\n");
+    assert!(
+        place.refused(&["empty.obj"])["message"]
+            .as_str()
+            .unwrap()
+            .contains("no triangles")
+    );
+    write(
+        "flat.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    assert!(
+        place.refused(&["flat.obj"])["message"]
+            .as_str()
+            .unwrap()
+            .contains("flat")
+    );
+    write(
+        "cut.stl",
+        "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n",
+    );
+    assert_eq!(place.refused(&["cut.stl"])["line"], 2);
+    write("letter.txt", "Dear all,\n");
+    place.refused(&["letter.txt"]);
+    place.refused(&["nowhere.stl"]);
+    place.refused(&["."]);
+    for arguments in [
+        ["--grid", "2^99"],
+        ["--grid", "1"],
+        ["--mu", "1.5"],
+        ["--alpha", "0"],
+        ["--set", "a4"],
+        ["--level", "0"],
+    ] {
+        place.refused(&["box.obj", arguments[0], arguments[1]]);
+    }
+    place.refused(&["box.obj", "--method", "wz", "--mu", "0.5"]);
+}
+
+#[test]
+fn open_meshes_are_warned_of_and_refused_when_strict() {
+    let place = Place::new();
+    let open = box_obj().replace("f 5 6 8 7\n", "");
+    fs::write(place.path("open.obj"), open).unwrap();
+    let error = place.refused(&["open.obj", "--strict"]);
+    assert!(error["message"].as_str().unwrap().contains("not closed"));
+    let object = place.sample(&["open.obj", "--grid", "2^12"]);
+    assert!(object["warnings"][0].as_str().unwrap().contains("4 open"));
+    assert_eq!(object["mesh"]["open_edges"], 4);
+    let inverted = box_obj().replace("f 1 5 7 3", "f 3 7 5 1");
+    fs::write(place.path("mixed.obj"), inverted).unwrap();
+    place.refused(&["mixed.obj", "--strict"]);
+    place.sample(&["box.obj", "--strict", "--grid", "64", "-o", "sound.csv"]);
+}
