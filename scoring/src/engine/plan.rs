@@ -56,9 +56,14 @@ pub enum PlanError {
         /// Its range.
         bound: &'static str,
     },
-    /// A weight has an imaginary part, or the grid is beyond what can be indexed.
+    /// A weight has an imaginary part.
     #[error("the fast engine takes real weights; knot {0} has a complex one")]
     ComplexWeight(usize),
+    /// A body's weights are so large or small that scores would leave the range of single precision.
+    #[error(
+        "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
+    )]
+    WeightRange(f64),
     /// The box would need more grid points than any machine holds.
     #[error("a grid of {0:.2e} points is needed; use a coarser spacing")]
     TooLarge(f64),
@@ -164,12 +169,7 @@ impl Plan {
         kernel_tolerance: f64,
         band: Option<Band>,
     ) -> Result<Self, PlanError> {
-        for knots in [receptor, ligand] {
-            knots.check()?;
-            if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
-                return Err(PlanError::ComplexWeight(index));
-            }
-        }
+        check_bodies(receptor, ligand)?;
         let tolerance = options.tolerance;
         for value in [tolerance, kernel_tolerance] {
             if !(1e-8..=0.1).contains(&value) {
@@ -189,9 +189,13 @@ impl Plan {
         let (r_low, r_high) = ends(&receptor_radii);
         let (s_low, s_high) = ends(&ligand_radii);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
-        let reach_factor = 1.15 + 0.75 * (1e-2 / kernel_tolerance).log10().max(0.0);
-        let kernel =
-            RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
+        let base = 1.15 + 0.75 * (1e-2 / kernel_tolerance).log10().max(0.0);
+        let with_window =
+            |factor| RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, factor);
+        let mut kernel = with_window(base)?;
+        if band.is_none() && is_stiff(&kernel, r_high + s_high) {
+            kernel = with_window(base + 0.75)?;
+        }
         let chosen = match options.spacing {
             Some(spacing) if spacing.is_finite() && spacing > 0.0 => Some(spacing),
             Some(value) => {
@@ -239,8 +243,10 @@ impl Plan {
         let mut points = 1.0;
         let size = [0, 1, 2].map(|axis| {
             let length = 2.0 * (receptor_extent[axis] + ligand_radius + effective_reach);
-            // The receptor's spread block must fit into the box.
-            let block = 2.0 * receptor_extent[axis] + (width as f64 + 3.0) * spacing;
+            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
+            // a kernel shorter than that window would make too small.
+            let extent = receptor_extent[axis].max(ligand_radius);
+            let block = 2.0 * extent + (width as f64 + 6.0) * spacing;
             let count = (length.max(block) / spacing).ceil().max(4.0);
             points *= count;
             if count < 1e6 {
@@ -328,6 +334,30 @@ impl Plan {
     pub fn size(&self) -> [usize; 3] {
         self.modes.size
     }
+}
+
+/// Whether overlap outweighs contact by so much (lambda of 100 and more, or hardly any skin) that what leaks of it would be a larger share
+/// of the best score than the tolerance: then a tenth has to be aimed at. The ratio is 14 for lambda = 10, alpha = 2, and 26 for lambda =
+/// 100, where errors were up to twice the tolerance.
+fn is_stiff(kernel: &RankingKernel, widest: f64) -> bool {
+    let overlap = kernel.distance_table(widest).value(0.0)[3].abs();
+    overlap > 20.0 * kernel.rim(widest)
+}
+
+/// Refuses knots that no engine can correlate: unusable ones, complex weights, and weights that leave single precision.
+pub(super) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
+    for knots in [receptor, ligand] {
+        knots.check()?;
+        if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
+            return Err(PlanError::ComplexWeight(index));
+        }
+        let size: f64 = knots.weights.iter().map(|c| c.re.abs()).sum();
+        // No weight at all is a body that scores nothing, which every precision holds.
+        if size != 0.0 && !(1e-9..=1e9).contains(&size) {
+            return Err(PlanError::WeightRange(size));
+        }
+    }
+    Ok(())
 }
 
 /// Grid spacing that keeps all modes of the ranking kernel that count.

@@ -23,7 +23,7 @@
 //! The box holds both bodies and twice the kernel's reach per axis, so that no ligand scores with the receptor and its image both.
 //! Scores are in Å^3.
 
-use super::plan::PlanError;
+use super::plan::{PlanError, check_bodies};
 use crate::exact::center;
 use crate::kernel::product::{Body, factors, rim_and_reach};
 use crate::kernel::{Band, KernelOptions, ProductKernel};
@@ -73,12 +73,7 @@ impl UniformGridPlan {
         ligand: &Knots,
         options: UniformGridOptions,
     ) -> Result<Self, PlanError> {
-        for knots in [receptor, ligand] {
-            knots.check()?;
-            if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
-                return Err(PlanError::ComplexWeight(index));
-            }
-        }
+        check_bodies(receptor, ligand)?;
         let spacing = options.spacing;
         for (name, value) in [("spacing", spacing), ("tolerance", options.tolerance)] {
             if !(value.is_finite() && value > 0.0) {

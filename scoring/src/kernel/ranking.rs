@@ -49,7 +49,25 @@ pub enum KernelError {
         /// What it must satisfy.
         bound: &'static str,
     },
+    /// The kernel is so long against its resolution that its tables would take hours or all memory.
+    #[error(
+        "the kernel reaches {reach:.3e} at a resolution of {resolution:.3e}, over {LONGEST} times as far; use a coarser resolution, \
+         or a pass length farther from it, smaller radii or a smaller offset"
+    )]
+    TooLong {
+        /// Distance at which the kernel would end, in Å.
+        reach: f64,
+        /// The resolution asked for, in Å.
+        resolution: f64,
+    },
 }
+
+/// Longest reach of a kernel in resolutions: tables take the square of it in time.
+const LONGEST: f64 = 2048.0;
+/// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal numbers.
+const SMALLEST: f64 = 1e-6;
+/// Largest |lambda|: its square times weights and volumes must stay within single precision.
+const LARGEST_LAMBDA: f64 = 1e6;
 
 impl KernelOptions {
     /// Weights of the slices at rho = 0, r0, 2 r0 in the score: -lambda^2, 2 lambda, -1.
@@ -74,7 +92,12 @@ impl KernelOptions {
                 Err(KernelError::Length { name, value, bound })
             }
         };
-        finite("lambda", self.lambda, true, "a number")?;
+        finite(
+            "lambda",
+            self.lambda,
+            self.lambda.abs() <= LARGEST_LAMBDA,
+            "between -1e6 and 1e6",
+        )?;
         finite("offset r0", self.offset, self.offset >= 0.0, "not below 0")?;
         finite(
             "resolution",
@@ -127,12 +150,26 @@ impl RankingKernel {
             low: sum_low,
             high: sum_high + 2.0 * options.offset,
         };
+        // Written so that NaN is refused with the rest.
+        if !(cone.high >= SMALLEST * options.resolution) {
+            return Err(KernelError::Length {
+                name: "largest sum of radii and skins",
+                value: cone.high,
+                bound: "at least 1e-6 of the resolution, which leaves nothing of smaller balls",
+            });
+        }
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
         // The low-pass rings over lengths of 1 / (stop - pass); the window falls over about one such length.
         let ring = 1.0 / (stop - pass);
         let window_start = cone.high + 0.15 * ring;
         let reach = window_start + reach_factor * ring;
+        if !(reach / options.resolution <= LONGEST) {
+            return Err(KernelError::TooLong {
+                reach,
+                resolution: options.resolution,
+            });
+        }
         let q_max = stop * (cone.high + cone.taper());
         let quadrature = RadialTransform::new(bump, q_max);
         let transform = Table::fit(q_max * 1.001, 0.125, |q| [quadrature.value(q)]);
@@ -209,6 +246,20 @@ impl RankingKernel {
     /// The kernel of one slice at distance d, sigma = r + s + rho, by its definition (slow; tables come from this).
     pub fn value(&self, distance: f64, sigma: f64) -> f64 {
         self.low_passed(&self.band(sigma), distance) * self.window(distance)
+    }
+
+    /// What the low-pass leaves of the overlap of two coincident balls of radius sum sigma (Å), which is 1 without it: near or above 1
+    /// for balls that the resolution shows, and falling like sigma^3 for smaller ones. Trim and window are not in it.
+    pub fn overlap_left(&self, sigma: f64) -> f64 {
+        // Beyond this the transform is not tabulated, and the resolution shows all there is.
+        if sigma > self.cone.high {
+            return 1.0;
+        }
+        let waves = self.frequencies.iter().zip(&self.band_weights);
+        let sum: f64 = waves
+            .map(|(&w, weight)| weight * self.transform.value(w * sigma)[0])
+            .sum();
+        sum * sigma.powi(3)
     }
 
     fn window(&self, distance: f64) -> f64 {
