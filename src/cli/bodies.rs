@@ -131,8 +131,8 @@ impl Bodies {
                     .remedy("leave them out: the balls of a molecule are its atoms"));
                 }
                 let [receptor, ligand] = inputs.as_ref();
-                let plan = search::plan(&receptor.molecule, &ligand.molecule, options)
-                    .map_err(refused)?;
+                let plan =
+                    search::plan(&receptor.molecule, &ligand.molecule, options).map_err(refused)?;
                 Ok(Planned {
                     plan,
                     points: molecule_points(&ligand.molecule),
@@ -142,10 +142,10 @@ impl Bodies {
             Self::Meshes(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 if options.core_weight != 1.0 {
-                    return Err(
-                        Failure::input("--core-weight weighs buried atoms, and meshes have none")
-                            .remedy("leave it out"),
-                    );
+                    return Err(Failure::input(
+                        "--core-weight weighs buried atoms, and meshes have none",
+                    )
+                    .remedy("leave it out"));
                 }
                 let sampling = MeshOptions {
                     per_axis: *options.sample_grid.get_or_insert(PER_AXIS),

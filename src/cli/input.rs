@@ -84,7 +84,9 @@ pub fn label(record: &InputRecord) -> String {
 fn stem(name: &str) -> &str {
     let lower = name.to_ascii_lowercase();
     let mut end = name.len();
-    for ending in [".gz", ".pdb", ".ent", ".cif", ".mmcif", ".stl", ".obj", ".ply", ".off"] {
+    for ending in [
+        ".gz", ".pdb", ".ent", ".cif", ".mmcif", ".stl", ".obj", ".ply", ".off",
+    ] {
         if let Some(rest) = lower
             .get(..end)
             .and_then(|lower| lower.strip_suffix(ending))

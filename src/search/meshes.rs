@@ -38,8 +38,8 @@ pub const RADIUS: f64 = 2.5 / 2.2;
 pub const RESOLUTION: f64 = 4.5 / 2.2;
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
-/// Widest cell of the lattice in offsets, under half the default resolution.
-const CELL: f64 = 0.9;
+/// Widest cell of the lattice in offsets: half the default resolution.
+const CELL: f64 = 0.5 * RESOLUTION;
 /// What plays the part of an Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Nodes along each edge of a part's grid by default: m = 2^18.
@@ -148,7 +148,9 @@ impl MeshSceneError {
                 "check that the mesh is closed and one solid, or sample it on a finer --grid"
             }
             Self::Knots(_) => "check the mesh, or sample it on a finer --grid",
-            Self::Size { .. } => "scale both meshes alike, into a unit in which they are about 1 to 1000 across",
+            Self::Size { .. } => {
+                "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
+            }
             Self::Thin { .. } => {
                 "sample finer with --grid (2^21, say); where one part is much larger than the other, cut it down to what is near the joint"
             }

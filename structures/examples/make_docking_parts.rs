@@ -28,7 +28,12 @@ fn main() -> std::io::Result<()> {
     std::fs::create_dir_all(&folder)?;
     // 115 degrees about (1, 2, 3), then away: the answer is the way back.
     let (half, length) = (115f64.to_radians() / 2.0, 14f64.sqrt());
-    let away = [half.cos(), half.sin() / length, 2.0 * half.sin() / length, 3.0 * half.sin() / length];
+    let away = [
+        half.cos(),
+        half.sin() / length,
+        2.0 * half.sin() / length,
+        3.0 * half.sin() / length,
+    ];
     let back = [away[0], -away[1], -away[2], -away[3]];
     let shift = [2.0, -1.5, 0.7];
     let mut records = Vec::new();

@@ -5,7 +5,7 @@ use super::run::{Place, dock, rank_one};
 use super::scenes::{broken, error, peg, torus};
 use serde_json::Value;
 
-/// Docks a pair with the defaults but for the grid and the number of rotations, and holds rank 1 to the answer.
+/// Docks a pair with the defaults but for the numbers of rotations and poses, and holds rank 1 to the answer.
 fn put_together((pair, clearance): (Pair, f64)) {
     let place = Place::of(&pair);
     let run: Value = dock(
@@ -16,7 +16,11 @@ fn put_together((pair, clearance): (Pair, f64)) {
             "-o",
             "run",
             "--rotations",
-            "1800",
+            "1200",
+            "--poses",
+            "150",
+            "--refine",
+            "40",
             "--write-top",
             "1",
         ],
@@ -25,7 +29,10 @@ fn put_together((pair, clearance): (Pair, f64)) {
     // The clearance is what the sampling asks for: twice the sum of eps.
     let epsilon = |side: &str| run["inputs"][side]["sampling"]["epsilon"].as_f64().unwrap();
     let needed = 2.0 * (epsilon("receptor") + epsilon("ligand"));
-    assert!(clearance >= needed && clearance < 1.1 * needed, "{clearance} {needed}");
+    assert!(
+        clearance >= needed && clearance < 1.1 * needed,
+        "{clearance} {needed}"
+    );
     let step = run["plan"]["spacing"].as_f64().unwrap();
     let pose = rank_one(&place.path("run/poses.csv"));
     let (distance, degrees) = error(&pair, &pose);
@@ -37,7 +44,11 @@ fn put_together((pair, clearance): (Pair, f64)) {
         run["inputs"]["ligand"]["sampling"]["balls"],
         run["timing"]["wall_seconds"].as_f64().unwrap(),
     );
-    assert!(distance <= step && degrees <= 5.0, "{}: {distance} {degrees}", pair.name);
+    assert!(
+        distance <= step && degrees <= 5.0,
+        "{}: {distance} {degrees}",
+        pair.name
+    );
 }
 
 #[test]

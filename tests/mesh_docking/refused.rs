@@ -38,7 +38,10 @@ fn a_mesh_does_not_dock_with_a_molecule() {
         says(&error, "molecule");
         of_file(&error, ".stl");
     }
-    says(&refused(&place, &["receptor.stl:A", "ligand.stl"]), "chains");
+    says(
+        &refused(&place, &["receptor.stl:A", "ligand.stl"]),
+        "chains",
+    );
     let native = ["receptor.stl", "ligand.stl", "--native", "one.pdb"];
     says(&refused(&place, &native), "known complex");
 }
@@ -47,9 +50,16 @@ fn a_mesh_does_not_dock_with_a_molecule() {
 fn meshes_that_bound_no_solid_are_refused_with_their_file() {
     let place = Place::of(&broken_block(0.05));
     place.write("empty.stl", "solid nothing\nendsolid nothing\n");
-    place.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+    place.write(
+        "flat.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n",
+    );
     place.write("broken.obj", "v 0 0 0\nv 1 0 zero\nf 1 2 3\n");
-    for (name, word) in [("empty.stl", "triangles"), ("flat.obj", "flat"), ("none.ply", "no such")] {
+    for (name, word) in [
+        ("empty.stl", "triangles"),
+        ("flat.obj", "flat"),
+        ("none.ply", "no such"),
+    ] {
         let error = refused(&place, &["receptor.stl", name]);
         says(&error, word);
         of_file(&error, name);
@@ -96,7 +106,10 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
     }
     let molecules = ["one.pdb", "one.pdb"];
     for more in [["--sample-grid", "2^15"], ["--sample-weights", "unit"]] {
-        says(&refused(&place, &[&molecules[..], &more].concat()), "meshes");
+        says(
+            &refused(&place, &[&molecules[..], &more].concat()),
+            "meshes",
+        );
     }
     let evaluated = place.command(&["inspect", "ligand.stl"]).output().unwrap();
     assert_eq!(evaluated.status.code(), Some(2));

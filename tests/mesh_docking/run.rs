@@ -134,7 +134,8 @@ fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
     let (header, plain) = table(&place.path("plain/poses.csv"));
     for (factor, name) in [(1024.0, "large"), (1.0 / 1024.0 / 1024.0, "small")] {
         for part in ["receptor", "ligand"] {
-            let (mesh, _) = knotdock_structures::mesh::read(&place.path(&format!("{part}.stl"))).unwrap();
+            let (mesh, _) =
+                knotdock_structures::mesh::read(&place.path(&format!("{part}.stl"))).unwrap();
             let mut text = String::new();
             for position in mesh.positions() {
                 let [x, y, z] = position.map(|value| factor * value);
@@ -180,17 +181,28 @@ fn assemblies_hold_both_parts() {
     assert!(report.is_sound() && report.parts == 2);
     let (receptor, _) = knotdock_structures::mesh::read(&place.path("receptor.stl")).unwrap();
     let (ligand, _) = knotdock_structures::mesh::read(&place.path("ligand.stl")).unwrap();
-    assert_eq!(both.triangles().len(), receptor.triangles().len() + ligand.triangles().len());
+    assert_eq!(
+        both.triangles().len(),
+        receptor.triangles().len() + ligand.triangles().len()
+    );
     assert!((both.volume() - receptor.volume() - ligand.volume()).abs() < 1e-9);
     let pose = rank_one(&place.path("run/poses.csv"));
     for &position in ligand.positions() {
         let image = pose.apply(position);
-        let near = both.positions().iter().any(|other| {
-            (0..3).all(|axis| (other[axis] - image[axis]).abs() < 1e-12)
-        });
+        let near = both
+            .positions()
+            .iter()
+            .any(|other| (0..3).all(|axis| (other[axis] - image[axis]).abs() < 1e-12));
         assert!(near, "{image:?}");
     }
-    let more = place.command(&["complex", "run", "--rank", "2", "-o", "more"]).output().unwrap();
-    assert!(more.status.success(), "{}", String::from_utf8_lossy(&more.stderr));
+    let more = place
+        .command(&["complex", "run", "--rank", "2", "-o", "more"])
+        .output()
+        .unwrap();
+    assert!(
+        more.status.success(),
+        "{}",
+        String::from_utf8_lossy(&more.stderr)
+    );
     assert!(place.path("more/rank_0002.obj").is_file());
 }

@@ -6,26 +6,46 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::{Solid, from_triangles};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A pair with a clearance of 2 (`eps_A` + `eps_B`) and 1% more for the default grid, whose eps is sqrt(3) / 2 of its spacing; `lengths` are
-/// bounds on the longest edges of its two parts.
-fn with_least_clearance(pair: fn(f64) -> Pair, lengths: [f64; 2]) -> (Pair, f64) {
-    let clearance = 1.01 * 3f64.sqrt() * (lengths[0] + lengths[1]) / (PER_AXIS - 1) as f64;
+/// A pair with a clearance of 2 (`eps_A` + `eps_B`) and 1% more for the default grid, whose eps is sqrt(3) / 2 of its spacing. The grid is that of
+/// the bounding box as the part comes, so the ligand is measured [`away`].
+fn with_least_clearance(pair: fn(f64) -> Pair) -> (Pair, f64) {
+    let extent = |points: &mut dyn Iterator<Item = [f64; 3]>| -> f64 {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for point in points {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        (0..3)
+            .map(|axis| high[axis] - low[axis])
+            .fold(0.0, f64::max)
+    };
+    // Parts hardly change with the clearance.
+    let close = pair(0.055);
+    let turned = close
+        .ligand
+        .positions
+        .iter()
+        .map(|&point| away().apply(point));
+    let lengths = extent(&mut close.receptor.positions.iter().copied()) + extent(&mut { turned });
+    let clearance = 1.01 * 3f64.sqrt() * lengths / (PER_AXIS - 1) as f64;
     (pair(clearance), clearance)
 }
 
 /// The peg and its hole, and their clearance.
 pub fn peg() -> (Pair, f64) {
-    with_least_clearance(peg_and_hole, [1.0, 0.72])
+    with_least_clearance(peg_and_hole)
 }
 
 /// The halves of the torus, and their clearance.
 pub fn torus() -> (Pair, f64) {
-    with_least_clearance(linked_torus, [1.0, 1.0])
+    with_least_clearance(linked_torus)
 }
 
 /// The broken block, and its clearance.
 pub fn broken() -> (Pair, f64) {
-    with_least_clearance(broken_block, [1.0, 1.0])
+    with_least_clearance(broken_block)
 }
 
 pub fn solid(part: &Part) -> Solid {
