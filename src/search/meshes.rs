@@ -18,7 +18,7 @@
 //!
 //! Two flat faces a gap g apart score, per area, E(g) = pi times the integral from g on of K(d) d (d - g)^2, K the ranking kernel.
 //! With radii of [`RADIUS`], a resolution of [`RESOLUTION`] (both in units of r0) and lambda = 9, E is greatest at g = r0, is above half of that from
-//! 0.6 to 1.6 r0, and below zero under 0.4 r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
+//! 0.65 to 1.55 r0, and below zero under 0.3 r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
 
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
