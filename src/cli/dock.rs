@@ -80,6 +80,8 @@ const RECORDED: [&str; 28] = [
     "electrostatics_weight",
     "contact_weight",
     "contact_potential",
+    "fine_contact_weight",
+    "fine_contact_potential",
     "ph",
     "per_rotation",
     "poses",
@@ -244,6 +246,14 @@ fn told(outcome: &DockOutcome) -> String {
         "All together: rank {}, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error
     ));
+    let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
+    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
+    if let (true, Some(stage)) = (rescored, stage) {
+        lines.push(format!(
+            "Rescored by the fine contact potential in {:.2} s",
+            stage.wall_seconds
+        ));
+    }
     let error = outcome.error;
     lines.push(format!(
         "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",

@@ -6,7 +6,8 @@ use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
 use knotdock::search::options::{PASS_RATIO, REFINED_BY_SHAPE};
 use knotdock::search::{DockOptions, EffectChoice};
-use knotdock_scoring::effect::contact::Potential;
+use knotdock_scoring::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::rescoring::FinePotential;
 
 use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
@@ -93,6 +94,12 @@ pub struct KernelArguments {
     /// Contact potential to use in place of the program's own, as scripts/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     contact_potential: Option<PathBuf>,
+    /// Weight of the fine contact potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().fine_contact_weight, help_heading = SCORE)]
+    fine_contact_weight: f64,
+    /// Fine contact potential to use in place of the program's own, as scripts/contact_potential.py --fine writes it.
+    #[arg(long, value_name = "CSV", help_heading = SCORE)]
+    fine_contact_potential: Option<PathBuf>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -134,15 +141,25 @@ impl KernelArguments {
     /// The options with everything else at its default.
     ///
     /// # Errors
-    /// [`Failure`] when the contact potential cannot be read.
+    /// [`Failure`] when a contact potential cannot be read.
     pub fn options(&self) -> Result<DockOptions, Failure> {
         let contact_potential = match &self.contact_potential {
-            Some(path) => Some(read_potential(path)?),
+            Some(path) => Some(read_potential(path, "contact-potential", Potential::parse)?),
+            None => None,
+        };
+        let fine_contact_potential = match &self.fine_contact_potential {
+            Some(path) => Some(read_potential(
+                path,
+                "fine-contact-potential",
+                FinePotential::parse,
+            )?),
             None => None,
         };
         let default = DockOptions::default();
         Ok(DockOptions {
             contact_potential,
+            fine_contact_weight: self.fine_contact_weight,
+            fine_contact_potential,
             resolution: self.resolution.unwrap_or(default.resolution),
             pass_length: self.pass_length,
             spacing: self.spacing,
@@ -203,12 +220,16 @@ fn sample_weights(text: &str) -> Result<SampleWeights, String> {
     }
 }
 
-fn read_potential(path: &Path) -> Result<Potential, Failure> {
+fn read_potential<P>(
+    path: &Path,
+    option: &str,
+    parse: fn(&str) -> Result<P, PotentialError>,
+) -> Result<P, Failure> {
     let remedy =
-        "give a table as scripts/contact_potential.py writes it, or leave --contact-potential out";
+        format!("give a table as scripts/contact_potential.py writes it, or leave --{option} out");
     let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::input(&error).at(path).remedy(remedy))?;
-    Potential::parse(&text).map_err(|error| {
+        .map_err(|error| Failure::input(&error).at(path).remedy(&remedy))?;
+    parse(&text).map_err(|error| {
         Failure::input(&error)
             .at(path)
             .on_line(Some(error.line as u64))

@@ -3,6 +3,7 @@
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
+use knotdock_scoring::rescoring::FineContacts;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use serde::{Deserialize, Serialize};
@@ -254,6 +255,26 @@ impl Scene {
             labels: [LabelReport::default(), LabelReport::default()],
         })
     }
+
+    /// What poses are rescored with; `None` where the contact effect is off or its fine weight is 0.
+    pub fn fine_contacts(&self, options: &DockOptions) -> Option<FineContacts> {
+        fine_contacts(&self.decisions, &self.receptor, &self.ligand, options)
+    }
+}
+
+/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or the weight is 0.
+pub(super) fn fine_contacts(
+    decisions: &[Decision],
+    receptor: &Knots,
+    ligand: &Knots,
+    options: &DockOptions,
+) -> Option<FineContacts> {
+    let weight = options.fine_contact_weight;
+    let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
+    (decisions.iter().any(contact) && weight > 0.0).then(|| {
+        let potential = options.fine_contact_potential.clone().unwrap_or_default();
+        FineContacts::new(receptor, ligand, &potential, weight)
+    })
 }
 
 /// Points a sphere at which atoms are asked whether water reaches them.

@@ -6,6 +6,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::rescoring::FinePotential;
 use knotdock_structures::knots::KnotsError;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,10 @@ pub struct DockOptions {
     pub contact_weight: f64,
     /// The contact potential; `None`: the one that the program carries.
     pub contact_potential: Option<Potential>,
+    /// Weight of the fine contact potential, by which poses are rescored where the contact effect is on: score per RT; 0: no rescoring.
+    pub fine_contact_weight: f64,
+    /// The fine contact potential; `None`: the one that the program carries.
+    pub fine_contact_potential: Option<FinePotential>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -86,6 +91,8 @@ impl Default for DockOptions {
             electrostatics_weight: 24.0,
             contact_weight: 2.0,
             contact_potential: None,
+            fine_contact_weight: 2.0,
+            fine_contact_potential: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -122,6 +129,7 @@ impl DockOptions {
             ("core-weight", self.core_weight, 1e3),
             ("electrostatics-weight", self.electrostatics_weight, 1e6),
             ("contact-weight", self.contact_weight, 1e6),
+            ("fine-contact-weight", self.fine_contact_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

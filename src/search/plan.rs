@@ -1,11 +1,12 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::effects::{Decision, LengthUnit, Scene};
+use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
 use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
 use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::rescoring::FineContacts;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
@@ -216,6 +217,11 @@ impl DockPlan {
         self.options
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
+    }
+
+    /// What poses are rescored with; `None` where the contact effect is off or the weight is 0.
+    pub(super) fn fine_contacts(&self) -> Option<FineContacts> {
+        fine_contacts(&self.decisions, &self.receptor, &self.ligand, &self.options)
     }
 
     /// Whether an effect is on.

@@ -5,7 +5,7 @@ use super::costs::costs;
 use super::options::SearchError;
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::plan::DockPlan;
-use super::ranking::{candidates, clusters_of, merge, printed, report};
+use super::ranking::{Judge, candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
 use super::scan::{Chosen, choose_rank, scan};
 use cpu_time::ProcessTime;
@@ -158,23 +158,33 @@ fn dock_in_pool(
     clock.lap("check");
 
     let on = Effect::ALL.map(|effect| plan.is_on(effect));
-    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid);
+    let rescorer = plan.fine_contacts();
+    if rescorer.is_some() {
+        progress.stage("rescore", 1);
+    }
+    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid, rescorer.as_ref());
+    clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| f64::from(peak.score));
+    let judge = Judge {
+        scorer: &scorer,
+        rescorer: rescorer.as_ref(),
+        on,
+    };
     let ranking = report(
-        &scorer,
+        judge,
         &candidates,
         &clusters,
-        on,
         options.every_pose,
         2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
-    let best = ranking.poses.first().map_or(1.0, |row| row.score.abs());
+    let scores = ranking.poses.iter().map(|row| row.score.abs());
+    let best = scores.reduce(f64::max).unwrap_or(1.0);
     let error = MeasuredError::over(&peaks, &at_grid, best);
     clock.lap("score");
 
