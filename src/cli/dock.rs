@@ -61,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 28] = [
+const RECORDED: [&str; 30] = [
     "receptor",
     "ligand",
     "rotations",

@@ -37,7 +37,7 @@ fn put_together((pair, clearance): (Pair, f64)) {
     let pose = rank_one(&place.path("run/poses.csv"));
     let (distance, degrees) = error(&pair, &pose);
     println!(
-        "{}: rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and {degrees:.2} degrees; {} and {} balls, {:.1} s",
+        "{}: clearance {clearance:.4}; rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and {degrees:.2} degrees; {} and {} balls, {:.1} s",
         pair.name,
         distance / step,
         run["inputs"]["receptor"]["sampling"]["balls"],
