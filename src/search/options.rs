@@ -1,6 +1,7 @@
 //! What a docking run may be asked, and why it may refuse.
 
 use super::effects::EffectChoice;
+use super::meshes::SampleWeights;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
@@ -9,7 +10,7 @@ use knotdock_scoring::rescoring::FinePotential;
 use knotdock_structures::knots::KnotsError;
 use serde::{Deserialize, Serialize};
 
-/// Options of a docking run. Lengths in Å.
+/// Options of a docking run. Lengths in Å, or in the files' unit where meshes are docked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DockOptions {
     /// Number of rotations sampled.
@@ -30,6 +31,10 @@ pub struct DockOptions {
     pub core_weight: f64,
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
+    /// Nodes along each edge of the grids that meshes are sampled on; `None` for molecules.
+    pub sample_grid: Option<usize>,
+    /// Weights of a mesh's balls; `None` for molecules.
+    pub sample_weights: Option<SampleWeights>,
     /// Terms of the score.
     pub effects: EffectChoice,
     /// Weight of the electrostatic energy: score per kcal/mol.
@@ -50,7 +55,7 @@ pub struct DockOptions {
     pub poses: usize,
     /// Best poses that are refined off the grid; `None`: [`REFINED_BY_SHAPE`] where shape is the only effect, else none.
     pub refine: Option<usize>,
-    /// Radius of clusters, ligand CA RMSD.
+    /// Radius of clusters: RMSD of the ligand's CA atoms, or of a mesh's sample points.
     pub cluster_radius: f64,
     /// Whether every pose is a row, rather than one a cluster.
     pub every_pose: bool,
@@ -80,6 +85,8 @@ impl Default for DockOptions {
             alpha: 2.0,
             core_weight: 1.0,
             tolerance: 1e-2,
+            sample_grid: None,
+            sample_weights: None,
             effects: EffectChoice::Auto,
             electrostatics_weight: 24.0,
             contact_weight: 2.0,
@@ -205,7 +212,7 @@ pub enum SearchError {
         needed: u64,
         /// Bytes allowed.
         allowed: u64,
-        /// Grid spacing in Å that would fit, if any does.
+        /// Grid spacing that would fit, if any does.
         spacing: Option<f64>,
     },
     /// The threads could not be started.
@@ -231,7 +238,7 @@ impl SearchError {
             Self::Memory {
                 spacing: Some(spacing),
                 ..
-            } => format!("use --spacing {spacing:.2}, or allow more with --memory"),
+            } => format!("use --spacing {spacing}, or allow more with --memory"),
             Self::Memory { .. } => "allow more with --memory".to_owned(),
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
             Self::Effect { .. } => {

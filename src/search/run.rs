@@ -59,25 +59,26 @@ impl Clock {
     }
 }
 
-/// Docks as planned.
+/// Docks as planned. The RMSD of `points` of the ligand, in its own frame, makes clusters: [`molecule_points`] of a molecule, the centres of
+/// the balls of a mesh.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
 pub fn dock(
     plan: &DockPlan,
-    ligand: &Molecule,
+    points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(plan.in_flight)
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| dock_in_pool(plan, ligand, progress))
+    pool.install(|| dock_in_pool(plan, points, progress))
 }
 
 fn dock_in_pool(
     plan: &DockPlan,
-    ligand: &Molecule,
+    points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let options = &plan.options;
@@ -116,8 +117,7 @@ fn dock_in_pool(
         })
         .collect();
 
-    let points = cluster_points(ligand);
-    let body = RigidBody::new(&points);
+    let body = RigidBody::new(points);
     let refined_count = plan.refined().min(peaks.len());
     progress.stage("refine", refined_count as u64);
     let refined: Vec<(Pose, f64)> = if refined_count == 0 {
@@ -129,6 +129,7 @@ fn dock_in_pool(
             distance: 3.0 * plan.spacing,
             angle: plan.covering_radius_degrees.to_radians(),
             gyration: body.gyration(),
+            angstrom: plan.angstrom,
         };
         grid_poses[..refined_count]
             .par_iter()
@@ -199,8 +200,8 @@ fn dock_in_pool(
     })
 }
 
-/// Ligand points whose RMSD makes clusters: CA atoms, or all where fewer than three residues have one.
-fn cluster_points(ligand: &Molecule) -> Vec<[f64; 3]> {
+/// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.
+pub fn molecule_points(ligand: &Molecule) -> Vec<[f64; 3]> {
     let alphas: Vec<[f64; 3]> = ligand
         .atoms
         .iter()
