@@ -45,8 +45,8 @@ impl Complex {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let receptor = Input::recorded(&run.receptor, &run_path)?;
-        let ligand = Input::recorded(&run.ligand, &run_path)?;
+        let receptor = Input::recorded(&run.receptor, &run_path, &run.options.reading)?;
+        let ligand = Input::recorded(&run.ligand, &run_path, &run.options.reading)?;
         let folder = self.output.unwrap_or_else(|| self.run.join("top"));
         let written = write_complexes(&receptor.molecule, &ligand.molecule, &rows, &folder)?;
         let paths: Vec<String> = written

@@ -18,20 +18,24 @@ pub struct Input {
 
 impl Input {
     /// Reads `FILE` or `FILE:H,L`.
-    pub fn read(text: &str) -> Result<Self, Failure> {
-        Self::of(&InputSpec::parse(text)?)
+    pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Failure> {
+        Self::of(&InputSpec::parse(text)?, options)
     }
 
     /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
     /// above which inputs are looked for that are no longer where they were.
-    pub fn recorded(record: &InputRecord, run: &Path) -> Result<Self, Failure> {
+    pub fn recorded(
+        record: &InputRecord,
+        run: &Path,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
         let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
-        Self::of(&record.locate(&folders)?.spec())
+        Self::of(&record.locate(&folders)?.spec(), options)
     }
 
-    fn of(spec: &InputSpec) -> Result<Self, Failure> {
+    fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
         Ok(Self {
-            molecule: read(spec, &ReadOptions::default())?,
+            molecule: read(spec, options)?,
             record: InputRecord::new(spec)?,
         })
     }

@@ -12,6 +12,7 @@ mod inspect;
 mod memory;
 mod native;
 mod ranks;
+mod reading_arguments;
 mod request;
 mod sample;
 mod score;

@@ -41,8 +41,8 @@ impl Request {
             ));
         }
         Ok(Self {
-            receptor: Input::recorded(&run.receptor, path)?,
-            ligand: Input::recorded(&run.ligand, path)?,
+            receptor: Input::recorded(&run.receptor, path, &run.options.reading)?,
+            ligand: Input::recorded(&run.ligand, path, &run.options.reading)?,
             native: run
                 .native
                 .as_ref()

@@ -10,6 +10,7 @@
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
+pub mod atom_table;
 pub mod balls;
 pub mod complexes;
 pub mod input_record;
