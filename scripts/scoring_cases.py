@@ -3,8 +3,8 @@
 
     python3 scripts/scoring_cases.py tests/scoring_table
 
-Writes cases/NAME_receptor.pdb and cases/NAME_ligand.pdb, and the rows of poses.csv that belong to them (a fixed sequence of pseudo-
-random moves; rows of other cases stay). The cases look like molecules as far as a score goes and are none: names, radii and
+Writes cases/NAME_receptor.pdb and cases/NAME_ligand.pdb, and poses.csv: a fixed sequence of
+pseudo-random moves of each case, and of the example pair about its native pose. The cases look like molecules as far as a score goes and are none: names, radii and
 charges are real, geometry is rough. Run it only to add or change a case; then bless the tables as tests/scoring_table.rs says.
 """
 
@@ -100,13 +100,41 @@ def write(path, atoms):
         file.write("END\n")
 
 
+class Random:
+    """Knuth's 64-bit linear congruential numbers, 0 to 1."""
+
+    def __init__(self, seed):
+        self.state = seed
+
+    def __call__(self):
+        self.state = (6364136223846793005 * self.state + 1442695040888963407) % 2**64
+        return (self.state >> 11) / 2**53
+
+
+def near(ligand, seed):
+    """A real ligand as it stands, and ten poses about that: turned by up to 40 degrees about its middle, moved by up to 3 Å."""
+    lines = [line for line in open(ligand) if line.startswith("ATOM")]
+    middle = [sum(float(line[a : a + 8]) for line in lines) / len(lines) for a in (30, 38, 46)]
+    random = Random(seed)
+    rows = [(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)]
+    for _ in range(10):
+        axis = [2 * random() - 1 for _ in range(3)]
+        length = math.sqrt(sum(x * x for x in axis))
+        half = math.radians(20) * random()
+        w, x, y, z = math.cos(half), *(math.sin(half) * a / length for a in axis)
+        rotation = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+        turned = [sum(r * m for r, m in zip(row, middle)) for row in rotation]
+        rows.append((w, x, y, z, *(m - t + 6 * random() - 3 for m, t in zip(middle, turned))))
+    return rows
+
+
 def poses(name, distance, seed):
     """The ligand beside the receptor, eight moves about `distance` Å away, one on top and one far away."""
-    state = seed
-    def random():
-        nonlocal state
-        state = (6364136223846793005 * state + 1442695040888963407) % 2**64
-        return (state >> 11) / 2**53
+    random = Random(seed)
     rows = [FIRST.get(name, (1.0, 0.0, 0.0, 0.0, distance, 0.0, 0.0))]
     for _ in range(8):
         quaternion = [2 * random() - 1 for _ in range(4)]
@@ -122,15 +150,13 @@ def main():
     folder = Path(sys.argv[1])
     (folder / "cases").mkdir(parents=True, exist_ok=True)
     table = folder / "poses.csv"
-    others = []
-    if table.exists():
-        with open(table, newline="") as file:
-            others = [row for row in csv.DictReader(file) if row["case"] not in CASES]
     columns = ["case", "pose", "qw", "qx", "qy", "qz", "tx", "ty", "tz"]
     with open(table, "w", newline="") as file:
-        rows = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
+        rows = csv.DictWriter(file, columns, lineterminator="\n")
         rows.writeheader()
-        rows.writerows(others)
+        example = near(Path(__file__).parent / "../structures/examples/1ppe_ligand_unbound.pdb", 11)
+        for number, pose in enumerate(example, 1):
+            rows.writerow(dict(zip(columns, ["example", number, *(f"{x:.6f}" for x in pose)])))
         for seed, (name, (receptor, ligand, distance)) in enumerate(CASES.items(), 1):
             write(folder / "cases" / f"{name}_receptor.pdb", receptor)
             write(folder / "cases" / f"{name}_ligand.pdb", ligand)
