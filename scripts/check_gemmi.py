@@ -143,7 +143,7 @@ def kept_by_rule(rows, additive_names):
     return [row for row in rows if not row.altloc or chosen[row.place] == row.altloc]
 
 
-def compare(rows, is_pdb, table, additive_names):
+def compare(rows, is_pdb, table, additive_names, defaults_filled):
     """What differs, as lines of text by kind."""
     differences = collections.defaultdict(list)
     number = lambda text: float(text) if text else 0.0
@@ -169,8 +169,12 @@ def compare(rows, is_pdb, table, additive_names):
             differences["kept"].append(f"line {found[0]['line']}: kept {kept}, by the rules {by_rule.get(key, 0)}; dropped as '{found[0]['dropped']}' {key}")
     # Gemmi keeps these two in single precision.
     near = lambda text, value: abs(number(text) - value) <= 1e-5 * max(1.0, abs(value))
+    # What is blank or missing is 1 and 0 here, 0 or 1 and 0 or 20 there.
+    blank = lambda text, here, there: defaults_filled and number(text) == here and there in (0, 1, 20)
+    near_occupancy = lambda text, value: near(text, value) or blank(text, 1, value)
+    near_b_factor = lambda text, value: near(text, value) or blank(text, 0, value)
     for row in rows:
-        if not any(near(found["occupancy"], row.occupancy) and near(found["b_factor"], row.b_factor) for found in our_keys[row.key]):
+        if not any(near_occupancy(found["occupancy"], row.occupancy) and near_b_factor(found["b_factor"], row.b_factor) for found in our_keys[row.key]):
             found = our_keys[row.key][0]
             differences["occupancy or B"].append(f"line {found['line']}: {found['occupancy']} {found['b_factor']}, gemmi {row.occupancy} {row.b_factor}")
     elements = {row.key: row.element for row in rows}
@@ -222,7 +226,7 @@ def main():
                     counts["both keep nothing"] += 1
                     continue
             else:
-                differences = compare(rows, is_pdb, table, names)
+                differences = compare(rows, is_pdb, table, names, told["input"]["report"]["altered"]["defaults_filled"])
             atoms += len(rows)
             if not differences:
                 counts["the same"] += 1

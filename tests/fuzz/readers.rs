@@ -114,12 +114,12 @@ fn molecule(path: &Path, index: u64) -> bool {
             Waters::Keep
         },
         hetatm: [Hetatm::NoAdditives, Hetatm::Keep, Hetatm::Drop][(index / 2 % 3) as usize],
-        hydrogens: if index / 6 & 1 == 0 {
+        hydrogens: if (index / 6) & 1 == 0 {
             Hydrogens::Drop
         } else {
             Hydrogens::Keep
         },
-        altloc: if index / 12 & 1 == 0 {
+        altloc: if (index / 12) & 1 == 0 {
             AlternateLocation::Occupancy
         } else {
             AlternateLocation::Named('B')
@@ -135,7 +135,7 @@ fn molecule(path: &Path, index: u64) -> bool {
             let labels = molecule.labels(7.0);
             assert_eq!(labels.charges.len(), molecule.atoms.len());
             // What is slow is asked of a few.
-            if index % 16 == 0 {
+            if index.is_multiple_of(16) {
                 let _ = union_volume(&knots);
                 let areas = molecule.accessible_areas(8);
                 assert_eq!(areas.len(), molecule.atoms.len());
@@ -161,12 +161,12 @@ fn molecule(path: &Path, index: u64) -> bool {
 fn mesh(bytes: &[u8], format: MeshFormat) -> bool {
     match parse(bytes, format) {
         Ok((mesh, _)) => {
-            assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
-            let corners = mesh.triangles.iter().flatten();
+            assert!(mesh.positions().iter().flatten().all(|x| x.is_finite()));
+            let corners = mesh.triangles().iter().flatten();
             assert!(
                 corners
                     .copied()
-                    .all(|index| (index as usize) < mesh.positions.len())
+                    .all(|index| (index as usize) < mesh.positions().len())
             );
             true
         }
