@@ -2,5 +2,6 @@
 
 pub mod evaluate;
 pub mod output;
+pub mod pose_geometry;
 pub mod score;
 pub mod search;

@@ -136,6 +136,42 @@ fn what_is_not_a_structure() {
 }
 
 #[test]
+fn a_model_that_is_not_there_and_nothing_left() {
+    let place = Place::new();
+    let model = |number: usize| {
+        let atoms = molecules::receptor().replace("END\n", "");
+        format!("MODEL     {number:>4}\n{atoms}ENDMDL\n")
+    };
+    place.write("models.pdb", &(model(1) + &model(2)));
+    for command in ["dock", "score"] {
+        let error = place.refused(
+            &[
+                command,
+                "models.pdb",
+                "ligand.pdb",
+                "--model",
+                "3",
+                "--pose=1,0,0,0,0,0,0",
+            ][..if command == "dock" { 5 } else { 6 }],
+        );
+        says(&error, "no model 3; the file has 2");
+        assert_eq!(error["file"], "models.pdb");
+    }
+    place.write(
+        "hetero.pdb",
+        "HETATM    1 ZN    ZN A   1       0.000   0.000   0.000  1.00 10.00          ZN\nEND\n",
+    );
+    says(
+        &place.refused(&["inspect", "hetero.pdb", "--hetatm", "drop"]),
+        "no atom is left",
+    );
+    let error = place.refused(&["inspect", "receptor.pdb", "--atoms", "nowhere/atoms.csv"]);
+    says(&error, "cannot write");
+    // What the run recorded does not go with --from.
+    place.refused(&["dock", "--from", "run.json", "--waters", "keep"]);
+}
+
+#[test]
 fn a_directory_that_cannot_be_written_to() {
     let place = Place::new();
     // A file in the way stops even root, whom permissions do not.
@@ -156,6 +192,11 @@ fn options_out_of_range() {
         ["--offset", "nan"],
         ["--effects", "gravity"],
         ["--ph", "15"],
+        ["--waters", "some"],
+        ["--hetatm", "no"],
+        ["--hydrogens", "no-additives"],
+        ["--altloc", "AB"],
+        ["--model", "0"],
         ["--contact-weight", "-1"],
         ["--contact-potential", "receptor.pdb"],
         ["--contact-potential", "nowhere.csv"],

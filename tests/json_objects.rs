@@ -220,7 +220,16 @@ fn inspect_tells_what_was_read_and_assumed() {
     let folder = place();
     let output = run(folder.path(), "inspect receptor.pdb:A --json");
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(keys(&object), ["accessible_area", "input", "labels"]);
+    assert_eq!(
+        keys(&object),
+        [
+            "accessible_area",
+            "input",
+            "labels",
+            "volume",
+            "volume_error"
+        ]
+    );
     assert_eq!(object["input"]["chains"], serde_json::json!(["A"]));
     // A helix of sixteen alanines: its two ends cancel.
     assert_eq!(object["input"]["atoms"], 80);
@@ -228,4 +237,111 @@ fn inspect_tells_what_was_read_and_assumed() {
     assert_eq!(object["labels"]["termini"], serde_json::json!([1, 1]));
     assert_eq!(object["labels"]["typed_atoms"], 80);
     assert!(object["accessible_area"].as_f64().unwrap() > 1000.0);
+    let volume = object["volume"].as_f64().unwrap();
+    // Eighty atoms of 1.42 to 1.88 Å that overlap their neighbours.
+    assert!((800.0..1600.0).contains(&volume), "{volume}");
+    assert!(object["volume_error"].as_f64().unwrap() < 1e-3 * volume);
+}
+
+#[test]
+fn inspect_lists_every_atom_with_what_became_of_it() {
+    let folder = place();
+    let water = "HETATM  900  O   HOH A 900       0.000   0.000   0.000  1.00 10.00           O\n";
+    fs::write(
+        folder.path().join("wet.pdb"),
+        molecules::ligand().replace("END\n", water),
+    )
+    .unwrap();
+    for (option, kept, radius, dropped) in
+        [("", 60, "", "water"), ("--waters keep", 61, "1.46", "")]
+    {
+        let told = object(&run(
+            folder.path(),
+            &format!("inspect wet.pdb --atoms atoms.csv --json {option}"),
+        ));
+        assert_eq!(told["input"]["atoms"], kept);
+        let table = fs::read_to_string(folder.path().join("atoms.csv")).unwrap();
+        assert_eq!(table.lines().count(), 62);
+        assert!(
+            table.starts_with(
+                "line,record,atom,altloc,residue,chain,number,insertion,element,x,y,z,"
+            )
+        );
+        let last = table.lines().last().unwrap();
+        assert_eq!(
+            last,
+            format!("61,HETATM,O,,HOH,A,900,,O,0,0,0,1,10,{radius},{dropped}")
+        );
+    }
+}
+
+/// A run reads as it was told, records it, and --from, complex and evaluate read alike.
+#[test]
+fn reading_options_are_recorded_and_followed() {
+    let folder = place();
+    let models = format!(
+        "MODEL        1\n{}ENDMDL\nMODEL        2\n{}ENDMDL\n",
+        molecules::ligand().replace("END\n", ""),
+        molecules::ligand()
+            .replace("END\n", "")
+            .replace("  12    ", "  13    ")
+    );
+    fs::write(folder.path().join("models.pdb"), models).unwrap();
+    run(
+        folder.path(),
+        "dock receptor.pdb models.pdb --model 2 --waters keep --altloc A --rotations 20 --write-top 1 --native native.pdb -o run --quiet",
+    );
+    let recorded = |name: &str| -> Value {
+        serde_json::from_slice(&fs::read(folder.path().join(name).join("run.json")).unwrap())
+            .unwrap()
+    };
+    let first = recorded("run");
+    for (name, value) in [
+        ("model", serde_json::json!(2)),
+        ("waters", "keep".into()),
+        ("hetatm", "no-additives".into()),
+        ("hydrogens", "drop".into()),
+        ("altloc", "A".into()),
+    ] {
+        assert_eq!(first["options"][name], value, "{name}");
+    }
+    run(folder.path(), "dock --from run/run.json -o again --quiet");
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
+    assert_eq!(recorded("again")["options"], first["options"]);
+    run(folder.path(), "complex run --rank 1 -o out --quiet");
+    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    let placed = String::from_utf8(bytes("out/rank_0001.pdb")).unwrap();
+    assert!(
+        placed.lines().any(|line| line.get(22..26) == Some("  13")),
+        "the second model is the one placed"
+    );
+    run(folder.path(), "evaluate run --native native.pdb --quiet");
+}
+
+#[test]
+fn score_tells_the_geometry_of_the_pose() {
+    let folder = place();
+    let told = object(&run(
+        folder.path(),
+        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --json",
+    ));
+    let geometry = |name: &str| told["geometry"][name].as_f64().unwrap();
+    let sides = geometry("buried_area_receptor") + geometry("buried_area_ligand");
+    assert!((geometry("buried_area") - sides).abs() < 1e-9 && sides > 200.0);
+    assert!(geometry("volume_shared") < 0.2 * geometry("volume_ligand"));
+    let protrusion = 1.0 - geometry("volume_shared") / geometry("volume_ligand");
+    assert!((geometry("protrusion") - protrusion).abs() < 1e-9);
+    // On top of itself a molecule overlaps wholly.
+    let same = object(&run(
+        folder.path(),
+        "score ligand.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --json",
+    ));
+    assert!((same["geometry"]["shape_tanimoto"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    let far = object(&run(
+        folder.path(),
+        "score receptor.pdb ligand.pdb --pose 1,0,0,0,900,0,0 --json",
+    ));
+    assert_eq!(far["geometry"]["volume_shared"], 0.0);
+    assert_eq!(far["geometry"]["buried_area"], 0.0);
 }

@@ -13,7 +13,7 @@ use knotdock::search::meshes::{
 use knotdock::search::{
     self, DockOptions, DockPlan, Scene, SearchError, molecule_points, plan_scene,
 };
-use knotdock_structures::molecule::{ChainMap, InputSpec};
+use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
 use super::failure::Failure;
@@ -51,26 +51,36 @@ const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 
 impl Bodies {
     /// Reads two bodies of one kind as the command line names them.
-    pub fn read(receptor: &str, ligand: &str) -> Result<Self, Failure> {
-        Self::of([InputSpec::parse(receptor)?, InputSpec::parse(ligand)?])
+    pub fn read(receptor: &str, ligand: &str, reading: &ReadOptions) -> Result<Self, Failure> {
+        Self::of(
+            [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
+            reading,
+        )
     }
 
     /// Reads what a run recorded; see [`Input::recorded`].
-    pub fn recorded(records: [&InputRecord; 2], run: &Path) -> Result<Self, Failure> {
+    pub fn recorded(
+        records: [&InputRecord; 2],
+        run: &Path,
+        reading: &ReadOptions,
+    ) -> Result<Self, Failure> {
         let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
         let [receptor, ligand] = records;
-        Self::of([
-            receptor.locate(&folders)?.spec(),
-            ligand.locate(&folders)?.spec(),
-        ])
+        Self::of(
+            [
+                receptor.locate(&folders)?.spec(),
+                ligand.locate(&folders)?.spec(),
+            ],
+            reading,
+        )
     }
 
-    fn of(specs: [InputSpec; 2]) -> Result<Self, Failure> {
+    fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
         match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
             [false, false] => Ok(Self::Molecules(Box::new([
-                Input::of(receptor)?,
-                Input::of(ligand)?,
+                Input::of(receptor, reading)?,
+                Input::of(ligand, reading)?,
             ]))),
             [true, true] => Ok(Self::Meshes(Box::new([
                 MeshInput::read(receptor)?,

@@ -44,7 +44,11 @@ impl Complex {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path)?;
+        let bodies = Bodies::recorded(
+            [&run.receptor, &run.ligand],
+            &run_path,
+            &run.options.reading,
+        )?;
         let folder = self.output.unwrap_or_else(|| self.run.join("top"));
         let written = bodies.write(&rows, &folder)?;
         let paths: Vec<String> = written

@@ -20,6 +20,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::memory;
 use super::native::{NativeArguments, match_text, measure};
+use super::reading_arguments::ReadingArguments;
 use super::request::Request;
 use super::search_arguments::{RANKING, SearchArguments};
 
@@ -46,6 +47,8 @@ pub struct Dock {
     #[arg(long, value_name = "RUN.JSON", conflicts_with_all = RECORDED)]
     from: Option<PathBuf>,
     #[command(flatten)]
+    reading: ReadingArguments,
+    #[command(flatten)]
     search: SearchArguments,
     /// Complexes to write to top/.
     #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
@@ -61,9 +64,14 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 30] = [
+const RECORDED: [&str; 35] = [
     "receptor",
     "ligand",
+    "waters",
+    "hetatm",
+    "hydrogens",
+    "altloc",
+    "model",
     "rotations",
     "angle",
     "resolution",
@@ -102,10 +110,12 @@ impl Dock {
         let (Some(receptor), Some(ligand)) = (&self.receptor, &self.ligand) else {
             return Err(Failure::input("a receptor and a ligand are needed"));
         };
+        let reading = self.reading.options();
         Ok(Request {
-            bodies: Bodies::read(receptor, ligand)?,
+            bodies: Bodies::read(receptor, ligand, &reading)?,
             native: self.native.read()?,
             options: RunOptions {
+                reading,
                 dock: self.search.options()?,
                 write_top: self.write_top,
             },

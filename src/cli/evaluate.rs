@@ -13,6 +13,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
+use super::reading_arguments::ReadingArguments;
 
 /// Measure the poses of a run against a known complex.
 ///
@@ -22,12 +23,14 @@ pub struct Evaluate {
     /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz.
     #[arg(value_name = "DIR|POSES.CSV")]
     poses: PathBuf,
-    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json].
+    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json, and read as the run read it].
     #[arg(long, value_name = "FILE")]
     receptor: Option<String>,
     /// The ligand that was docked, likewise.
     #[arg(long, value_name = "FILE")]
     ligand: Option<String>,
+    #[command(flatten)]
+    reading: ReadingArguments,
     #[command(flatten)]
     native: NativeArguments,
     /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
@@ -81,15 +84,20 @@ impl Evaluate {
         let native = self.native.read()?;
         if let (Some(receptor), Some(ligand), Some(native)) = (&self.receptor, &self.ligand, native)
         {
-            return Ok((Input::read(receptor)?, Input::read(ligand)?, native));
+            let reading = self.reading.options();
+            return Ok((
+                Input::read(receptor, &reading)?,
+                Input::read(ligand, &reading)?,
+                native,
+            ));
         }
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";
         let run =
             RecordedRun::read(run_path).map_err(|error| Failure::from(error).remedy(needed))?;
         let part = |named: &Option<String>, record| match named {
-            Some(text) => Input::read(text),
-            None => Input::recorded(record, run_path),
+            Some(text) => Input::read(text, &self.reading.options()),
+            None => Input::recorded(record, run_path, &run.options.reading),
         };
         let native = match (self.native.read()?, &run.native) {
             (Some(native), _) => native,

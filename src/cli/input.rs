@@ -19,27 +19,31 @@ pub struct Input {
 
 impl Input {
     /// Reads `FILE` or `FILE:H,L`.
-    pub fn read(text: &str) -> Result<Self, Failure> {
+    pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Failure> {
         let spec = InputSpec::parse(text)?;
         if is_mesh(&spec.path) {
             return Err(Failure::input("this is a mesh, where a molecule is needed")
                 .at(&spec.path)
                 .remedy("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
         }
-        Self::of(&spec)
+        Self::of(&spec, options)
     }
 
     /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
     /// above which inputs are looked for that are no longer where they were.
-    pub fn recorded(record: &InputRecord, run: &Path) -> Result<Self, Failure> {
+    pub fn recorded(
+        record: &InputRecord,
+        run: &Path,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
         let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
-        Self::of(&record.locate(&folders)?.spec())
+        Self::of(&record.locate(&folders)?.spec(), options)
     }
 
     /// Reads what a specification names.
-    pub fn of(spec: &InputSpec) -> Result<Self, Failure> {
+    pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
         Ok(Self {
-            molecule: read(spec, &ReadOptions::default())?,
+            molecule: read(spec, options)?,
             record: InputRecord::new(spec)?,
         })
     }

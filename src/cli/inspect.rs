@@ -1,14 +1,19 @@
 //! `knotdock inspect`: what a structure file holds, what would be kept of it, and what would be assumed.
 
+use std::path::PathBuf;
+
 use clap::Args;
+use knotdock::output::atom_table;
 use knotdock::search::DockOptions;
-use knotdock_structures::molecule::LabelReport;
+use knotdock_structures::ball_union::{Volume, union_volume};
+use knotdock_structures::molecule::{InputSpec, LabelReport, read_listed};
 use serde_json::json;
 
 use super::arguments::not_negative;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
+use super::reading_arguments::ReadingArguments;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
 #[derive(Args, Debug)]
@@ -16,13 +21,18 @@ pub struct Inspect {
     /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
     #[arg(value_name = "FILE")]
     file: String,
+    /// Write every atom of the model to this CSV file, kept or dropped, with the reason.
+    #[arg(long, value_name = "FILE")]
+    atoms: Option<PathBuf>,
+    #[command(flatten)]
+    reading: ReadingArguments,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph)]
     ph: f64,
 }
 
-/// Points a sphere for the accessible area: about 1% of the total.
-const SURFACE_POINTS: usize = 200;
+/// Points a sphere for the accessible area: about 0.3% of the total.
+const SURFACE_POINTS: usize = 960;
 
 impl Inspect {
     /// Inspects.
@@ -33,26 +43,35 @@ impl Inspect {
                 self.ph
             )));
         }
-        let input = Input::read(&self.file)?;
+        let reading = self.reading.options();
+        let input = Input::read(&self.file, &reading)?;
         let molecule = &input.molecule;
         let labels = molecule.labels(self.ph).report;
         let area: f64 = molecule.accessible_areas(SURFACE_POINTS).iter().sum();
+        let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(&labels, self.ph, area)
+            told(&labels, self.ph, area, volume)
         ));
+        if let Some(path) = &self.atoms {
+            let (_, listed) = read_listed(&InputSpec::parse(&self.file)?, &reading)?;
+            atom_table::write(path, &listed)?;
+            console.say(format!("{} atoms in {}", listed.len(), path.display()));
+        }
         console.result(&json!({
             "input": input.entry()?,
             "labels": labels,
             "accessible_area": area,
+            "volume": volume.value,
+            "volume_error": volume.error,
         }));
         Ok(())
     }
 }
 
 /// The labels in words.
-fn told(labels: &LabelReport, ph: f64, area: f64) -> String {
+fn told(labels: &LabelReport, ph: f64, area: f64, volume: Volume) -> String {
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
             .iter()
@@ -70,7 +89,10 @@ fn told(labels: &LabelReport, ph: f64, area: f64) -> String {
             labels.gaps
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
-        format!("Solvent-accessible surface: {area:.0} Å²"),
+        format!(
+            "Solvent-accessible surface: {area:.0} Å²; volume of the atoms' balls: {:.1} ± {:.1} Å³",
+            volume.value, volume.error
+        ),
     ];
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(

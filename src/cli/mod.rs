@@ -14,6 +14,7 @@ mod memory;
 mod mesh_input;
 mod native;
 mod ranks;
+mod reading_arguments;
 mod request;
 mod sample;
 mod score;

@@ -6,7 +6,7 @@ use clap::Args;
 use knotdock::evaluate::{Evaluator, Native, PoseQuality};
 use knotdock::output::input_record::NativeRecord;
 use knotdock::output::poses::PoseRow;
-use knotdock_structures::molecule::Molecule;
+use knotdock_structures::molecule::{Molecule, ReadOptions};
 
 use super::failure::Failure;
 use super::input::Input;
@@ -43,13 +43,15 @@ pub enum NativeFiles {
 impl NativeArguments {
     /// Reads the files that are named, if any.
     pub fn read(&self) -> Result<Option<NativeFiles>, Failure> {
+        let by_default = ReadOptions::default();
         match (&self.native, &self.native_receptor, &self.native_ligand) {
-            (Some(complex), _, _) => {
-                Ok(Some(NativeFiles::Complex(Box::new(Input::read(complex)?))))
-            }
+            (Some(complex), _, _) => Ok(Some(NativeFiles::Complex(Box::new(Input::read(
+                complex,
+                &by_default,
+            )?)))),
             (None, Some(receptor), Some(ligand)) => Ok(Some(NativeFiles::Partners {
-                receptor: Box::new(Input::read(receptor)?),
-                ligand: Box::new(Input::read(ligand)?),
+                receptor: Box::new(Input::read(receptor, &by_default)?),
+                ligand: Box::new(Input::read(ligand, &by_default)?),
             })),
             _ => Ok(None),
         }
@@ -59,13 +61,14 @@ impl NativeArguments {
 impl NativeFiles {
     /// Reads the files that a run recorded.
     pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Failure> {
+        let by_default = ReadOptions::default();
         Ok(match record {
             NativeRecord::Complex(complex) => {
-                Self::Complex(Box::new(Input::recorded(complex, run)?))
+                Self::Complex(Box::new(Input::recorded(complex, run, &by_default)?))
             }
             NativeRecord::Partners { receptor, ligand } => Self::Partners {
-                receptor: Box::new(Input::recorded(receptor, run)?),
-                ligand: Box::new(Input::recorded(ligand, run)?),
+                receptor: Box::new(Input::recorded(receptor, run, &by_default)?),
+                ligand: Box::new(Input::recorded(ligand, run, &by_default)?),
             },
         })
     }

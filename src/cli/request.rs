@@ -44,7 +44,7 @@ impl Request {
             ));
         }
         Ok(Self {
-            bodies: Bodies::recorded([&run.receptor, &run.ligand], path)?,
+            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options.reading)?,
             native: run
                 .native
                 .as_ref()

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use knotdock::output::report;
+use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
 use knotdock::search::{Scene, SearchError};
 use knotdock_scoring::se3::Pose;
@@ -11,6 +12,7 @@ use super::arguments::at_least_one;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
+use super::reading_arguments::ReadingArguments;
 use super::search_arguments::KernelArguments;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
@@ -34,6 +36,8 @@ pub struct Score {
     /// Which modes come first.
     #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
     order: Order,
+    #[command(flatten)]
+    reading: ReadingArguments,
     #[command(flatten)]
     kernel: KernelArguments,
 }
@@ -62,9 +66,10 @@ impl Score {
                 Order::Magnitude => ModeOrder::Magnitude,
             },
         };
+        let reading = self.reading.options();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         let read = |text: &String, what: &str| -> Result<_, Failure> {
-            let input = Input::read(text)?;
+            let input = Input::read(text, &reading)?;
             console.say(format!("{what}: {}", input.molecule.report));
             Ok(input.molecule)
         };
@@ -77,7 +82,8 @@ impl Score {
             .fine_contacts(&dock)
             .map(|contacts| contacts.score(&pose));
         let rank_score = scored.exact + fine_contact.unwrap_or(0.0);
-        console.say(format!("\n{}", told(&scored)));
+        let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
+        console.say(format!("\n{}\n{}", told(&scored), told_geometry(&geometry)));
         if let Some(fine_contact) = fine_contact {
             console.say(format!(
                 "Fine contacts {fine_contact:.3}: `dock` ranks this pose by {rank_score:.3}"
@@ -90,6 +96,8 @@ impl Score {
         }
         let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
         if let Some(object) = object.as_object_mut() {
+            let geometry = serde_json::to_value(geometry).map_err(Failure::other)?;
+            object.insert("geometry".to_owned(), geometry);
             let [qw, qx, qy, qz] = pose.quaternion();
             let [tx, ty, tz]: [f64; 3] = pose.translation.into();
             object.insert(
@@ -135,6 +143,23 @@ fn pose(text: &str) -> Result<Pose, Failure> {
         ));
     }
     Ok(Pose::from_parts([qw, qx, qy, qz], [tx, ty, tz]))
+}
+
+/// What the pose is as two solids.
+fn told_geometry(geometry: &PoseGeometry) -> String {
+    format!(
+        "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} ± {:.1} Å³ of {:.0} and {:.0}: \
+         Tanimoto similarity {:.4}, {:.2}% of the smaller protrudes",
+        geometry.buried_area,
+        geometry.buried_area_receptor,
+        geometry.buried_area_ligand,
+        geometry.volume_shared,
+        geometry.volume_error,
+        geometry.volume_receptor,
+        geometry.volume_ligand,
+        geometry.shape_tanimoto,
+        100.0 * geometry.protrusion,
+    )
 }
 
 /// The report for a person.

@@ -11,6 +11,7 @@
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
 pub mod assemblies;
+pub mod atom_table;
 pub mod balls;
 pub mod complexes;
 pub mod input_record;

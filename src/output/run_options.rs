@@ -3,13 +3,16 @@
 use serde_json::{Map, Value};
 
 use crate::search::DockOptions;
+use knotdock_structures::molecule::ReadOptions;
 
 /// Options that change how a run is carried out and never what comes of it; they are recorded under `machine`.
 const MACHINE_OPTIONS: [&str; 2] = ["threads", "memory"];
 
-/// What a run was asked to do: the search's options and those of the output.
+/// What a run was asked to do: how to read, the search's options and those of the output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunOptions {
+    /// How the molecules are read.
+    pub reading: ReadOptions,
     /// Options of the search.
     pub dock: DockOptions,
     /// Number of complexes written to `top/`.
@@ -23,6 +26,7 @@ impl RunOptions {
         for name in MACHINE_OPTIONS {
             options.remove(name);
         }
+        options.extend(object(serde_json::to_value(&self.reading)?));
         options.insert("write_top".to_owned(), self.write_top.into());
         Ok(options)
     }
@@ -31,6 +35,9 @@ impl RunOptions {
     pub(super) fn from_record(record: &Map<String, Value>) -> Result<Self, String> {
         let mut dock = object(
             serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?,
+        );
+        let mut reading = object(
+            serde_json::to_value(ReadOptions::default()).map_err(|error| error.to_string())?,
         );
         let mut write_top = 0;
         for (name, value) in record {
@@ -44,10 +51,15 @@ impl RunOptions {
                 known if dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
                     dock.insert(name.clone(), value.clone());
                 }
+                known if reading.contains_key(known) => {
+                    reading.insert(name.clone(), value.clone());
+                }
                 _ => return Err(format!("option `{name}` is not known to this version")),
             }
         }
         Ok(Self {
+            reading: serde_json::from_value(Value::Object(reading))
+                .map_err(|error| error.to_string())?,
             dock: serde_json::from_value(Value::Object(dock)).map_err(|error| error.to_string())?,
             write_top,
         })
@@ -64,10 +76,17 @@ fn object(value: Value) -> Map<String, Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use knotdock_structures::molecule::{AlternateLocation, Hetatm};
 
     #[test]
     fn options_survive_the_record_and_those_of_the_machine_do_not() {
         let options = RunOptions {
+            reading: ReadOptions {
+                hetatm: Hetatm::Drop,
+                altloc: AlternateLocation::Named('B'),
+                model: 3,
+                ..ReadOptions::default()
+            },
             dock: DockOptions {
                 rotations: 17,
                 lambda: 0.1 + 0.2,

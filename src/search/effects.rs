@@ -111,7 +111,7 @@ pub struct Scene {
     pub labels: [LabelReport; 2],
 }
 
-/// Share of a molecule's atoms that must have contact types for the contact potential to speak for it.
+/// Share of a molecule's heavy atoms that must have contact types for the contact potential to speak for it.
 const TYPED_SHARE: f64 = 0.5;
 
 impl Scene {
@@ -303,17 +303,19 @@ fn lacking(
         Effect::Electrostatics if labels.charged_atoms == 0 => {
             Some(format!("no atom of the {side} carries a charge"))
         }
-        Effect::Contact
-            if (labels.typed_atoms as f64) < TYPED_SHARE * molecule.atoms.len() as f64
-                || labels.typed_atoms == 0 =>
-        {
-            Some(format!(
-                "only {} of the {side}'s {} atoms are of known contact types",
-                labels.typed_atoms,
-                molecule.atoms.len()
-            ))
+        Effect::Contact => {
+            // Hydrogens, where they are kept, have no types of their own.
+            let atoms = molecule.atoms.iter();
+            let atoms = atoms.filter(|atom| !atom.is_hydrogen()).count();
+            let too_few = (labels.typed_atoms as f64) < TYPED_SHARE * atoms as f64;
+            (too_few || labels.typed_atoms == 0).then(|| {
+                format!(
+                    "only {} of the {side}'s {atoms} atoms are of known contact types",
+                    labels.typed_atoms
+                )
+            })
         }
-        _ => None,
+        Effect::Shape | Effect::Electrostatics => None,
     }
 }
 

@@ -8,8 +8,9 @@
 //!
 //! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes
 //! PDB and mmCIF files, with the feature `mesh` (default) it reads meshes and samples solids by balls; without them only
-//! [`Knots`] remains, which is all that the scoring crate needs.
+//! [`Knots`] and the volumes of their balls remain.
 
+pub mod ball_union;
 pub mod knots;
 #[cfg(feature = "mesh")]
 pub mod mesh;

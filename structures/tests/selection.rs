@@ -134,6 +134,7 @@ fn a_kept_name_is_not_dropped() {
     std::fs::write(&path, Line::of("HETATM", " S  ", "SO4", 1, " S").text()).unwrap();
     let options = ReadOptions {
         keep: vec!["SO4".to_string()],
+        ..ReadOptions::default()
     };
     assert_eq!(
         read(&InputSpec::whole(&path), &options)

@@ -14,7 +14,9 @@ impl Molecule {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();
         let reach = 2.0 * grown.iter().copied().fold(0.0, f64::max);
-        let cell = |x: [f64; 3]| x.map(|x| (x / reach).floor() as i64);
+        // Within what has neighbours on both sides.
+        let last = (1i64 << 60) as f64;
+        let cell = |x: [f64; 3]| x.map(|x| (x / reach).floor().clamp(-last, last) as i64);
         let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
         for (index, atom) in self.atoms.iter().enumerate() {
             cells.entry(cell(atom.position)).or_default().push(index);

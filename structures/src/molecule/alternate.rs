@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::Atom;
+use super::policy::AlternateLocation;
 use super::report::{AlternateChoice, DropKind, ReadReport};
 
 /// What tells a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
@@ -13,9 +14,14 @@ fn position(atom: &Atom) -> Position<'_> {
     (&atom.chain, atom.residue_number, atom.insertion_code)
 }
 
-/// Keeps, in each residue, the atoms without an alternate location and those of one: the location of the highest occupancy
-/// summed over its atoms, the alphabetically first of equals.
-pub(super) fn choose(atoms: Vec<Atom>, report: &mut ReadReport) -> Vec<Atom> {
+/// Keeps, in each residue, the atoms without an alternate location and those of one: the one named by the policy where it is
+/// offered, otherwise the location of the highest occupancy summed over its atoms, the alphabetically first of equals.
+pub(super) fn choose(
+    atoms: Vec<Atom>,
+    policy: AlternateLocation,
+    report: &mut ReadReport,
+    dropped: &mut dyn FnMut(Atom, DropKind),
+) -> Vec<Atom> {
     let mut offers: HashMap<Position<'_>, BTreeMap<char, f64>> = HashMap::new();
     let mut order: Vec<Position<'_>> = Vec::new();
     for atom in &atoms {
@@ -38,7 +44,12 @@ pub(super) fn choose(atoms: Vec<Atom>, report: &mut ReadReport) -> Vec<Atom> {
         // Occupancies are decimals: sums of the same ones in another order may differ in the last bits, which is no
         // preference.
         let best = offered.values().copied().fold(f64::MIN, f64::max);
-        let Some((&location, _)) = offered.iter().find(|(_, sum)| **sum > best - 1e-6) else {
+        let by_occupancy = offered.iter().find(|(_, sum)| **sum > best - 1e-6);
+        let named = match policy {
+            AlternateLocation::Occupancy => None,
+            AlternateLocation::Named(name) => offered.get_key_value(&name),
+        };
+        let Some((&location, _)) = named.or(by_occupancy) else {
             continue;
         };
         chosen.insert(at, location);
@@ -64,6 +75,7 @@ pub(super) fn choose(atoms: Vec<Atom>, report: &mut ReadReport) -> Vec<Atom> {
             kept.push(atom);
         } else {
             report.drop_atoms(DropKind::AlternateLocation, &atom.residue_name, 1);
+            dropped(atom, DropKind::AlternateLocation);
         }
     }
     kept

@@ -128,8 +128,18 @@ pub enum ReadError {
         /// Author names of the chains in the file, in file order.
         present: Vec<String>,
     },
-    /// Every atom was dropped: hydrogens, waters and additives only.
-    #[error("no atom is left after hydrogens, waters and additives are dropped ({dropped} atoms)")]
+    /// A model was asked for that the file does not have.
+    #[error("there is no model {model}; the file has {models}")]
+    UnknownModel {
+        /// The path as given.
+        file: PathBuf,
+        /// The model asked for, from 1.
+        model: usize,
+        /// Number of models in the file.
+        models: usize,
+    },
+    /// Every atom was dropped: hydrogens, waters and additives only, or what the policies leave out besides.
+    #[error("no atom is left after what is not wanted is dropped ({dropped} atoms)")]
     EmptySelection {
         /// The path as given.
         file: PathBuf,
@@ -179,6 +189,7 @@ impl ReadError {
             | Self::MissingColumn { file, .. }
             | Self::UnknownElement { file, .. }
             | Self::UnknownChain { file, .. }
+            | Self::UnknownModel { file, .. }
             | Self::EmptySelection { file, .. }
             | Self::Parser { file, .. } => Some(file),
         }
@@ -232,8 +243,11 @@ impl ReadError {
             Self::UnknownChain { .. } => {
                 "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"
             }
+            Self::UnknownModel { .. } => {
+                "ask for one of the models that the file has; they count from 1 in the order of the file"
+            }
             Self::EmptySelection { .. } => {
-                "pick other chains, or keep residue names that are dropped as additives"
+                "pick other chains, or keep what is dropped: --hetatm keep, --waters keep"
             }
             Self::Parser { .. } => {
                 "please report this file: the sieve before the parser should have caught it"

@@ -5,13 +5,13 @@
 //! - Lengths are in Å, in the file's own frame.
 //! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and `pdbx_PDB_ins_code` in
 //!   mmCIF).
-//! - Hydrogens are never kept: radii are united-atom radii, which stand for them.
+//! - Hydrogens are dropped, and radii are united-atom radii, which stand for them, unless [`ReadOptions`] ask for them.
 //! - Lines are counted from 1 in the unpacked text.
 //!
 //! # From file to molecule
 //!
-//! path -> `source` (open, unpack, tell the format) -> `sieve` (atoms of the first model, in a form that pdbtbx is sure to
-//! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `select` (chains, waters, additives,
+//! path -> `source` (open, unpack, tell the format) -> `sieve` (atoms of one model, in a form that pdbtbx is sure to
+//! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `select` (by `policy`: chains, waters, additives,
 //! `elements`, `alternate` locations) -> `groups`, `radii`, `completeness` -> [`Molecule`] with its [`ReadReport`].
 
 use serde::Serialize;
@@ -19,6 +19,7 @@ use serde::Serialize;
 mod accessible;
 mod additives;
 mod alternate;
+mod buried;
 mod charge_table;
 mod completeness;
 mod contact_types;
@@ -28,6 +29,7 @@ mod groups;
 mod input;
 mod labels;
 mod parse;
+mod policy;
 mod radii;
 mod read;
 mod report;
@@ -43,7 +45,8 @@ pub use error::ReadError;
 pub use groups::GroupKind;
 pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
-pub use read::{ReadOptions, read};
+pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
+pub use read::{Listed, read, read_listed};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
 pub use write::{
     ChainMap, ChainName, Partner, WriteError, complex_format, write_complex, write_molecule,
@@ -84,7 +87,7 @@ pub struct Atom {
     pub b_factor: f64,
     /// Whether the file's record is HETATM.
     pub hetero: bool,
-    /// United-atom radius, in Å (see `radii`).
+    /// United-atom radius, in Å (see `radii`); all-atom radius where hydrogens were kept.
     pub radius: f64,
     /// 1-based line of the record in the (decompressed) file.
     pub line: usize,
@@ -99,6 +102,13 @@ pub struct Molecule {
     pub format: Format,
     /// What reading the file did: kept, dropped, altered, warned of. Empty for a molecule made in memory.
     pub report: ReadReport,
+}
+
+impl Atom {
+    /// Whether this is hydrogen of any mass, which only molecules read with [`Hydrogens::Keep`] have.
+    pub fn is_hydrogen(&self) -> bool {
+        elements::is_hydrogen(&self.element)
+    }
 }
 
 impl Molecule {

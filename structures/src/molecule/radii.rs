@@ -12,6 +12,9 @@
 //! - Atoms of ligands and unlisted residues, whose hydrogens are not known: the class of their element in the middle (C3H1 for
 //!   carbon) or most common in sugars and phosphate esters (O2H1 for oxygen).
 //!
+//! Where hydrogens are kept, all radii are all-atom ones: Bondi's of the element (the paper above, Table I), and 1.10 Å for
+//! hydrogen, Rowland & Taylor, J. Phys. Chem. 100 (1996) 7384-7391; metals and the rest as above.
+//!
 //! Few distinct radii matter: each is a class of the lifted axis and costs time.
 
 use super::residues::{AtomType, amino_acid_type, backbone_type, nucleotide_type};
@@ -35,6 +38,19 @@ impl AtomType {
 
 /// Halogens: Bondi's radii, in Å.
 const HALOGENS: [(&str, f64); 4] = [("F", 1.47), ("Cl", 1.75), ("Br", 1.85), ("I", 1.98)];
+
+/// All-atom radii of the elements of proteins and nucleic acids, in Å: Bondi's, and Rowland and Taylor's for hydrogen.
+const ALL_ATOM: [(&str, f64); 9] = [
+    ("H", 1.10),
+    ("D", 1.10),
+    ("T", 1.10),
+    ("C", 1.70),
+    ("N", 1.55),
+    ("O", 1.52),
+    ("P", 1.80),
+    ("S", 1.80),
+    ("Se", 1.90),
+];
 
 /// Metals and the rest: UFF's equilibrium distances x_I, in Å; the radius is half of that, rounded to 0.1 Å.
 const UFF_DISTANCES: [(&str, f64); 63] = [
@@ -122,6 +138,12 @@ pub(super) fn radius(
         .filter(|kind| element_of(*kind) == element)
         .or_else(|| class_of_element(element))
         .map_or_else(|| of_element(element), AtomType::radius)
+}
+
+/// Radius of an atom beside whose kind hydrogens stand as atoms of their own, in Å.
+pub(super) fn all_atom_radius(element: &str) -> f64 {
+    let listed = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
+    listed.map_or_else(|| of_element(element), |(_, radius)| *radius)
 }
 
 const fn element_of(kind: AtomType) -> &'static str {

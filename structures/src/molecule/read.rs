@@ -3,36 +3,80 @@
 use super::error::ReadError;
 use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
+use super::policy::ReadOptions;
 use super::report::{ChainCount, DropKind, GroupCount, ReadReport};
 use super::{Atom, Format, Molecule, completeness, parse, radii, select, sieve, source};
 
-/// How to read.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ReadOptions {
-    /// Residue names to keep though they are dropped by default as water or as a buffer or cryo additive.
-    pub keep: Vec<String>,
+/// An atom of the model that was read, and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listed {
+    /// The atom; its radius is 0 and its element may be empty where it was dropped.
+    pub atom: Atom,
+    /// Why it was dropped; nothing where it was kept.
+    pub dropped: Option<DropKind>,
 }
 
 /// Reads the atoms to dock from a PDB or mmCIF file, plain or gzip-compressed.
 ///
-/// The first model; the chains asked for; hydrogens, waters and a listed set of buffer and cryo additives left out; one
-/// alternate location a residue, the one of the highest summed occupancy and the alphabetically first of equals; atoms of
+/// By default the first model; the chains asked for; hydrogens, waters and a listed set of buffer and cryo additives left out;
+/// one alternate location a residue, the one of the highest summed occupancy and the alphabetically first of equals; atoms of
 /// zero occupancy kept. Cofactors, metals, glycans, modified residues and nucleic acids are kept. The molecule's report says
 /// what was kept, dropped and altered.
 ///
 /// # Errors
 /// [`ReadError`], with the file, the line where there is one, and a remedy.
 pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, ReadError> {
+    read_telling(spec, options, &mut |_, _| {})
+}
+
+/// As [`read`], with every atom of the model listed in file order, kept or dropped.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_listed(
+    spec: &InputSpec,
+    options: &ReadOptions,
+) -> Result<(Molecule, Vec<Listed>), ReadError> {
+    let mut listed = Vec::new();
+    let molecule = read_telling(spec, options, &mut |atom, kind| {
+        listed.push(Listed {
+            atom,
+            dropped: Some(kind),
+        });
+    })?;
+    listed.extend(molecule.atoms.iter().map(|atom| Listed {
+        atom: atom.clone(),
+        dropped: None,
+    }));
+    listed.sort_by_key(|entry| entry.atom.line);
+    Ok((molecule, listed))
+}
+
+fn read_telling(
+    spec: &InputSpec,
+    options: &ReadOptions,
+    dropped: &mut dyn FnMut(Atom, DropKind),
+) -> Result<Molecule, ReadError> {
     let file = spec.path.as_path();
     let source = source::open(file)?;
     let not_a_structure = || ReadError::NotAStructure {
         file: file.to_path_buf(),
     };
     let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
-    let sieved = match format {
-        Format::Pdb => sieve::pdb::sieve(file, &source.text)?,
-        Format::Mmcif => sieve::mmcif::sieve(file, &source.text)?,
+    let sieve = |model: usize| match format {
+        Format::Pdb => sieve::pdb::sieve(file, &source.text, model),
+        Format::Mmcif => sieve::mmcif::sieve(file, &source.text, model),
     };
+    let mut sieved = sieve(options.model)?;
+    if sieved.models == 1 && options.model != 1 {
+        sieved = sieve(1)?;
+    } else if sieved.models > 1 && !(1..=sieved.models).contains(&options.model) {
+        return Err(ReadError::UnknownModel {
+            file: file.to_path_buf(),
+            model: options.model,
+            models: sieved.models,
+        });
+    }
     drop(source.text);
     if sieved.carried.is_empty() {
         return Err(if sieved.recognised {
@@ -50,12 +94,19 @@ pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, ReadErr
         compressed: source.compressed,
         ..ReadReport::default()
     };
-    report.altered.models_ignored = sieved.models_ignored;
+    report.altered.models_ignored = sieved.models.saturating_sub(1);
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
     let parsed = parse::parse(file, format, sieved)?;
-    let atoms = select::select(file, parsed, spec.chains.as_deref(), options, &mut report)?;
+    let atoms = select::select(
+        file,
+        parsed,
+        spec.chains.as_deref(),
+        options,
+        &mut report,
+        dropped,
+    )?;
     Ok(finish(format, atoms, report))
 }
 
@@ -65,6 +116,7 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
     report.warnings = completeness::warnings(&atoms, &groups);
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
+    let all_atom = atoms.iter().any(Atom::is_hydrogen);
     let mut all_radii = vec![0.0; atoms.len()];
     for group in &groups {
         let has_backbone = matches!(
@@ -73,8 +125,11 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         );
         for &index in &group.atoms {
             if let (Some(atom), Some(radius)) = (atoms.get(index), all_radii.get_mut(index)) {
-                *radius =
-                    radii::radius(&atom.residue_name, &atom.name, &atom.element, has_backbone);
+                *radius = if all_atom {
+                    radii::all_atom_radius(&atom.element)
+                } else {
+                    radii::radius(&atom.residue_name, &atom.name, &atom.element, has_backbone)
+                };
             }
         }
     }

@@ -67,9 +67,11 @@ pub enum DropKind {
     Water,
     /// Buffer and cryo additives.
     Additive,
+    /// Other HETATM records, where these are not wanted.
+    Hetatm,
     /// Alternate locations that were not chosen.
     AlternateLocation,
-    /// Models after the first.
+    /// Models that were not asked for: all but the first by default.
     Model,
 }
 
@@ -95,11 +97,11 @@ pub struct Altered {
     pub defaults_filled: usize,
     /// Residues with alternate locations, and the one chosen.
     pub alternate_locations: Vec<AlternateChoice>,
-    /// Models after the first, which were not read.
+    /// Models that were not read.
     pub models_ignored: usize,
 }
 
-/// The alternate location chosen for a residue: the one of the highest summed occupancy, the alphabetically first of equals.
+/// The alternate location chosen for a residue.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AlternateChoice {
     /// Author chain name.
@@ -234,8 +236,9 @@ fn show_dropped(dropped: &Dropped) -> String {
         DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
         DropKind::Water => count(dropped.atoms, "water atom"),
         DropKind::Additive => format!("{atoms} of additives ({})", names()),
+        DropKind::Hetatm => format!("{atoms} of HETATM records ({})", names()),
         DropKind::AlternateLocation => format!("{atoms} of alternate locations"),
-        DropKind::Model => format!("{atoms} of later models"),
+        DropKind::Model => format!("{atoms} of other models"),
     }
 }
 
@@ -268,7 +271,7 @@ impl Altered {
             ),
         );
         let models = self.models_ignored;
-        say(models, format!("{} ignored", count(models, "later model")));
+        say(models, format!("{} ignored", count(models, "other model")));
         parts
     }
 }

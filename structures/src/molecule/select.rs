@@ -1,6 +1,7 @@
-//! From parsed records to the atoms that are docked: chains asked for, no hydrogens, no waters, no additives, one alternate
-//! location a residue.
+//! From parsed records to the atoms that are docked: chains asked for, by default no hydrogens, no waters, no additives, one
+//! alternate location a residue.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::additives::is_additive;
@@ -8,7 +9,7 @@ use super::alternate::choose;
 use super::elements::{self, Origin};
 use super::error::ReadError;
 use super::parse::Parsed;
-use super::read::ReadOptions;
+use super::policy::{Hetatm, Hydrogens, ReadOptions, Waters};
 use super::report::{DropKind, ReadReport, show_chain};
 use super::residues::{is_amino_acid, is_water};
 use super::sieve::NameColumn;
@@ -16,44 +17,57 @@ use super::{Atom, report};
 
 /// Applies all selections and notes in the report what they dropped.
 ///
-/// Radii are left at zero: they need to know whole residues.
+/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file order but
+/// for alternate locations, which come last.
 pub(super) fn select(
     file: &Path,
     parsed: Vec<Parsed>,
     chains: Option<&[String]>,
     options: &ReadOptions,
     report: &mut ReadReport,
+    dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
     let wanted = wanted_chains(file, &parsed, chains)?;
     let aligned = keeps_alignment(&parsed);
+    let modified = match options.hetatm {
+        Hetatm::Drop => modified_residues(&parsed),
+        Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
+    };
     let mut atoms = Vec::with_capacity(parsed.len());
     for record in parsed {
         let carried = &record.carried;
         let name = carried.residue_name.as_str();
-        if wanted
-            .as_ref()
-            .is_some_and(|wanted| !wanted.contains(&carried.chain))
-        {
-            report.drop_atoms(DropKind::Chain, show_chain(&carried.chain), 1);
-            continue;
-        }
         let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
-        if !is_kept_by_name && is_water(name) {
-            report.drop_atoms(DropKind::Water, name, 1);
+        let resolved = || {
+            let column = &carried.element;
+            elements::resolve(name, &record.name, column, carried.name_column, aligned)
+        };
+        let is_elsewhere = wanted
+            .as_ref()
+            .is_some_and(|wanted| !wanted.contains(&carried.chain));
+        let unwanted = if is_elsewhere {
+            Some((DropKind::Chain, show_chain(&carried.chain)))
+        } else if is_kept_by_name {
+            None
+        } else if is_water(name) {
+            (options.waters == Waters::Drop).then_some((DropKind::Water, name))
+        } else if options.hetatm != Hetatm::Keep && is_additive(name) {
+            Some((DropKind::Additive, name))
+        } else if options.hetatm == Hetatm::Drop
+            && record.hetero
+            && !modified.contains(&residue_key(&record))
+        {
+            Some((DropKind::Hetatm, name))
+        } else {
+            None
+        };
+        if let Some((kind, of)) = unwanted {
+            report.drop_atoms(kind, of, 1);
+            let symbol = resolved().map_or("", |element| element.symbol);
+            dropped(atom(record, symbol), kind);
             continue;
         }
-        if !is_kept_by_name && is_additive(name) {
-            report.drop_atoms(DropKind::Additive, name, 1);
-            continue;
-        }
-        let element = elements::resolve(
-            name,
-            &record.name,
-            &carried.element,
-            carried.name_column,
-            aligned,
-        )
-        .ok_or_else(|| ReadError::UnknownElement {
+        let element = resolved().ok_or_else(|| ReadError::UnknownElement {
             file: file.to_path_buf(),
             line: carried.line,
             atom: record.name.clone(),
@@ -63,8 +77,9 @@ pub(super) fn select(
                 carried.residue_number
             ),
         })?;
-        if elements::is_hydrogen(element.symbol) {
+        if options.hydrogens == Hydrogens::Drop && elements::is_hydrogen(element.symbol) {
             report.drop_atoms(DropKind::Hydrogen, "", 1);
+            dropped(atom(record, element.symbol), DropKind::Hydrogen);
             continue;
         }
         match element.origin {
@@ -74,7 +89,7 @@ pub(super) fn select(
         }
         atoms.push(atom(record, element.symbol));
     }
-    let atoms = choose(atoms, report);
+    let atoms = choose(atoms, options.altloc, report, dropped);
     if atoms.is_empty() {
         return Err(ReadError::EmptySelection {
             file: file.to_path_buf(),
@@ -101,6 +116,35 @@ fn atom(record: Parsed, element: &str) -> Atom {
         radius: 0.0,
         line: carried.line,
     }
+}
+
+/// What tells a residue from all others.
+type ResidueKey = (String, i64, Option<char>, String);
+
+fn residue_key(record: &Parsed) -> ResidueKey {
+    let carried = &record.carried;
+    (
+        carried.chain.clone(),
+        carried.residue_number,
+        record.insertion_code,
+        carried.residue_name.clone(),
+    )
+}
+
+/// Residues in HETATM records that have an amino acid's N, CA and C.
+fn modified_residues(parsed: &[Parsed]) -> HashSet<ResidueKey> {
+    let mut found: HashMap<ResidueKey, [bool; 3]> = HashMap::new();
+    for record in parsed.iter().filter(|record| record.hetero) {
+        if let Some(place) = ["N", "CA", "C"]
+            .iter()
+            .position(|name| *name == record.name)
+            && let Some(seen) = found.entry(residue_key(record)).or_default().get_mut(place)
+        {
+            *seen = true;
+        }
+    }
+    let whole = found.into_iter().filter(|(_, seen)| *seen == [true; 3]);
+    whole.map(|(key, _)| key).collect()
 }
 
 /// The chains to keep, or all of them.

@@ -2,7 +2,7 @@
 //!
 //! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge columns,
 //! old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks. Only the atoms
-//! of the first model pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
+//! of one model pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
 //! number. Facts that pdbtbx would change travel beside it in a [`Carried`] of the same index:
 //!
 //! | fact | what pdbtbx 0.12 does with it |
@@ -60,16 +60,16 @@ pub(super) struct Exact {
     pub(super) b_factor: f64,
 }
 
-/// The atoms of the first model: text for pdbtbx, and what travels past it, by serial number.
+/// The atoms of one model: text for pdbtbx, and what travels past it, by serial number.
 #[derive(Debug, Default)]
 pub(super) struct Sieved {
     /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
     pub(super) text: String,
     /// What travels past it; index i belongs to the serial number i.
     pub(super) carried: Vec<Carried>,
-    /// Models after the first.
-    pub(super) models_ignored: usize,
-    /// Atom records in those models.
+    /// Models in the file.
+    pub(super) models: usize,
+    /// Atom records in the other models.
     pub(super) atoms_ignored: usize,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(super) defaults_filled: usize,

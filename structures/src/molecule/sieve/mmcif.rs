@@ -3,6 +3,7 @@
 //! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the PDB
 //! format; atom and residue names are `label_atom_id` and `label_comp_id`.
 
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -18,8 +19,12 @@ const HEADER: &str = "data_sieved\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_
 _atom_site.label_alt_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.label_seq_id\n\
 _atom_site.pdbx_PDB_ins_code\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
 
-/// Sieves the text of an mmCIF file.
-pub(in crate::molecule) fn sieve(file: &Path, text: &str) -> Result<Sieved, ReadError> {
+/// Sieves the text of an mmCIF file; `model` counts from 1.
+pub(in crate::molecule) fn sieve(
+    file: &Path,
+    text: &str,
+    model: usize,
+) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut table = Table::default();
     let mut stream = tokens(text).peekable();
@@ -60,7 +65,7 @@ pub(in crate::molecule) fn sieve(file: &Path, text: &str) -> Result<Sieved, Read
             Kind::Bare(_) | Kind::Quoted(_) => {}
         }
     }
-    table.sieve(file, &mut sieved)?;
+    table.sieve(file, model, &mut sieved)?;
     Ok(sieved)
 }
 
@@ -160,7 +165,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn sieve(&self, file: &Path, sieved: &mut Sieved) -> Result<(), ReadError> {
+    fn sieve(&self, file: &Path, wanted: usize, sieved: &mut Sieved) -> Result<(), ReadError> {
         if self.values.is_empty() {
             return Ok(());
         }
@@ -168,8 +173,8 @@ impl<'a> Table<'a> {
         let columns = self.columns(file)?;
         let width = self.items.len();
         sieved.text.push_str(HEADER);
-        let mut first_model = None;
-        let mut last_model = None;
+        // Numbers of the models by order of appearance; rows of one model need not stand together.
+        let mut models: HashMap<Option<&str>, usize> = HashMap::new();
         for row in self.values.chunks(width) {
             if row.len() < width {
                 return Err(ReadError::BrokenCif {
@@ -183,16 +188,14 @@ impl<'a> Table<'a> {
             }
             let row = Row { file, row };
             let model = columns.model.and_then(|column| row.value(column));
-            if *first_model.get_or_insert(model) != model {
+            let next = models.len() + 1;
+            if *models.entry(model).or_insert(next) != wanted {
                 sieved.atoms_ignored += 1;
-                if last_model != Some(model) {
-                    sieved.models_ignored += 1;
-                    last_model = Some(model);
-                }
                 continue;
             }
             row.sieve(&columns, sieved)?;
         }
+        sieved.models = models.len();
         Ok(())
     }
 }

@@ -15,14 +15,18 @@ const RECORDS: [&str; 14] = [
     "END", "CONECT", "MASTER", "EXPDTA",
 ];
 
-/// Sieves the text of a PDB file.
-pub(in crate::molecule) fn sieve(file: &Path, text: &str) -> Result<Sieved, ReadError> {
+/// Sieves the text of a PDB file; `model` counts from 1.
+pub(in crate::molecule) fn sieve(
+    file: &Path,
+    text: &str,
+    model: usize,
+) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut models = Models::default();
     for (line, record) in lines(text) {
         if record.starts_with("ATOM  ") || record.starts_with("HETATM") {
             sieved.recognised = true;
-            if models.keeps(record) {
+            if models.of(record) == model {
                 atom(file, line, record, &mut sieved)?;
             } else {
                 sieved.atoms_ignored += 1;
@@ -33,20 +37,19 @@ pub(in crate::molecule) fn sieve(file: &Path, text: &str) -> Result<Sieved, Read
             models.note(name);
         }
     }
-    sieved.models_ignored = models.ignored;
+    sieved.models = models.count;
     Ok(sieved)
 }
 
-/// Tells the first model from those after it.
+/// Tells the models apart.
 #[derive(Default)]
 struct Models {
     /// Columns 13 to 27 of the first atom: what a second model starts with too.
     first: Option<String>,
     /// A MODEL, ENDMDL or END record stands since the last atom.
     boundary: Option<Boundary>,
-    /// The atoms being read belong to a later model.
-    beyond: bool,
-    ignored: usize,
+    /// Models so far: the number of the one being read.
+    count: usize,
 }
 
 enum Boundary {
@@ -66,12 +69,14 @@ impl Models {
         }
     }
 
-    fn keeps(&mut self, record: &str) -> bool {
+    /// The number of the model that an atom record belongs to, from 1.
+    fn of(&mut self, record: &str) -> usize {
         let identity = record.get(12..27).unwrap_or(record);
         let boundary = self.boundary.take();
         let Some(first) = &self.first else {
             self.first = Some(identity.to_string());
-            return true;
+            self.count = 1;
+            return 1;
         };
         let starts_model = match boundary {
             Some(Boundary::Model) => true,
@@ -79,10 +84,9 @@ impl Models {
             None => false,
         };
         if starts_model {
-            self.beyond = true;
-            self.ignored += 1;
+            self.count += 1;
         }
-        !self.beyond
+        self.count
     }
 }
 

@@ -1,0 +1,43 @@
+//! Options that say what is read of a structure.
+
+use clap::Args;
+use knotdock_structures::molecule::{AlternateLocation, Hetatm, Hydrogens, ReadOptions, Waters};
+
+use super::arguments::at_least_one;
+
+const READING: &str = "Reading";
+
+/// Options of reading. They hold for the molecules named, not for a known complex, which is read by the defaults.
+#[derive(Args, Debug)]
+pub struct ReadingArguments {
+    /// Waters: drop or keep.
+    #[arg(long, value_name = "WHAT", default_value_t = Waters::default(), help_heading = READING)]
+    waters: Waters,
+    /// HETATM records but waters: no-additives drops listed buffer and cryo additives, keep keeps all, drop leaves only
+    /// modified amino acids.
+    #[arg(long, value_name = "WHAT", default_value_t = Hetatm::default(), help_heading = READING)]
+    hetatm: Hetatm,
+    /// Hydrogens: drop (united-atom radii stand for them) or keep (all-atom radii for a molecule that has some).
+    #[arg(long, value_name = "WHAT", default_value_t = Hydrogens::default(), help_heading = READING)]
+    hydrogens: Hydrogens,
+    /// Alternate location of a residue: occupancy, the best occupied, or the name of one, such as A, where it is offered.
+    #[arg(long, value_name = "NAME", default_value_t = AlternateLocation::default(), help_heading = READING)]
+    altloc: AlternateLocation,
+    /// Model of a file that has several: 1 is the first, whatever number it carries.
+    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = ReadOptions::default().model, help_heading = READING)]
+    model: usize,
+}
+
+impl ReadingArguments {
+    /// The options as the reader takes them.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions {
+            waters: self.waters,
+            hetatm: self.hetatm,
+            hydrogens: self.hydrogens,
+            altloc: self.altloc,
+            model: self.model,
+            ..ReadOptions::default()
+        }
+    }
+}

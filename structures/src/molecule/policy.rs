@@ -1,0 +1,211 @@
+//! Policies of reading: what becomes of waters, HETATM records, hydrogens, alternate locations and models.
+//!
+//! Each is written and read as on the command line, in `run.json` too.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// How to read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReadOptions {
+    /// What becomes of waters.
+    pub waters: Waters,
+    /// What becomes of the other groups in HETATM records.
+    pub hetatm: Hetatm,
+    /// What becomes of hydrogens.
+    pub hydrogens: Hydrogens,
+    /// Which alternate location is kept.
+    pub altloc: AlternateLocation,
+    /// Which model is read: 1 is the first in the file, whatever number it carries. A file of one model has it read.
+    pub model: usize,
+    /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
+    #[serde(skip)]
+    pub keep: Vec<String>,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            waters: Waters::default(),
+            hetatm: Hetatm::default(),
+            hydrogens: Hydrogens::default(),
+            altloc: AlternateLocation::default(),
+            model: 1,
+            keep: Vec::new(),
+        }
+    }
+}
+
+/// What becomes of waters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Waters {
+    /// They are dropped.
+    #[default]
+    Drop,
+    /// They are kept, whatever the policy on HETATM records.
+    Keep,
+}
+
+/// What becomes of HETATM records that are no water.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Hetatm {
+    /// Listed buffer and cryo additives are dropped (whatever their record), all else is kept.
+    #[default]
+    NoAdditives,
+    /// All are kept.
+    Keep,
+    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their record.
+    Drop,
+}
+
+/// What becomes of hydrogens.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Hydrogens {
+    /// They are dropped: united-atom radii stand for them.
+    #[default]
+    Drop,
+    /// They are kept, and all radii of a molecule that has some are all-atom radii.
+    Keep,
+}
+
+/// Which alternate location of a residue is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum AlternateLocation {
+    /// The one of the highest summed occupancy, the alphabetically first of equals.
+    #[default]
+    Occupancy,
+    /// The one of this name, in residues that offer it; in others as by occupancy.
+    Named(char),
+}
+
+/// A policy that is none.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{text}' is none of {choices}")]
+pub struct PolicyError {
+    /// What was given.
+    text: String,
+    /// What there is to choose from.
+    choices: &'static str,
+}
+
+/// Reads and writes a policy as one of a few words.
+macro_rules! words {
+    ($policy:ty, $choices:literal, $($value:path = $word:literal),+) => {
+        impl FromStr for $policy {
+            type Err = PolicyError;
+
+            fn from_str(text: &str) -> Result<Self, PolicyError> {
+                match text {
+                    $($word => Ok($value),)+
+                    _ => Err(PolicyError { text: text.to_owned(), choices: $choices }),
+                }
+            }
+        }
+
+        impl fmt::Display for $policy {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self {
+                    $($value => $word,)+
+                })
+            }
+        }
+    };
+}
+
+words!(
+    Waters,
+    "drop and keep",
+    Waters::Drop = "drop",
+    Waters::Keep = "keep"
+);
+words!(
+    Hetatm,
+    "no-additives, keep and drop",
+    Hetatm::NoAdditives = "no-additives",
+    Hetatm::Keep = "keep",
+    Hetatm::Drop = "drop"
+);
+words!(
+    Hydrogens,
+    "drop and keep",
+    Hydrogens::Drop = "drop",
+    Hydrogens::Keep = "keep"
+);
+
+impl FromStr for AlternateLocation {
+    type Err = PolicyError;
+
+    fn from_str(text: &str) -> Result<Self, PolicyError> {
+        let mut characters = text.chars();
+        match (text, characters.next(), characters.next()) {
+            ("occupancy", ..) => Ok(Self::Occupancy),
+            (_, Some(name), None) if name.is_ascii_graphic() => Ok(Self::Named(name)),
+            _ => Err(PolicyError {
+                text: text.to_owned(),
+                choices: "occupancy and a single character, such as A",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for AlternateLocation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Occupancy => f.write_str("occupancy"),
+            Self::Named(name) => write!(f, "{name}"),
+        }
+    }
+}
+
+/// Policies go into records as they stand on the command line.
+macro_rules! as_text {
+    ($($policy:ty),+) => {$(
+        impl From<$policy> for String {
+            fn from(policy: $policy) -> Self {
+                policy.to_string()
+            }
+        }
+
+        impl TryFrom<String> for $policy {
+            type Error = PolicyError;
+
+            fn try_from(text: String) -> Result<Self, PolicyError> {
+                text.parse()
+            }
+        }
+    )+};
+}
+
+as_text!(Waters, Hetatm, Hydrogens, AlternateLocation);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_as_they_are_written() {
+        for text in ["no-additives", "keep", "drop"] {
+            assert_eq!(text.parse::<Hetatm>().unwrap().to_string(), text);
+        }
+        for text in ["keep", "drop"] {
+            assert_eq!(text.parse::<Waters>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<Hydrogens>().unwrap().to_string(), text);
+        }
+        for text in ["occupancy", "A", "2"] {
+            assert_eq!(text.parse::<AlternateLocation>().unwrap().to_string(), text);
+        }
+        assert!("Keep".parse::<Waters>().is_err());
+        assert!("no-additives".parse::<Hydrogens>().is_err());
+        for text in ["", "AB", " ", "\u{e9}"] {
+            let error = text.parse::<AlternateLocation>().unwrap_err();
+            assert!(error.to_string().contains("occupancy"));
+        }
+    }
+}
