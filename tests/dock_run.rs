@@ -10,7 +10,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,rank_score";
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,rank_score,z_score";
 
 /// A folder with the made-up receptor and ligand.
 fn place() -> tempfile::TempDir {

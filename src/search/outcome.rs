@@ -35,6 +35,8 @@ pub struct RankedPose {
     pub fine_contact: Option<f64>,
     /// What rows are ranked by: `score`, and where poses are rescored `fine_contact` besides.
     pub rank_score: f64,
+    /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    pub z_score: Option<f64>,
 }
 
 /// The fast path's error as measured in this run, relative to the best exact score.

@@ -151,6 +151,7 @@ pub(super) fn report(
     let mut weights = vec![0.0; count];
     let best = candidates.first().map_or(0.0, |best| best.score.abs());
     let temperature = (CLUSTER_TEMPERATURE * best).max(f64::MIN_POSITIVE);
+    let background = Background::of(candidates);
     let mut founders = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
     for (candidate, &cluster) in candidates.iter().zip(clusters) {
@@ -199,6 +200,7 @@ pub(super) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
+                z_score: background.z_score(row.rank_score),
                 ..row
             })
         })
@@ -209,6 +211,30 @@ pub(super) fn report(
     Ranking {
         poses,
         clusters: order.len(),
+    }
+}
+
+/// What the run's kept poses score on the whole.
+struct Background {
+    mean: f64,
+    deviation: f64,
+}
+
+impl Background {
+    /// Mean and standard deviation of the candidates' rank scores by the fast path.
+    fn of(candidates: &[Candidate]) -> Self {
+        let count = candidates.len().max(1) as f64;
+        let mean = candidates.iter().map(|c| c.score).sum::<f64>() / count;
+        let squares = candidates.iter().map(|c| (c.score - mean).powi(2));
+        Self {
+            mean,
+            deviation: (squares.sum::<f64>() / count).sqrt(),
+        }
+    }
+
+    fn z_score(&self, rank_score: f64) -> Option<f64> {
+        let z = (rank_score - self.mean) / self.deviation;
+        z.is_finite().then_some(z)
     }
 }
 
@@ -241,6 +267,7 @@ impl Candidate {
             pose,
             fine_contact,
             rank_score: terms.score + fine_contact.unwrap_or(0.0),
+            z_score: None,
             score: terms.score,
             cluster: None,
             cluster_size: None,
@@ -287,6 +314,26 @@ mod tests {
             translation: Vector3::new(x, 0.0, 0.0),
             ..Pose::identity()
         }
+    }
+
+    /// Scores 1, 2, 3, 4 have mean 2.5 and variance 1.25; where all are alike nothing stands out.
+    #[test]
+    fn z_scores_are_against_the_kept_poses() {
+        let with = |scores: &[f64]| {
+            let peaks: Vec<Peak> = scores
+                .iter()
+                .map(|&score| Peak {
+                    score: score as f32,
+                    rotation: 0,
+                    voxel: 0,
+                })
+                .collect();
+            let poses = vec![at(0.0); scores.len()];
+            Background::of(&candidates(&peaks, &poses, &[], &[], None))
+        };
+        let z = with(&[1.0, 2.0, 3.0, 4.0]).z_score(5.0).unwrap();
+        assert!((z - 2.5 / 1.25f64.sqrt()).abs() < 1e-12);
+        assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
     }
 
     /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
