@@ -121,12 +121,13 @@ mod tests {
             .collect();
         assert_eq!(vertices.len(), 8);
         assert_eq!(vertices[3], [0.0, 0.0, 1.0 / 3.0]);
-        for (index, corner) in corners.into_iter().enumerate() {
-            assert_eq!(vertices[4 + index], row.pose.apply(corner));
+        // Welding numbers vertices as faces name them: the first face is 1 2 3, and the corner on x comes third.
+        for (index, corner) in [0, 2, 1, 3].into_iter().enumerate() {
+            assert_eq!(vertices[4 + index], row.pose.apply(corners[corner]));
         }
         // A quarter turn about z takes x to y.
-        assert!((vertices[5][0] - 10.0).abs() < 1e-12 && (vertices[5][1] - 21.0).abs() < 1e-12);
+        assert!((vertices[6][0] - 10.0).abs() < 1e-12 && (vertices[6][1] - 21.0).abs() < 1e-12);
         let faces = words("f ");
-        assert_eq!((faces.len(), faces[4].as_str()), (8, "5 7 6"));
+        assert_eq!((faces.len(), faces[4].as_str()), (8, "5 6 7"));
     }
 }
