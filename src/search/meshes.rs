@@ -9,7 +9,7 @@
 //!
 //! A sum over pairs of balls counts pairs. Over balls of very different size that is no volume: a large ball that overlaps another by
 //! its whole volume counts as much as two tiny ones that touch, and the many balls of an edge outweigh the one that fills the middle. So parts
-//! that dock are sampled by balls of one radius on a lattice ([`mod@lattice`]), with weights fitted so that their bumps add up to one
+//! that dock are sampled by balls of one radius on a lattice ([`lattice()`]), with weights fitted so that their bumps add up to one
 //! inside and zero outside: the sum over pairs is then an integral over both volumes, however the lattices lie, and the kernel is that of
 //! molecules, B&I's cone, whose balls are all of about one size. (For balls of mixed radii touching means too little at large radii; a skin of fixed
 //! width would mend that but not the counting. docs/mesh_docking.md has the figures.)

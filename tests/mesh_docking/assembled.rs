@@ -18,7 +18,7 @@ fn put_together((pair, clearance): (Pair, f64)) {
             "--rotations",
             "1200",
             "--poses",
-            "150",
+            "100",
             "--refine",
             "40",
             "--write-top",

@@ -24,7 +24,7 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
     let h = field.grid.spacing();
     // Nodes on the surface itself do not say which way is in.
     let near: Vec<usize> = (0..field.depth.len())
-        .filter(|&node| field.depth[node] > 1e-6 * h && field.depth[node] <= h)
+        .filter(|&node| field.depth[node] > 1e-6 * h && field.depth[node] <= 1.5 * h)
         .collect();
     let stride = near.len().div_ceil(SAMPLES).max(1);
     let asked: Vec<usize> = near.into_iter().step_by(stride).collect();
