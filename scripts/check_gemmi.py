@@ -37,6 +37,8 @@ MOST_FEW = 60
 STRUCTURE = re.compile(r"^(?!.*/DTDs/).*\.(pdb|ent|cif|mmcif|pdb1|brk)(\.gz)?$", re.IGNORECASE)
 
 WATERS = set()
+# Standard residues under the names of force fields, which gemmi does not know.
+FORCE_FIELD_NAMES = set("HSD HSE HSP HID HIE HIP CYX CYM ASH GLH LYN ADE URA CYT GUA THY".split())
 
 # Files that differ for a reason. Part of the path: why.
 MEANT = {
@@ -139,8 +141,8 @@ def element_of(atom, residue):
     """The element: of standard residues by the atom's name, of ions by their own, else as gemmi has it, which guesses blanks."""
     letters = atom.name.lstrip("0123456789'*").upper()
     known = gemmi.find_tabulated_residue(residue.name)
-    if known.is_amino_acid() or known.is_nucleic_acid():
-        if letters[:1] in ("H", "D") and letters[:1]:
+    if known.is_standard() or residue.name in FORCE_FIELD_NAMES:
+        if letters[:1] in ("H", "D"):
             return "H" if atom.element.name != "D" else "D"
         return "Se" if letters.startswith("SE") else letters[:1] or atom.element.name
     ion = re.sub("[^A-Z].*", "", residue.name)

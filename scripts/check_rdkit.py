@@ -272,7 +272,7 @@ def main():
             # The checks must be able to fail.
             print("Spoilt on purpose, so that each kind must drift:")
             spoilt = Tally()
-            check_solid(spoilt, "example, radii 0.05 Å larger", ligand, spoil=0.05)
+            check_solid(spoilt, "example, radii 0.2 Å larger", ligand, spoil=0.2)
             check_pair(spoilt, options.knotdock, "example moved by 0.5 Å an axis", receptor, ligand, (1, 0, 0, 0), (0, 0, 0), spoil=0.5)
             caffeine = hydrogens["caffeine with hydrogens"]
             check_pair(spoilt, options.knotdock, "caffeine moved by 0.5 Å an axis", caffeine, caffeine, (1, 0, 0, 0), (0.8, -0.5, 0.4), spoil=0.5, own_radii=True)
