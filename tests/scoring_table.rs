@@ -8,7 +8,7 @@
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
 //! The cases are made by `scripts/scoring_cases.py`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use knotdock::search::{self, DockOptions, Effect, Progress, Scene};
@@ -140,7 +140,8 @@ fn write_table(name: &str, columns: &[&str], table: &Table) {
 fn moved(columns: &[&str], expected: &Table, found: &Table, tolerance: &[f64]) -> Vec<String> {
     let mut lines = Vec::new();
     let mut by_column: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
-    for key in found.keys().chain(expected.keys()) {
+    let keys: BTreeSet<_> = found.keys().chain(expected.keys()).collect();
+    for key in keys {
         let (Some(was), Some(is)) = (expected.get(key), found.get(key)) else {
             let place = if found.contains_key(key) {
                 "new"
@@ -181,8 +182,6 @@ fn moved(columns: &[&str], expected: &Table, found: &Table, tolerance: &[f64]) -
             ));
         }
     }
-    lines.sort();
-    lines.dedup();
     for (name, (count, worst)) in by_column {
         lines.push(format!(
             "in all: {name} moved in {count} rows, by at most {worst:.2e} of the case's largest"

