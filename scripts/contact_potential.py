@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Derives the contact potential of knotdock from complexes of known structure.
 
-    python3 scripts/contact_potential.py DIR [--split fit] [--without-fold K/N] [--exclude ID,...] [--decoys RUNS] [-o FILE]
+    python3 scripts/contact_potential.py DIR [--fine] [--split fit] [--without-fold K/N] [--exclude ID,...] [--decoys RUNS] [-o FILE]
 
 DIR is a folder as `scripts/benchmark.py` reads it; the pairs of the split give the statistics. Energies are
 e_ab = -ln(n_ab / m_ab) in units of RT, n_ab the contacts of types a and b across the bound interfaces, counted as the score
@@ -17,6 +17,9 @@ as many contacts:
 A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of the
 reference state is taken out, so that the potential counts no shape again. Of the table's eigenvectors (types weighed by their share of
 the contacts) the strongest --rank are kept: they hold what is known of it, and each further one costs a transform in the search.
+
+With --fine the table has three ranges of distance, each with energies of its own and of full rank: what poses are rescored with. Its decoys
+are best poses docked with all effects, since those are what it has to tell from the answer.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -35,6 +38,7 @@ ROOT = Path(__file__).resolve().parent.parent
 TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
 TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
+RANGES = {"near": (3.5, 4.5), "middle": (5.0, 6.0), "far": (7.0, 8.0)}  # ends in A, as in scoring/src/rescoring/potential.rs
 PROBE = 1.4  # A
 RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 
@@ -43,34 +47,40 @@ def main():
     options = parse_arguments()
     kinds = read_types()
     pairs = select(options)
-    size = len(TYPES)
-    native, reference = np.zeros((size, size)), np.zeros((size, size))
-    used = []
+    count = fine_contacts if options.fine else contacts
+    native, reference, used = [], [], []
     for pair in pairs:
         folder = options.folder / pair
         receptor, ligand = (read_atoms(part(folder, f"{side}_bound"), kinds) for side in ("receptor", "ligand"))
-        counts = contacts(receptor, ligand)
-        if counts.sum() == 0:
+        counts = count(receptor, ligand)
+        if (counts.sum(axis=(-2, -1)) == 0).any():
             print(f"{pair}: no contacts, left out", file=sys.stderr)
             continue
         if options.decoys:
-            expected = decoy_contacts(options, folder, pair, kinds)
+            expected = decoy_contacts(options, folder, pair, kinds, count)
             if expected is None:
                 print(f"{pair}: no decoys, left out", file=sys.stderr)
                 continue
         else:
             expected = np.outer(surface(receptor), surface(ligand))
         used.append(pair)
-        native += counts / counts.sum()
-        reference += expected / expected.sum()
-    native, reference = (0.5 * (matrix + matrix.T) / matrix.sum() for matrix in (native, reference))
-    # Both are shares of all contacts, about 1,000 a complex; a pair of types expected less often than the pseudocount counts for less.
+        native.append(shares(counts))
+        reference.append(shares(expected))
+    if not used:
+        sys.exit("no complex can be used")
+    native, reference = (shares(sum(parts)) for parts in (native, reference))
+    # Shares of all contacts, about 1,000 a complex and range; a pair of types expected less often than the pseudocount counts for less.
     scale = 1000.0 * len(used)
-    energies = -np.log(
-        (native * scale + options.pseudocount) / (reference * scale + options.pseudocount)
-    )
-    energies -= (energies * reference).sum()
-    write(options, used, low_rank(energies, reference.sum(axis=0), options.rank))
+    energies = -np.log((native * scale + options.pseudocount) / (reference * scale + options.pseudocount))
+    energies -= (energies * reference).sum(axis=(-2, -1), keepdims=True)
+    if not options.fine:
+        energies = low_rank(energies, reference.sum(axis=0), options.rank)
+    write(options, used, energies)
+
+
+def shares(counts):
+    """Symmetric, with a sum of one (in each range)."""
+    return 0.5 * (counts + counts.swapaxes(-2, -1)) / counts.sum(axis=(-2, -1), keepdims=True)
 
 
 def parse_arguments():
@@ -82,10 +92,16 @@ def parse_arguments():
     parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
     parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
     parser.add_argument("--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)")
-    parser.add_argument("--pseudocount", type=float, default=50.0, help="expected contacts (default: 50)")
+    parser.add_argument("--fine", action="store_true", help="a table by ranges of distance, for rescoring")
+    parser.add_argument("--pseudocount", type=float, help="expected contacts (default: 50, with --fine 20)")
     parser.add_argument("--rank", type=int, default=4, help="eigenvectors kept (default: 4)")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "scoring/src/effect/contact_potential.csv")
-    return parser.parse_args()
+    parser.add_argument("-o", "--output", type=Path, help="default: the program's own table")
+    options = parser.parse_args()
+    if options.pseudocount is None:
+        options.pseudocount = 20.0 if options.fine else 50.0
+    if options.output is None:
+        options.output = ROOT / "scoring/src" / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
+    return options
 
 
 def fold(text):
@@ -172,6 +188,25 @@ def contacts(receptor, ligand):
     return counts
 
 
+def step_down(x, start, stop):
+    u = np.clip((x - start) / (stop - start), 0.0, 1.0)
+    return 1.0 - u**3 * (10.0 + u * (6.0 * u - 15.0))
+
+
+def fine_contacts(receptor, ligand):
+    """Smoothly counted contacts by range and type."""
+    counts = np.zeros((len(RANGES), len(TYPES), len(TYPES)))
+    first, second, distances = neighbours(ligand[0], receptor[0], max(stop for _, stop in RANGES.values()))
+    a, b = receptor[1][second], ligand[1][first]
+    known = (a >= 0) & (b >= 0)
+    before = 0.0
+    for table, ends in zip(counts, RANGES.values()):
+        step = step_down(distances[known], *ends)
+        np.add.at(table, (a[known], b[known]), step - before)
+        before = step
+    return counts
+
+
 def surface(atoms):
     """Accessible area by type (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371, 60 points an atom)."""
     positions, types, radii = atoms
@@ -195,9 +230,9 @@ def surface(atoms):
     return shares
 
 
-def decoy_contacts(options, folder, pair, kinds):
+def decoy_contacts(options, folder, pair, kinds, count):
     """Contacts over the poses of all runs of a pair."""
-    total = np.zeros((len(TYPES), len(TYPES)))
+    total = 0.0
     for run in sorted((options.decoys / pair).glob("seed_*")):
         table = run / "run/poses.csv"
         if not table.exists():
@@ -216,8 +251,8 @@ def decoy_contacts(options, folder, pair, kinds):
                 ]
             )
             placed = positions @ rotation.T + [float(row[f"t{axis}"]) for axis in "xyz"]
-            total += contacts(receptor, (placed, types, radii))
-    return total if total.sum() > 0 else None
+            total = total + count(receptor, (placed, types, radii))
+    return total if np.sum(total) > 0 else None
 
 
 def low_rank(energies, shares, rank):
@@ -231,13 +266,16 @@ def low_rank(energies, shares, rank):
 
 def write(options, used, energies):
     reference = f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
+    detail = "full rank" if options.fine else f"rank {options.rank}"
     lines = [
         "# Contact potential in units of RT, -ln(observed / expected), mean removed; lower is better.",
-        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}; rank {options.rank}.",
+        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}; {detail}.",
         f"# {len(used)} bound complexes of Docking Benchmark 5 (Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041): {' '.join(used)}",
-        "type," + ",".join(TYPES),
+        ("range," if options.fine else "") + "type," + ",".join(TYPES),
     ]
-    lines += [f"{name}," + ",".join(f"{value:.6f}" for value in row) for name, row in zip(TYPES, energies)]
+    tables = [(f"{name},", table) for name, table in zip(RANGES, energies)] if options.fine else [("", energies)]
+    for prefix, table in tables:
+        lines += [f"{prefix}{name}," + ",".join(f"{value:.6f}" for value in row) for name, row in zip(TYPES, table)]
     partial = options.output.with_suffix(".partial")
     partial.write_text("\n".join(lines) + "\n")
     partial.replace(options.output)

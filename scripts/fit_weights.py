@@ -2,10 +2,11 @@
 """Ranks the poses of benchmark runs again with other weights, and chooses weights by cross-validation over pairs.
 
     python3 scripts/fit_weights.py DIR RUNS [RUNS ...] [--knotdock PROGRAM] [--lambdas 8,9,10] [--electrostatics 0,16,24,32] [--contact 0,1,2,3]
+                                   [--fine 0,1,2,3]
 
 DIR is the benchmark folder; each RUNS is the --out folder of a `scripts/benchmark.py` run on training pairs, best without refinement
-(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, so its score under others
-needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
+(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so is the fine contact
+potential that it is rescored with, so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
 beside its run (`quality.json`).
 
 Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
@@ -57,13 +58,14 @@ def parse_arguments():
     parser.add_argument("--lambdas", type=numbers, default=[8.0, 9.0, 10.0, 11.0])
     parser.add_argument("--electrostatics", type=numbers, default=[0.0, 8.0, 16.0, 24.0, 32.0])
     parser.add_argument("--contact", type=numbers, default=[0.0, 0.8, 1.5, 2.0, 2.5, 3.0])
+    parser.add_argument("--fine", type=numbers, default=[0.0, 1.0, 2.0, 3.0])
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--clusters", action="store_true", help="compare temperatures of clusters")
     return parser.parse_args()
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted electrostatics and contact, acceptable (0 or 1), score, cluster."""
+    """Rows of slices, unweighted electrostatics, contact and fine contact, acceptable (0 or 1), rank score, cluster."""
     quality = folder / "quality.json"
     table = folder / "run/poses.csv"
     if not quality.exists() or quality.stat().st_mtime < table.stat().st_mtime:
@@ -84,9 +86,11 @@ def load(options, folder, pair):
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
             terms = [
-                float(row[name] or 0) / (weights[f"{name}_weight"] or 1.0) for name in ("electrostatics", "contact")
+                float(row.get(name) or 0) / (weights.get(f"{name}_weight") or 1.0)
+                for name in ("electrostatics", "contact", "fine_contact")
             ]
-            rows.append([*(float(row[name]) for name in FEATURES), *terms, found[row["rank"]], float(row["score"]), float(row["cluster"])])
+            score = float(row.get("rank_score") or row["score"])
+            rows.append([*(float(row[name]) for name in FEATURES), *terms, found[row["rank"]], score, float(row["cluster"])])
     return np.array(rows, dtype=float)
 
 
@@ -103,18 +107,18 @@ def summary(decoys, ranks):
 
 
 def compare_weights(options, decoys, pairs):
-    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact))
+    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine))
     ranks = {}
     for weights in grid:
-        strength, electrostatics, contact = weights
-        factors = np.array([-strength * strength, 2 * strength, -1.0, electrostatics, contact])
-        ranks[weights] = {key: first_rank(rows[:, :5] @ factors, rows[:, 5]) for key, rows in decoys.items()}
+        strength, *terms = weights
+        factors = np.array([-strength * strength, 2 * strength, -1.0, *terms])
+        ranks[weights] = {key: first_rank(rows[:, :6] @ factors, rows[:, 6]) for key, rows in decoys.items()}
     log = lambda weights, key: np.log(min(ranks[weights][key], NOT_FOUND))
     mean = lambda weights, keys: np.mean([log(weights, key) for key in keys])
     order = sorted(grid, key=lambda weights: mean(weights, decoys))
-    print("lambda  electrostatics  contact   mean log rank, top 1, 10, 100, 1000")
+    print("lambda  electrostatics  contact     fine   mean log rank, top 1, 10, 100, 1000")
     for weights in order:
-        print(f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}   {summary(decoys, ranks[weights])}")
+        print(f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}   {summary(decoys, ranks[weights])}")
     chosen = {}
     for fold in range(options.folds):
         inside = {pair for index, pair in enumerate(pairs) if index % options.folds == fold}
@@ -122,7 +126,7 @@ def compare_weights(options, decoys, pairs):
         best = min(grid, key=lambda weights: mean(weights, others))
         chosen.update({key: ranks[best][key] for key in decoys if key[0] in inside})
         print(f"fold {fold}: {best} chosen on the others")
-    print(f"cross-validated                   {summary(decoys, chosen)}")
+    print(f"cross-validated                            {summary(decoys, chosen)}")
     if len(order) > 1:
         source = np.random.default_rng(1)
         gains = np.array(
@@ -138,7 +142,7 @@ def compare_temperatures(decoys):
     for share in TEMPERATURES:
         ranks = {}
         for key, rows in decoys.items():
-            scores, clusters = rows[:, 6], rows[:, 7]
+            scores, clusters = rows[:, 7], rows[:, 8]
             temperature = share * scores.max()
             values, acceptable = [], []
             for cluster in np.unique(clusters):
@@ -148,7 +152,7 @@ def compare_temperatures(decoys):
                 if temperature > 0:
                     value += temperature * np.log(np.exp((scores[members] - value) / temperature).sum())
                 values.append(value)
-                acceptable.append(rows[best, 5])
+                acceptable.append(rows[best, 6])
             ranks[key] = first_rank(np.array(values), np.array(acceptable))
         print(f"{share:8g}   {summary(decoys, ranks)}")
 

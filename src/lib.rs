@@ -1,4 +1,4 @@
-//! knotdock: the pipeline from two structures to a ranked list of poses.
+//! knotdock: the pipeline from two structures, or two meshes, to a ranked list of poses.
 
 pub mod evaluate;
 pub mod output;

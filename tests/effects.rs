@@ -103,7 +103,68 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {
             assert!((number(&again["terms"][name]) - term).abs() < 1e-6 * score.abs());
         }
+        for name in ["fine_contact", "rank_score"] {
+            assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
+        }
+        assert_eq!(
+            number(&row["rank_score"]),
+            score + number(&row["fine_contact"])
+        );
     }
+}
+
+/// Rescoring follows the contact effect and its own weight, ranks by the sum, and leaves every pose's score as it was.
+#[test]
+fn rescoring_orders_poses_and_changes_no_score() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let table = |options: &[&str]| {
+        let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
+        all.extend(options);
+        let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        reader
+            .deserialize()
+            .map(|row| row.unwrap())
+            .collect::<Vec<std::collections::BTreeMap<String, String>>>()
+    };
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
+        row[name].parse().unwrap()
+    };
+    let (plain, once, twice) = (
+        table(&["--fine-contact-weight", "0"]),
+        table(&["--fine-contact-weight", "1"]),
+        table(&["--fine-contact-weight", "2"]),
+    );
+    for row in plain.iter().chain(&table(&["--effects", "shape"])) {
+        assert_eq!(
+            (row["fine_contact"].as_str(), &row["rank_score"]),
+            ("", &row["score"])
+        );
+    }
+    let mut moved = 0;
+    for row in &twice {
+        let same = |other: &&std::collections::BTreeMap<String, String>| {
+            ["rotation", "tx", "ty", "tz"]
+                .iter()
+                .all(|name| other[*name] == row[*name])
+        };
+        let (before, half) = (
+            plain.iter().find(same).unwrap(),
+            once.iter().find(same).unwrap(),
+        );
+        assert_eq!(before["score"], row["score"]);
+        moved += usize::from(before["rank"] != row["rank"]);
+        let (one, two) = (number(half, "fine_contact"), number(row, "fine_contact"));
+        assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
+        assert_eq!(number(row, "rank_score"), number(row, "score") + two);
+    }
+    assert!(moved > 0, "rescoring must matter");
+    assert!(
+        twice
+            .windows(2)
+            .all(|pair| number(&pair[0], "rank_score") >= number(&pair[1], "rank_score"))
+    );
 }
 
 /// A ligand without amino acids has no contact types, and one of neutral atoms no charges: auto leaves them off and says why, and to

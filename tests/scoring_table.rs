@@ -259,7 +259,7 @@ fn first_poses_of_small_searches() {
             ..DockOptions::default()
         };
         let plan = search::plan(&receptor, &ligand, &options).unwrap();
-        let outcome = search::dock(&plan, &ligand, &Silent).unwrap();
+        let outcome = search::dock(&plan, &search::molecule_points(&ligand), &Silent).unwrap();
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),

@@ -9,15 +9,13 @@ use crate::engine::Folded;
 use crate::engine::Plan;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
-use crate::transform::fast_size;
 use crate::transform::modes::place;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use crate::transform::{Real, fast_size};
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Fine grid points per mode: the window's slope needs more room than its value.
@@ -70,10 +68,9 @@ impl ReceptorField {
                 .map(|k| 1.0 / kernel.transform(f64::from(k) / size[axis] as f64))
                 .collect()
         });
-        let mut planner = FftPlanner::<f32>::new();
-        let along_x = planner.plan_fft_inverse(mx);
-        let along_y = planner.plan_fft_inverse(my);
-        let along_z = RealFftPlanner::<f32>::new().plan_fft_inverse(mz);
+        let along_x = f32::inverse_fft(mx);
+        let along_y = f32::inverse_fft(my);
+        let along_z = f32::inverse_real_fft(mz);
         let zero = Complex::new(0.0f32, 0.0);
         let mut spectrum = vec![zero; mx * my * half];
         let mut line = vec![zero; mx.max(my)];

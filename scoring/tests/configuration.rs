@@ -1,55 +1,28 @@
 //! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error bounds.
 
+mod scene;
+
 use knotdock_scoring::configuration::{Configuration, envelope};
 use knotdock_scoring::engine::Folded;
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, Tail, total};
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
+use scene::{RADII, engine_options as options};
 use std::sync::Arc;
 
-/// Knots strewn over a ball, radii cycling through `radii`, by a fixed linear congruence; the ball lies off the origin.
+/// A ball of knots off the origin.
 fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
-    let mut state = seed;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    let away = Pose {
+        translation: Vector3::new(100.0, -20.0, 3.0),
+        ..Pose::identity()
     };
-    let mut centers = Vec::new();
-    while centers.len() < count {
-        let p: [f64; 3] = std::array::from_fn(|_| 2.0 * size * next());
-        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
-            centers.push([p[0] + 100.0, p[1] - 20.0, p[2] + 3.0]);
-        }
-    }
-    let radii = (0..count).map(|i| radii[i % radii.len()]).collect();
-    Knots::new(centers, radii).unwrap()
+    scene::moved(&scene::cloud(count, size, radii, seed), &away)
 }
-
-fn options(tolerance: f64) -> EngineOptions {
-    EngineOptions {
-        kernel: KernelOptions {
-            lambda: 10.0,
-            offset: 2.0,
-            alpha: 2.0,
-            resolution: 4.0,
-            pass_length: 8.0,
-            trim: Trim::FlatTop,
-        },
-        spacing: None,
-        tolerance,
-        rank: None,
-    }
-}
-
-const RADII: [f64; 3] = [1.5, 1.7, 1.9];
 
 struct Pair {
     receptor: Knots,

@@ -2,10 +2,11 @@
 //!
 //! Errors of G are relative to the best exact score, errors of a slice to its largest value.
 
+mod scene;
+
 use knotdock_scoring::engine::Folded;
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_scoring::transform::Real;
@@ -13,46 +14,9 @@ use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex64;
+use scene::{RADII, cloud, engine_options as options};
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// Knots strewn over a ball, radii cycling through `radii`, by a fixed linear congruence.
-fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
-    let mut state = seed;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
-    let mut centers = Vec::new();
-    while centers.len() < count {
-        let p: [f64; 3] = std::array::from_fn(|_| 2.0 * size * next());
-        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
-            centers.push(p);
-        }
-    }
-    let radii = (0..count).map(|i| radii[i % radii.len()]).collect();
-    Knots::new(centers, radii).unwrap()
-}
-
-fn options(tolerance: f64) -> EngineOptions {
-    EngineOptions {
-        kernel: KernelOptions {
-            lambda: 10.0,
-            offset: 2.0,
-            alpha: 2.0,
-            resolution: 4.0,
-            pass_length: 8.0,
-            trim: Trim::FlatTop,
-        },
-        spacing: None,
-        tolerance,
-        rank: None,
-    }
-}
-
-const RADII: [f64; 3] = [1.5, 1.7, 1.9];
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Fold) -> f64 {

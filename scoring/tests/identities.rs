@@ -1,7 +1,9 @@
 //! Identities of the exact score that hold whatever the knots are.
 
+mod scene;
+
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use proptest::prelude::*;
@@ -10,20 +12,12 @@ fn options(lambda: f64, offset: f64) -> KernelOptions {
     KernelOptions {
         lambda,
         offset,
-        alpha: 2.0,
-        resolution: 4.0,
-        pass_length: 8.0,
-        trim: Trim::FlatTop,
+        ..scene::kernel_options()
     }
 }
 
 fn score(options: KernelOptions, a: &Knots, b: &Knots, pose: &Pose) -> ExactScore {
-    let ends = |knots: &Knots| {
-        let low = knots.radii.iter().copied().fold(f64::INFINITY, f64::min);
-        (low, knots.radii.iter().copied().fold(0.0, f64::max))
-    };
-    let ((r_low, r_high), (s_low, s_high)) = (ends(a), ends(b));
-    let kernel = RankingKernel::new(options, r_low + s_low, r_high + s_high, 1.0).unwrap();
+    let kernel = scene::kernel_for(options, a, b);
     ExactScorer::new(&kernel, a, b).unwrap().score(pose)
 }
 

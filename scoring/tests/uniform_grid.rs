@@ -2,13 +2,15 @@
 //!
 //! Errors are relative to the best exact score of the sweep; errors of a slice to its largest value.
 
+mod scene;
+
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };
 use knotdock_scoring::kernel::low_pass::smooth_step_down;
 use knotdock_scoring::kernel::product::{Body, lens_volume};
-use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer, Trim};
+use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer};
 use knotdock_scoring::lifted_axis::{Fold, RadiusBasis};
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
@@ -16,39 +18,14 @@ use knotdock_scoring::transform::ndft::{ndft_3d, ndft_4d};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex64;
+use scene::{RADII, cloud};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-const RADII: [f64; 3] = [1.5, 1.7, 1.9];
-
-/// Knots strewn over a ball, radii cycling through `radii`, by a fixed linear congruence.
-fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
-    let mut state = seed;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
-    let mut centers = Vec::new();
-    while centers.len() < count {
-        let p: [f64; 3] = std::array::from_fn(|_| 2.0 * size * next());
-        if p.iter().map(|x| x * x).sum::<f64>() < size * size {
-            centers.push(p);
-        }
-    }
-    let radii = (0..count).map(|i| radii[i % radii.len()]).collect();
-    Knots::new(centers, radii).unwrap()
-}
-
 fn kernel_options(alpha: f64) -> KernelOptions {
     KernelOptions {
-        lambda: 10.0,
-        offset: 2.0,
         alpha,
-        resolution: 4.0,
-        pass_length: 8.0,
-        trim: Trim::FlatTop,
+        ..scene::kernel_options()
     }
 }
 

@@ -4,17 +4,16 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use knotdock::output::complexes::write_complexes;
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use serde_json::json;
 
+use super::bodies::Bodies;
 use super::console::Console;
 use super::failure::Failure;
-use super::input::Input;
 use super::ranks::Ranks;
 
-/// Write complexes of chosen ranks of a run, receptor and placed ligand in one file.
+/// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
 pub struct Complex {
     /// Directory of the run.
@@ -45,10 +44,13 @@ impl Complex {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let receptor = Input::recorded(&run.receptor, &run_path, &run.options.reading)?;
-        let ligand = Input::recorded(&run.ligand, &run_path, &run.options.reading)?;
+        let bodies = Bodies::recorded(
+            [&run.receptor, &run.ligand],
+            &run_path,
+            &run.options.reading,
+        )?;
         let folder = self.output.unwrap_or_else(|| self.run.join("top"));
-        let written = write_complexes(&receptor.molecule, &ligand.molecule, &rows, &folder)?;
+        let written = bodies.write(&rows, &folder)?;
         let paths: Vec<String> = written
             .names
             .iter()

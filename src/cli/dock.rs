@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
-use knotdock::output::complexes::write_complexes;
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
@@ -16,25 +15,26 @@ use knotdock_structures::molecule::LabelReport;
 use serde_json::json;
 
 use super::arguments::at_least_one;
+use super::bodies::{Bodies, Planned};
 use super::console::Console;
 use super::failure::Failure;
-use super::input::Input;
 use super::memory;
 use super::native::{NativeArguments, match_text, measure};
 use super::reading_arguments::ReadingArguments;
 use super::request::Request;
 use super::search_arguments::{RANKING, SearchArguments};
 
-/// Dock a ligand to a receptor and rank the poses.
+/// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
-/// Writes poses.csv, top/rank_0001.pdb ... and run.json into a directory of the run. The same input and options give the
+/// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input and options give the
 /// same bytes for any number of threads.
 #[derive(Args, Debug)]
 pub struct Dock {
-    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names) or a mesh (.stl, .obj,
+    /// .ply or .off).
     #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
     receptor: Option<String>,
-    /// The molecule that moves, likewise.
+    /// What moves, likewise and of the same kind.
     #[arg(required_unless_present = "from", value_name = "LIGAND")]
     ligand: Option<String>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
@@ -64,7 +64,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 31] = [
+const RECORDED: [&str; 35] = [
     "receptor",
     "ligand",
     "waters",
@@ -81,11 +81,15 @@ const RECORDED: [&str; 31] = [
     "offset",
     "alpha",
     "core_weight",
+    "sample_grid",
+    "sample_weights",
     "tolerance",
     "effects",
     "electrostatics_weight",
     "contact_weight",
     "contact_potential",
+    "fine_contact_weight",
+    "fine_contact_potential",
     "ph",
     "per_rotation",
     "poses",
@@ -108,14 +112,15 @@ impl Dock {
         };
         let reading = self.reading.options();
         Ok(Request {
-            receptor: Input::read(receptor, &reading)?,
-            ligand: Input::read(ligand, &reading)?,
+            bodies: Bodies::read(receptor, ligand, &reading)?,
             native: self.native.read()?,
             options: RunOptions {
                 reading,
                 dock: self.search.options()?,
                 write_top: self.write_top,
             },
+            offset: self.search.offset(),
+            given: self.search.given_lengths(),
         })
     }
 
@@ -128,28 +133,38 @@ impl Dock {
         };
         request.options.dock.memory = self.memory.or_else(memory::default_limit);
         request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
-        let request = request;
         let directory = self.output.unwrap_or_else(|| request.directory());
-        console.say(format!(
-            "Receptor: {}\nLigand: {}",
-            request.receptor.molecule.report, request.ligand.molecule.report
-        ));
-        let (receptor, ligand) = (&request.receptor.molecule, &request.ligand.molecule);
-        let evaluator = match &request.native {
-            Some(native) => Some(native.evaluator(receptor, ligand)?),
-            None => None,
+        request.bodies.describe(console);
+        let evaluator = match (&request.native, &request.bodies) {
+            (Some(native), Bodies::Molecules(inputs)) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Some(native.evaluator(&receptor.molecule, &ligand.molecule)?)
+            }
+            (Some(_), Bodies::Meshes(_)) => {
+                return Err(Failure::input("a known complex is one of molecules")
+                    .remedy("leave --native, --native-receptor and --native-ligand out"));
+            }
+            (None, _) => None,
         };
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
-        let plan = search::plan(receptor, ligand, &request.options.dock)
-            .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+        let Planned {
+            plan,
+            points,
+            sampled,
+        } = request.bodies.plan(
+            &mut request.options.dock,
+            request.offset,
+            request.given,
+            console,
+        )?;
         console.say(format!("\n{plan}"));
         for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
-                    "{count} balls of the {side} are too small for a resolution of {} Å, which leaves less than a tenth of their overlap",
-                    request.options.dock.resolution
+                    "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
+                    request.options.dock.resolution, plan.unit
                 ));
             }
         }
@@ -160,7 +175,7 @@ impl Dock {
         }
         let staging = Staging::open(&directory, self.force)?;
         let progress = console.progress();
-        let outcome = search::dock(&plan, ligand, &progress)
+        let outcome = search::dock(&plan, &points, &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
 
@@ -177,8 +192,8 @@ impl Dock {
             .rows()
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
-        let written = write_complexes(receptor, ligand, top, &staging.folder().join("top"))?;
-        let inputs = request.inputs()?;
+        let written = request.bodies.write(top, &staging.folder().join("top"))?;
+        let inputs = request.inputs(sampled.as_ref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
             options: &request.options,
@@ -189,7 +204,7 @@ impl Dock {
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
             },
-            chains: &written.chains,
+            chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
             timing: clock.timing(&outcome),
             machine: machine(&plan),
@@ -241,6 +256,14 @@ fn told(outcome: &DockOutcome) -> String {
         "All together: rank {}, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error
     ));
+    let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
+    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
+    if let (true, Some(stage)) = (rescored, stage) {
+        lines.push(format!(
+            "Rescored by the fine contact potential in {:.2} s",
+            stage.wall_seconds
+        ));
+    }
     let error = outcome.error;
     lines.push(format!(
         "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",

@@ -7,6 +7,7 @@ use knotdock::output::manifest::InputEntry;
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
 
 use super::failure::Failure;
+use super::mesh_input::is_mesh;
 
 /// A structure as read.
 pub struct Input {
@@ -19,7 +20,13 @@ pub struct Input {
 impl Input {
     /// Reads `FILE` or `FILE:H,L`.
     pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Failure> {
-        Self::of(&InputSpec::parse(text)?, options)
+        let spec = InputSpec::parse(text)?;
+        if is_mesh(&spec.path) {
+            return Err(Failure::input("this is a mesh, where a molecule is needed")
+                .at(&spec.path)
+                .remedy("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
+        }
+        Self::of(&spec, options)
     }
 
     /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
@@ -33,7 +40,8 @@ impl Input {
         Self::of(&record.locate(&folders)?.spec(), options)
     }
 
-    fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
+    /// Reads what a specification names.
+    pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
         Ok(Self {
             molecule: read(spec, options)?,
             record: InputRecord::new(spec)?,
@@ -49,37 +57,40 @@ impl Input {
         }
         Ok(InputEntry {
             record: self.record.clone(),
-            atoms: self.molecule.atoms.len(),
+            atoms: Some(self.molecule.atoms.len()),
+            sampling: None,
             report,
         })
     }
-
-    /// A name for directories: the file's without its endings, and the chains that were picked.
-    pub fn label(&self) -> String {
-        let name = self.record.path.file_name().unwrap_or_default();
-        let mut label = stem(&name.to_string_lossy()).to_owned();
-        for chain in self.record.chains.iter().flatten() {
-            label.push('_');
-            label.push_str(chain);
-        }
-        label
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "._-".contains(c) {
-                    c
-                } else {
-                    '-'
-                }
-            })
-            .collect()
-    }
 }
 
-/// A file's name without the endings of structure files.
+/// A name for directories: that of a recorded file without its endings, and the chains that were picked.
+pub fn label(record: &InputRecord) -> String {
+    let name = record.path.file_name().unwrap_or_default();
+    let mut label = stem(&name.to_string_lossy()).to_owned();
+    for chain in record.chains.iter().flatten() {
+        label.push('_');
+        label.push_str(chain);
+    }
+    label
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "._-".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect()
+}
+
+/// A file's name without the endings of structure and mesh files.
 fn stem(name: &str) -> &str {
     let lower = name.to_ascii_lowercase();
     let mut end = name.len();
-    for ending in [".gz", ".pdb", ".ent", ".cif", ".mmcif"] {
+    for ending in [
+        ".gz", ".pdb", ".ent", ".cif", ".mmcif", ".stl", ".obj", ".ply", ".off",
+    ] {
         if let Some(rest) = lower
             .get(..end)
             .and_then(|lower| lower.strip_suffix(ending))
@@ -128,6 +139,7 @@ mod tests {
             ("1ppe.CIF.gz", "1ppe"),
             ("pdb1ppe.ent.gz", "pdb1ppe"),
             ("model.v2", "model.v2"),
+            ("peg.STL", "peg"),
             (".pdb", ".pdb"),
             ("é.pdb", "é"),
         ] {

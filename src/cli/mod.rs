@@ -2,6 +2,7 @@
 //! [`knotdock::output`] and the [`console`].
 
 mod arguments;
+mod bodies;
 mod complex;
 mod console;
 mod dock;
@@ -10,6 +11,7 @@ mod failure;
 mod input;
 mod inspect;
 mod memory;
+mod mesh_input;
 mod native;
 mod ranks;
 mod reading_arguments;
@@ -26,9 +28,9 @@ use clap::{Parser, Subcommand};
 use console::Console;
 use failure::Failure;
 
-/// Docks two structures by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
+/// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
-/// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, angles in degrees.
+/// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, of meshes in the unit of their files, angles in degrees.
 /// Exit codes: 0 done, 2 bad input, 1 any other failure.
 #[derive(Debug, Parser)]
 #[command(name = "knotdock", version = version())]

@@ -5,22 +5,25 @@ use std::path::{Path, PathBuf};
 use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
+use knotdock::search::meshes::{GivenLengths, MeshPair};
 
+use super::bodies::Bodies;
 use super::console::Console;
 use super::failure::Failure;
-use super::input::Input;
 use super::native::NativeFiles;
 
 /// A run as asked for, by options or by a run.json.
 pub struct Request {
-    /// The molecule that stays.
-    pub receptor: Input,
-    /// The molecule that moves.
-    pub ligand: Input,
+    /// What stays and what moves.
+    pub bodies: Bodies,
     /// The known complex, if one was named.
     pub native: Option<NativeFiles>,
-    /// What to do.
+    /// What to do; of meshes, lengths that are not given follow from them.
     pub options: RunOptions,
+    /// The offset, where it is given.
+    pub offset: Option<f64>,
+    /// Further lengths that are given.
+    pub given: GivenLengths,
 }
 
 impl Request {
@@ -41,32 +44,34 @@ impl Request {
             ));
         }
         Ok(Self {
-            receptor: Input::recorded(&run.receptor, path, &run.options.reading)?,
-            ligand: Input::recorded(&run.ligand, path, &run.options.reading)?,
+            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options.reading)?,
             native: run
                 .native
                 .as_ref()
                 .map(|native| NativeFiles::recorded(native, path))
                 .transpose()?,
+            offset: Some(run.options.dock.offset),
+            given: GivenLengths {
+                resolution: true,
+                cluster_radius: true,
+            },
             options: run.options,
         })
     }
 
-    /// The inputs for run.json.
-    pub fn inputs(&self) -> Result<Inputs, Failure> {
+    /// The inputs for run.json, with how meshes were sampled.
+    pub fn inputs(&self, sampled: Option<&MeshPair>) -> Result<Inputs, Failure> {
+        let [receptor, ligand] = self.bodies.entries(sampled)?;
         Ok(Inputs {
-            receptor: self.receptor.entry()?,
-            ligand: self.ligand.entry()?,
+            receptor,
+            ligand,
             native: self.native.as_ref().map(NativeFiles::record),
         })
     }
 
     /// The directory of a run that names none.
     pub fn directory(&self) -> PathBuf {
-        PathBuf::from(format!(
-            "knotdock_{}_{}",
-            self.receptor.label(),
-            self.ligand.label()
-        ))
+        let [receptor, ligand] = self.bodies.labels();
+        PathBuf::from(format!("knotdock_{receptor}_{ligand}"))
     }
 }

@@ -75,10 +75,21 @@ impl Score {
         };
         let receptor = read(&self.receptor, "Receptor")?;
         let ligand = read(&self.ligand, "Ligand")?;
-        let scene = Scene::new(&receptor, &ligand, &self.kernel.options()?).map_err(refused)?;
+        let dock = self.kernel.options()?;
+        let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
-        console.say(format!("\n{}\n{}", told(&scored), told_geometry(&geometry)));
+        let fine_contact = scene
+            .fine_contacts(&dock)
+            .map(|contacts| contacts.score(&pose));
+        let rank_score = scored.exact + fine_contact.unwrap_or(0.0);
+        console.say(format!("\n{}", told(&scored)));
+        if let Some(fine_contact) = fine_contact {
+            console.say(format!(
+                "Fine contacts {fine_contact:.3}: `dock` ranks this pose by {rank_score:.3}"
+            ));
+        }
+        console.say(told_geometry(&geometry));
         if !scored.reached {
             console.warn(
                 "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
@@ -94,6 +105,8 @@ impl Score {
                 "pose".to_owned(),
                 serde_json::json!([qw, qx, qy, qz, tx, ty, tz]),
             );
+            object.insert("fine_contact".to_owned(), serde_json::json!(fine_contact));
+            object.insert("rank_score".to_owned(), serde_json::json!(rank_score));
         }
         console.result(&object);
         Ok(())

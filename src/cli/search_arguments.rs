@@ -3,15 +3,43 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
 use knotdock::search::options::{PASS_RATIO, REFINED_BY_SHAPE};
 use knotdock::search::{DockOptions, EffectChoice};
-use knotdock_scoring::effect::contact::Potential;
+use knotdock_scoring::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::rescoring::FinePotential;
 
-use super::arguments::{above_zero, at_least_one, not_negative, rotations_of_angle};
+use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
 
 const TRADE_OFFS: &str = "Accuracy against time";
 const SCORE: &str = "Score";
+const MESHES: &str = "Meshes";
+
+fn resolution_help() -> String {
+    format!(
+        "Finest detail that is ranked, in Å, of meshes in their unit as all lengths: the low-pass ends at 1/A cycles per Å [default: {}; of \
+         meshes {RESOLUTION:.3} times the offset]",
+        DockOptions::default().resolution
+    )
+}
+
+fn offset_help() -> String {
+    format!(
+        "Depth r0 of the skin, in Å [default: {}]; of meshes the gap that is looked for between the parts [default: twice the eps of \
+         both parts' sampling, at most twice the smaller feature size]",
+        DockOptions::default().offset
+    )
+}
+
+fn cluster_radius_help() -> String {
+    format!(
+        "RMSD within which poses form a cluster, in Å, over the ligand's CA atoms or a mesh's sample points [default: {}; of meshes \
+         {CLUSTER_RADIUS:.3} times the offset]",
+        DockOptions::default().cluster_radius
+    )
+}
+
 fn pass_length_help() -> String {
     format!(
         "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å [default: {PASS_RATIO} \
@@ -32,9 +60,8 @@ pub const RANKING: &str = "Ranking";
 /// Options of the kernel and of the modes that stand for it.
 #[derive(Args, Debug)]
 pub struct KernelArguments {
-    /// Finest detail that is ranked, in Å: the low-pass ends at 1/A cycles per Å.
-    #[arg(long, value_name = "A", value_parser = above_zero, default_value_t = DockOptions::default().resolution, help_heading = TRADE_OFFS)]
-    resolution: f64,
+    #[arg(long, value_name = "A", value_parser = above_zero, help = resolution_help(), help_heading = TRADE_OFFS)]
+    resolution: Option<f64>,
     #[arg(long, value_name = "A", value_parser = above_zero, help = pass_length_help(), help_heading = TRADE_OFFS)]
     pass_length: Option<f64>,
     /// Spacing of the translation grid, in Å [default: half the resolution, or finer where the tolerance needs it].
@@ -43,9 +70,8 @@ pub struct KernelArguments {
     /// Penalty of overlap against the reward of contact (dimensionless).
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().lambda, help_heading = SCORE)]
     lambda: f64,
-    /// Depth r0 of the skin, in Å.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().offset, help_heading = SCORE)]
-    offset: f64,
+    #[arg(long, value_name = "A", value_parser = not_negative, help = offset_help(), help_heading = SCORE)]
+    offset: Option<f64>,
     /// Exponent of the bump kernel (dimensionless); large values harden the balls.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha, help_heading = SCORE)]
     alpha: f64,
@@ -68,6 +94,12 @@ pub struct KernelArguments {
     /// Contact potential to use in place of the program's own, as scripts/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     contact_potential: Option<PathBuf>,
+    /// Weight of the fine contact potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().fine_contact_weight, help_heading = SCORE)]
+    fine_contact_weight: f64,
+    /// Fine contact potential to use in place of the program's own, as scripts/contact_potential.py --fine writes it.
+    #[arg(long, value_name = "CSV", help_heading = SCORE)]
+    fine_contact_potential: Option<PathBuf>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -92,9 +124,14 @@ pub struct SearchArguments {
     poses: usize,
     #[arg(long, value_name = "N", help = refine_help(), help_heading = TRADE_OFFS)]
     refine: Option<usize>,
-    /// Ligand CA RMSD within which poses form a cluster, in Å.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = DockOptions::default().cluster_radius, help_heading = RANKING)]
-    cluster_radius: f64,
+    #[arg(long, value_name = "A", value_parser = not_negative, help = cluster_radius_help(), help_heading = RANKING)]
+    cluster_radius: Option<f64>,
+    /// Of meshes: nodes of the grid that each part is sampled on, as 2^18 or 262144 [default: 2^18].
+    #[arg(long, value_name = "M", value_parser = grid, help_heading = MESHES)]
+    sample_grid: Option<usize>,
+    /// Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside, or one [default: fitted].
+    #[arg(long, value_name = "fitted|unit", value_parser = sample_weights, help_heading = MESHES)]
+    sample_weights: Option<SampleWeights>,
     /// List every pose; without this, one row a cluster, its best pose.
     #[arg(long, help_heading = RANKING)]
     no_cluster: bool,
@@ -104,19 +141,30 @@ impl KernelArguments {
     /// The options with everything else at its default.
     ///
     /// # Errors
-    /// [`Failure`] when the contact potential cannot be read.
+    /// [`Failure`] when a contact potential cannot be read.
     pub fn options(&self) -> Result<DockOptions, Failure> {
         let contact_potential = match &self.contact_potential {
-            Some(path) => Some(read_potential(path)?),
+            Some(path) => Some(read_potential(path, "contact-potential", Potential::parse)?),
             None => None,
         };
+        let fine_contact_potential = match &self.fine_contact_potential {
+            Some(path) => Some(read_potential(
+                path,
+                "fine-contact-potential",
+                FinePotential::parse,
+            )?),
+            None => None,
+        };
+        let default = DockOptions::default();
         Ok(DockOptions {
             contact_potential,
-            resolution: self.resolution,
+            fine_contact_weight: self.fine_contact_weight,
+            fine_contact_potential,
+            resolution: self.resolution.unwrap_or(default.resolution),
             pass_length: self.pass_length,
             spacing: self.spacing,
             lambda: self.lambda,
-            offset: self.offset,
+            offset: self.offset.unwrap_or(default.offset),
             alpha: self.alpha,
             core_weight: self.core_weight,
             tolerance: self.tolerance,
@@ -124,7 +172,7 @@ impl KernelArguments {
             electrostatics_weight: self.electrostatics_weight,
             contact_weight: self.contact_weight,
             ph: self.ph,
-            ..DockOptions::default()
+            ..default
         })
     }
 }
@@ -135,24 +183,53 @@ impl SearchArguments {
     /// # Errors
     /// As [`KernelArguments::options`].
     pub fn options(&self) -> Result<DockOptions, Failure> {
+        let kernel = self.kernel.options()?;
         Ok(DockOptions {
             rotations: self.angle.unwrap_or(self.rotations),
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,
-            cluster_radius: self.cluster_radius,
+            cluster_radius: self.cluster_radius.unwrap_or(kernel.cluster_radius),
+            sample_grid: self.sample_grid,
+            sample_weights: self.sample_weights,
             every_pose: self.no_cluster,
-            ..self.kernel.options()?
+            ..kernel
         })
+    }
+
+    /// The offset, where it is given.
+    pub fn offset(&self) -> Option<f64> {
+        self.kernel.offset
+    }
+
+    /// Further lengths that are given.
+    pub fn given_lengths(&self) -> GivenLengths {
+        GivenLengths {
+            resolution: self.kernel.resolution.is_some(),
+            cluster_radius: self.cluster_radius.is_some(),
+        }
     }
 }
 
-fn read_potential(path: &Path) -> Result<Potential, Failure> {
+/// Weights by their name.
+fn sample_weights(text: &str) -> Result<SampleWeights, String> {
+    match text {
+        "fitted" => Ok(SampleWeights::Fitted),
+        "unit" => Ok(SampleWeights::Unit),
+        _ => Err("fitted or unit is needed".to_owned()),
+    }
+}
+
+fn read_potential<P>(
+    path: &Path,
+    option: &str,
+    parse: fn(&str) -> Result<P, PotentialError>,
+) -> Result<P, Failure> {
     let remedy =
-        "give a table as scripts/contact_potential.py writes it, or leave --contact-potential out";
+        format!("give a table as scripts/contact_potential.py writes it, or leave --{option} out");
     let text = std::fs::read_to_string(path)
-        .map_err(|error| Failure::input(&error).at(path).remedy(remedy))?;
-    Potential::parse(&text).map_err(|error| {
+        .map_err(|error| Failure::input(&error).at(path).remedy(&remedy))?;
+    parse(&text).map_err(|error| {
         Failure::input(&error)
             .at(path)
             .on_line(Some(error.line as u64))

@@ -13,6 +13,7 @@ use super::input_record::{InputRecord, NativeRecord};
 use super::run_options::RunOptions;
 use super::staging::{StagingError, write_whole};
 use crate::evaluate::MatchReport;
+use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
 use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
 
@@ -39,8 +40,12 @@ pub struct InputEntry {
     /// The file.
     #[serde(flatten)]
     pub record: InputRecord,
-    /// Atoms kept.
-    pub atoms: usize,
+    /// Atoms kept of a molecule.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub atoms: Option<usize>,
+    /// How a mesh was sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sampling: Option<SampledPart>,
     /// What was kept, dropped and altered.
     pub report: Value,
 }
@@ -48,9 +53,9 @@ pub struct InputEntry {
 /// The inputs of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Inputs {
-    /// The molecule that stays.
+    /// What stays.
     pub receptor: InputEntry,
-    /// The molecule that moves.
+    /// What moves.
     pub ligand: InputEntry,
     /// The known answer, if one was given.
     pub native: Option<NativeRecord>,
@@ -147,7 +152,7 @@ pub struct Manifest<'a> {
     effects: &'a [EffectCost],
     error: ErrorRecord,
     results: Results,
-    chains: &'a ChainMap,
+    chains: Option<&'a ChainMap>,
     #[serde(rename = "match")]
     matching: Option<&'a MatchReport>,
     timing: Timing,
@@ -166,8 +171,8 @@ pub struct ManifestParts<'a> {
     pub outcome: &'a DockOutcome,
     /// Counts of it.
     pub results: Results,
-    /// Chain names in the complexes.
-    pub chains: &'a ChainMap,
+    /// Chain names in the complexes; none of meshes.
+    pub chains: Option<&'a ChainMap>,
     /// How the native was matched, if there is one.
     pub matching: Option<&'a MatchReport>,
     /// What it cost.

@@ -1,15 +1,16 @@
-//! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` ..., `run.json`, and the words on the terminal; and what
+//! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` (of meshes `.obj`) ..., `run.json`, and the words on the terminal; and what
 //! `knotdock sample` does: `knots.csv`, and balls as a mesh, as pseudo-atoms or in a picture.
 //!
 //! # Conventions
 //!
 //! - Every file is written whole under a `.partial` name and then renamed, so that a run that fails or is killed never
 //!   leaves part of a file where a whole one is looked for. See [`staging`].
-//! - Coordinates are in Å. A pose carries the ligand from its own file's frame to the receptor's.
+//! - Coordinates are in Å, of meshes in the unit of their files. A pose carries the ligand from its own file's frame to the receptor's.
 //! - Numbers are printed in the shortest digits that read back to the same f64; a value that does not exist is an empty
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
 
+pub mod assemblies;
 pub mod atom_table;
 pub mod balls;
 pub mod complexes;

@@ -16,7 +16,7 @@ use super::staging::{StagingError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 22] = [
+pub const COLUMNS: [&str; 25] = [
     "rank",
     "score",
     "cluster",
@@ -39,6 +39,9 @@ pub const COLUMNS: [&str; 22] = [
     "electrostatics",
     "contact",
     "cluster_score",
+    "fine_contact",
+    "rank_score",
+    "z_score",
 ];
 
 /// A column to append: its name and one field a row.
@@ -92,6 +95,9 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         term(Effect::Electrostatics),
         term(Effect::Contact),
         row.cluster_score.map_or(String::new(), number),
+        row.fine_contact.map_or(String::new(), number),
+        number(row.rank_score),
+        row.z_score.map_or(String::new(), number),
     ]
 }
 
@@ -225,6 +231,9 @@ mod tests {
             score_unfiltered: 1e-7,
             terms: [Some(0.1), None, Some(-3.0)],
             slices: [-0.0, 2.0, 1e21],
+            fine_contact: None,
+            rank_score: 1.0 / 3.0,
+            z_score: Some(2.5),
         }
     }
 
@@ -240,9 +249,10 @@ mod tests {
         assert_eq!(
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score\n\
+             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
+             fine_contact,rank_score,z_score\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,\n"
+             1000000000000000000000,,-3,,,0.3333333333333333,2.5\n"
         );
     }
 

@@ -7,13 +7,19 @@ use super::poses::Column;
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, score, size of the cluster, and whatever columns are appended to the poses.
+/// The best clusters as a table: rank, rank score, z-score, size of the cluster, and whatever columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let mut header: Vec<String> = ["rank", "score", "cluster size", "unfiltered"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header: Vec<String> = [
+        "rank",
+        "rank score",
+        "z-score",
+        "cluster size",
+        "unfiltered",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];
     for index in firsts(ranking).into_iter().take(BEST) {
@@ -22,7 +28,8 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         };
         let mut line = vec![
             (index + 1).to_string(),
-            format!("{:.1}", row.score),
+            format!("{:.1}", row.rank_score),
+            row.z_score.map(|z| format!("{z:.1}")).unwrap_or_default(),
             row.cluster_size
                 .map(|size| size.to_string())
                 .unwrap_or_default(),
@@ -97,6 +104,9 @@ mod tests {
             score_unfiltered: score,
             terms: [Some(score), None, None],
             slices: [0.0; 3],
+            fine_contact: None,
+            rank_score: score,
+            z_score: None,
         }
     }
 
@@ -118,11 +128,11 @@ mod tests {
         };
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  score  cluster size  unfiltered  irmsd\n\
-             \x20    1    9.0             2         9.0   1.23\n\
-             \x20    4    6.0             2         6.0   3.50\n\
-             \x20    3    7.0                       7.0\n\
-             \x20    5    5.0                       5.0"
+            "  rank  rank score  z-score  cluster size  unfiltered  irmsd\n\
+             \x20    1         9.0                      2         9.0   1.23\n\
+             \x20    4         6.0                      2         6.0   3.50\n\
+             \x20    3         7.0                                7.0\n\
+             \x20    5         5.0                                5.0"
         );
     }
 }

@@ -1,7 +1,9 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
+use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
+use knotdock_scoring::rescoring::FineContacts;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use serde::{Deserialize, Serialize};
@@ -71,9 +73,32 @@ pub struct Decision {
     pub reason: String,
 }
 
+/// The unit of a scene's lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    /// Molecules.
+    Angstrom,
+    /// Meshes: whatever the two files are in.
+    File,
+}
+
+impl std::fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Angstrom => "Å",
+            Self::File => "unit",
+        })
+    }
+}
+
 /// Two bodies with the terms that act between them.
 #[derive(Clone, Debug)]
 pub struct Scene {
+    /// Unit of all lengths.
+    pub unit: LengthUnit,
+    /// What plays the part of an Ångström, in that unit: first and last steps of climbs are shares of it.
+    pub angstrom: f64,
     /// The receptor, labelled where an effect needs it.
     pub receptor: Knots,
     /// The ligand, likewise.
@@ -186,6 +211,8 @@ impl Scene {
                 knots
             });
         Ok(Self {
+            unit: LengthUnit::Angstrom,
+            angstrom: 1.0,
             receptor,
             ligand,
             terms,
@@ -193,6 +220,61 @@ impl Scene {
             labels: [receptor_labels.report, ligand_labels.report],
         })
     }
+
+    /// The scene of two meshes, of which shape is all there is to score.
+    ///
+    /// # Errors
+    /// [`SearchError`] when another effect is asked for.
+    pub fn of_meshes(pair: &MeshPair, options: &DockOptions) -> Result<Self, SearchError> {
+        let decide = |effect: Effect| {
+            let reason = match effect {
+                Effect::Shape => "always on",
+                Effect::Electrostatics => "meshes carry no charges",
+                Effect::Contact => "meshes have no atom types",
+            };
+            let asked = matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
+            if asked && effect != Effect::Shape {
+                let reason = reason.to_owned();
+                return Err(SearchError::Effect { effect, reason });
+            }
+            Ok(Decision {
+                effect,
+                on: effect == Effect::Shape,
+                reason: reason.to_owned(),
+            })
+        };
+        let decisions = Effect::ALL.into_iter().map(decide);
+        let [receptor, ligand] = [0, 1].map(|part| pair.parts[part].knots.clone());
+        Ok(Self {
+            unit: LengthUnit::File,
+            angstrom: pair.angstrom(),
+            receptor,
+            ligand,
+            terms: Vec::new(),
+            decisions: decisions.collect::<Result<_, _>>()?,
+            labels: [LabelReport::default(), LabelReport::default()],
+        })
+    }
+
+    /// What poses are rescored with; `None` where the contact effect is off or its fine weight is 0.
+    pub fn fine_contacts(&self, options: &DockOptions) -> Option<FineContacts> {
+        fine_contacts(&self.decisions, &self.receptor, &self.ligand, options)
+    }
+}
+
+/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or the weight is 0.
+pub(super) fn fine_contacts(
+    decisions: &[Decision],
+    receptor: &Knots,
+    ligand: &Knots,
+    options: &DockOptions,
+) -> Option<FineContacts> {
+    let weight = options.fine_contact_weight;
+    let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
+    (decisions.iter().any(contact) && weight > 0.0).then(|| {
+        let potential = options.fine_contact_potential.clone().unwrap_or_default();
+        FineContacts::new(receptor, ligand, &potential, weight)
+    })
 }
 
 /// Points a sphere at which atoms are asked whether water reaches them.

@@ -3,6 +3,7 @@
 pub mod cluster;
 mod costs;
 pub mod effects;
+pub mod meshes;
 pub mod options;
 pub mod outcome;
 pub mod peaks;
@@ -13,9 +14,9 @@ pub mod rotations;
 pub mod run;
 mod scan;
 
-pub use effects::{Decision, EffectChoice, Scene};
+pub use effects::{Decision, EffectChoice, LengthUnit, Scene};
 pub use knotdock_scoring::effect::Effect;
 pub use options::{DockOptions, SearchError};
 pub use outcome::{DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
-pub use plan::{DockPlan, plan};
-pub use run::{Progress, dock};
+pub use plan::{DockPlan, plan, plan_scene};
+pub use run::{Progress, dock, molecule_points};

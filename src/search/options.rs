@@ -1,14 +1,16 @@
 //! What a docking run may be asked, and why it may refuse.
 
 use super::effects::EffectChoice;
+use super::meshes::SampleWeights;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::rescoring::FinePotential;
 use knotdock_structures::knots::KnotsError;
 use serde::{Deserialize, Serialize};
 
-/// Options of a docking run. Lengths in Å.
+/// Options of a docking run. Lengths in Å, or in the files' unit where meshes are docked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DockOptions {
     /// Number of rotations sampled.
@@ -29,6 +31,10 @@ pub struct DockOptions {
     pub core_weight: f64,
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
+    /// Nodes along each edge of the grids that meshes are sampled on; `None` for molecules.
+    pub sample_grid: Option<usize>,
+    /// Weights of a mesh's balls; `None` for molecules.
+    pub sample_weights: Option<SampleWeights>,
     /// Terms of the score.
     pub effects: EffectChoice,
     /// Weight of the electrostatic energy: score per kcal/mol.
@@ -37,6 +43,10 @@ pub struct DockOptions {
     pub contact_weight: f64,
     /// The contact potential; `None`: the one that the program carries.
     pub contact_potential: Option<Potential>,
+    /// Weight of the fine contact potential, by which poses are rescored where the contact effect is on: score per RT; 0: no rescoring.
+    pub fine_contact_weight: f64,
+    /// The fine contact potential; `None`: the one that the program carries.
+    pub fine_contact_potential: Option<FinePotential>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -45,7 +55,7 @@ pub struct DockOptions {
     pub poses: usize,
     /// Best poses that are refined off the grid; `None`: [`REFINED_BY_SHAPE`] where shape is the only effect, else none.
     pub refine: Option<usize>,
-    /// Radius of clusters, ligand CA RMSD.
+    /// Radius of clusters: RMSD of the ligand's CA atoms, or of a mesh's sample points.
     pub cluster_radius: f64,
     /// Whether every pose is a row, rather than one a cluster.
     pub every_pose: bool,
@@ -75,10 +85,14 @@ impl Default for DockOptions {
             alpha: 2.0,
             core_weight: 1.0,
             tolerance: 1e-2,
+            sample_grid: None,
+            sample_weights: None,
             effects: EffectChoice::Auto,
             electrostatics_weight: 24.0,
             contact_weight: 2.0,
             contact_potential: None,
+            fine_contact_weight: 2.0,
+            fine_contact_potential: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -115,6 +129,7 @@ impl DockOptions {
             ("core-weight", self.core_weight, 1e3),
             ("electrostatics-weight", self.electrostatics_weight, 1e6),
             ("contact-weight", self.contact_weight, 1e6),
+            ("fine-contact-weight", self.fine_contact_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {
@@ -197,7 +212,7 @@ pub enum SearchError {
         needed: u64,
         /// Bytes allowed.
         allowed: u64,
-        /// Grid spacing in Å that would fit, if any does.
+        /// Grid spacing that would fit, if any does.
         spacing: Option<f64>,
     },
     /// The threads could not be started.
@@ -223,7 +238,7 @@ impl SearchError {
             Self::Memory {
                 spacing: Some(spacing),
                 ..
-            } => format!("use --spacing {spacing:.2}, or allow more with --memory"),
+            } => format!("use --spacing {spacing}, or allow more with --memory"),
             Self::Memory { .. } => "allow more with --memory".to_owned(),
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
             Self::Effect { .. } => {

@@ -17,7 +17,7 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
-    /// Score of that cluster, by which clusters are ordered: T ln sum exp(score / T) over its poses, at least the best pose's score.
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' rank scores, at least the best pose's.
     pub cluster_score: Option<f64>,
     /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
     pub refined: bool,
@@ -31,6 +31,12 @@ pub struct RankedPose {
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],
+    /// Weighted fine contact potential at `pose`, [`knotdock_scoring::rescoring`]; `None` where poses are not rescored.
+    pub fine_contact: Option<f64>,
+    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact` besides.
+    pub rank_score: f64,
+    /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    pub z_score: Option<f64>,
 }
 
 /// The fast path's error as measured in this run, relative to the best exact score.

@@ -1,11 +1,12 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::effects::{Decision, Scene};
+use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
 use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
 use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::rescoring::FineContacts;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
@@ -18,6 +19,8 @@ pub struct DockPlan {
     /// The options it was made from.
     #[serde(skip)]
     pub options: DockOptions,
+    /// Unit of all lengths.
+    pub unit: LengthUnit,
     /// Number of rotations.
     pub rotations: usize,
     /// Name of the rotation set.
@@ -44,6 +47,9 @@ pub struct DockPlan {
     pub stop_frequency: f64,
     /// Distinct radii of receptor and ligand.
     pub radii: [usize; 2],
+    /// What plays the part of an Ångström, in `unit`.
+    #[serde(skip)]
+    pub(super) angstrom: f64,
     /// Rotations in flight at once.
     #[serde(skip)]
     pub in_flight: usize,
@@ -79,13 +85,24 @@ pub fn plan(
     options: &DockOptions,
 ) -> Result<DockPlan, SearchError> {
     options.check()?;
+    plan_scene(Scene::new(receptor, ligand, options)?, options)
+}
+
+/// Plans the docking of a scene, whatever it was made from.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
+    options.check()?;
     let Scene {
+        unit,
+        angstrom,
         receptor,
         ligand,
         terms,
         decisions,
         labels,
-    } = Scene::new(receptor, ligand, options)?;
+    } = scene;
     let planned = |options: &DockOptions| {
         Plan::with_effects(
             &receptor,
@@ -128,7 +145,7 @@ pub fn plan(
                 };
                 let plan = planned(&coarser).ok()?;
                 let (fixed, per_rotation) = needs(&plan);
-                (fixed + per_rotation <= allowed).then_some((spacing * 100.0).ceil() / 100.0)
+                (fixed + per_rotation <= allowed).then(|| rounded_up(spacing, angstrom))
             });
             return Err(SearchError::Memory {
                 needed: fixed + per_rotation,
@@ -146,6 +163,8 @@ pub fn plan(
         _ => engine.basis.sizes(&engine.axis),
     };
     Ok(DockPlan {
+        unit,
+        angstrom,
         rotations: options.rotations,
         rotation_set: set_name(options.rotations),
         covering_radius_degrees: covering_radius(&set).to_degrees(),
@@ -172,7 +191,18 @@ pub fn plan(
     })
 }
 
+/// A spacing rounded up to hundredths of an Ångström, or of the power of ten below what plays its part.
+fn rounded_up(spacing: f64, angstrom: f64) -> f64 {
+    let per_unit = 10f64.powi(2 - angstrom.log10().floor() as i32);
+    (spacing * per_unit).ceil() / per_unit
+}
+
 impl DockPlan {
+    /// The knots that are docked, of receptor and ligand.
+    pub fn knots(&self) -> [&Knots; 2] {
+        [&self.receptor, &self.ligand]
+    }
+
     /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
     pub fn unresolved(&self) -> [usize; 2] {
         [&self.receptor, &self.ligand].map(|knots| self.engine.unresolved(knots).len())
@@ -189,6 +219,11 @@ impl DockPlan {
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
+    /// What poses are rescored with; `None` where the contact effect is off or the weight is 0.
+    pub(super) fn fine_contacts(&self) -> Option<FineContacts> {
+        fine_contacts(&self.decisions, &self.receptor, &self.ligand, &self.options)
+    }
+
     /// Whether an effect is on.
     pub fn is_on(&self, effect: Effect) -> bool {
         self.decisions.iter().any(|d| d.effect == effect && d.on)
@@ -202,9 +237,12 @@ impl DockPlan {
 
 impl std::fmt::Display for DockPlan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Three significant digits or so, two decimals of an Ångström.
+        let below = -self.angstrom.log10().floor() as i32;
+        let (digits, finer) = ((2 + below).max(0) as usize, (3 - below).max(0) as usize);
         write!(
             f,
-            "{} rotations ({:.1} degrees covering radius), grid {} x {} x {} at {:.2} Å, {} modes below {:.3} per Å, \
+            "{} rotations ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes below {:.finer$} per {unit}, \
              window of {} on {} x {} x {}, lifted axis -{K}..{K}; about {:.0} MB with {} in flight",
             self.rotations,
             self.covering_radius_degrees,
@@ -221,6 +259,9 @@ impl std::fmt::Display for DockPlan {
             self.memory_bytes() as f64 / 1e6,
             self.in_flight,
             K = self.lifted_modes,
+            unit = self.unit,
+            digits = digits,
+            finer = finer,
         )
     }
 }

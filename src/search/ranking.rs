@@ -4,7 +4,9 @@
 //! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
 //! pose was refined); rows of the table carry exact scores.
 //!
-//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses: the best pose's score where it stands alone, more where many
+//! Where poses are rescored, all this goes by the score and the fine contact potential together: the rank score.
+//!
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
 //! twentieth to a fifth ranked better than the best pose alone (docs/effects.md).
 
@@ -14,6 +16,7 @@ use super::peaks::Peak;
 use super::run::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
+use knotdock_scoring::rescoring::FineContacts;
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
@@ -21,7 +24,7 @@ use rayon::prelude::*;
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pose: Pose,
-    /// The fast path's score at `pose`.
+    /// The fast path's score at `pose`, and the fine contacts' there.
     score: f64,
     /// The grid pose that it came from.
     grid_pose: Pose,
@@ -31,6 +34,17 @@ pub(super) struct Candidate {
     refined: bool,
     rotation: usize,
     score_grid: f64,
+}
+
+/// What rows of the table are scored by.
+#[derive(Clone, Copy)]
+pub(super) struct Judge<'a> {
+    /// The exact score.
+    pub scorer: &'a ExactScorer,
+    /// What poses are rescored with.
+    pub rescorer: Option<&'a FineContacts>,
+    /// Which effects are on, by effect.
+    pub on: [bool; Effect::ALL.len()],
 }
 
 /// What is reported of the ranking.
@@ -45,16 +59,17 @@ pub(super) fn printed(pose: &Pose) -> Pose {
     Pose::from_parts(pose.quaternion(), pose.translation.into())
 }
 
-/// Grid poses and what the first of them were refined to (with the field's score there), best first, ties in the order given.
+/// Grid poses and what the first of them were refined to (with the field's score there), rescored, best first, ties in the order given.
 /// `at_grid` holds all terms of the first grid poses.
 pub(super) fn candidates(
     peaks: &[Peak],
     grid_poses: &[Pose],
     refined: &[(Pose, f64)],
     at_grid: &[ExactScore],
+    rescorer: Option<&FineContacts>,
 ) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = peaks
-        .iter()
+        .par_iter()
         .zip(grid_poses)
         .enumerate()
         .map(|(index, (peak, grid_pose))| {
@@ -68,7 +83,7 @@ pub(super) fn candidates(
                 rotation: peak.rotation as usize,
                 score_grid,
             };
-            match refined.get(index) {
+            let candidate = match refined.get(index) {
                 Some(&(pose, score)) if score > score_grid => Candidate {
                     pose,
                     score,
@@ -76,6 +91,11 @@ pub(super) fn candidates(
                     ..candidate
                 },
                 _ => candidate,
+            };
+            let fine = rescorer.map_or(0.0, |rescorer| rescorer.score(&candidate.pose));
+            Candidate {
+                score: candidate.score + fine,
+                ..candidate
             }
         })
         .filter(|candidate| candidate.score.is_finite())
@@ -117,14 +137,11 @@ const CLUSTER_TEMPERATURE: f64 = 0.1;
 /// Exactly scored rows: every pose, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
 /// clusters are numbered; ties in the order given.
 ///
-/// `on` says which effects are on, by effect.
-///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
 pub(super) fn report(
-    scorer: &ExactScorer,
+    judge: Judge,
     candidates: &[Candidate],
     clusters: &[usize],
-    on: [bool; Effect::ALL.len()],
     every_pose: bool,
     margin: f64,
     progress: &dyn Progress,
@@ -134,6 +151,7 @@ pub(super) fn report(
     let mut weights = vec![0.0; count];
     let best = candidates.first().map_or(0.0, |best| best.score.abs());
     let temperature = (CLUSTER_TEMPERATURE * best).max(f64::MIN_POSITIVE);
+    let background = Background::of(candidates);
     let mut founders = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
     for (candidate, &cluster) in candidates.iter().zip(clusters) {
@@ -150,19 +168,22 @@ pub(super) fn report(
     let mut rows: Vec<(RankedPose, usize)> = wanted
         .into_par_iter()
         .map(|(candidate, cluster)| {
-            let row = candidate.reported(scorer, on);
+            let row = candidate.reported(judge);
             progress.advance(1);
             (row, cluster)
         })
-        .filter(|(row, _)| row.score.is_finite() && row.score_unfiltered.is_finite())
+        .filter(|(row, _)| row.rank_score.is_finite() && row.score_unfiltered.is_finite())
         .collect();
-    rows.sort_by(|(a, _), (b, _)| b.score.total_cmp(&a.score));
+    rows.sort_by(|(a, _), (b, _)| b.rank_score.total_cmp(&a.rank_score));
     // Rows come best first: the first of a cluster is its best.
     let mut order: Vec<(usize, f64)> = Vec::new();
     let mut seen = vec![false; count];
     for (row, cluster) in &rows {
         if !std::mem::replace(&mut seen[*cluster], true) {
-            order.push((*cluster, row.score + temperature * weights[*cluster].ln()));
+            order.push((
+                *cluster,
+                row.rank_score + temperature * weights[*cluster].ln(),
+            ));
         }
     }
     order.sort_by(|(_, a), (_, b)| b.total_cmp(a));
@@ -179,6 +200,7 @@ pub(super) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
+                z_score: background.z_score(row.rank_score),
                 ..row
             })
         })
@@ -192,9 +214,38 @@ pub(super) fn report(
     }
 }
 
+/// What the run's kept poses score on the whole.
+struct Background {
+    mean: f64,
+    deviation: f64,
+}
+
+impl Background {
+    /// Mean and standard deviation of the candidates' rank scores by the fast path.
+    fn of(candidates: &[Candidate]) -> Self {
+        let count = candidates.len().max(1) as f64;
+        let mean = candidates.iter().map(|c| c.score).sum::<f64>() / count;
+        let squares = candidates.iter().map(|c| (c.score - mean).powi(2));
+        Self {
+            mean,
+            deviation: (squares.sum::<f64>() / count).sqrt(),
+        }
+    }
+
+    fn z_score(&self, rank_score: f64) -> Option<f64> {
+        let z = (rank_score - self.mean) / self.deviation;
+        z.is_finite().then_some(z)
+    }
+}
+
 impl Candidate {
     /// Its row of the table, exactly scored, not yet in a cluster.
-    fn reported(&self, scorer: &ExactScorer, on: [bool; Effect::ALL.len()]) -> RankedPose {
+    fn reported(&self, judge: Judge) -> RankedPose {
+        let Judge {
+            scorer,
+            rescorer,
+            on,
+        } = judge;
         let at_grid = || self.terms.unwrap_or_else(|| scorer.score(&self.grid_pose));
         let (pose, terms, refined) = if self.refined {
             let terms = scorer.score(&self.pose);
@@ -211,8 +262,12 @@ impl Candidate {
         } else {
             (self.grid_pose, at_grid(), false)
         };
+        let fine_contact = rescorer.map(|rescorer| rescorer.score(&pose));
         RankedPose {
             pose,
+            fine_contact,
+            rank_score: terms.score + fine_contact.unwrap_or(0.0),
+            z_score: None,
             score: terms.score,
             cluster: None,
             cluster_size: None,
@@ -261,6 +316,26 @@ mod tests {
         }
     }
 
+    /// Scores 1, 2, 3, 4 have mean 2.5 and variance 1.25; where all are alike nothing stands out.
+    #[test]
+    fn z_scores_are_against_the_kept_poses() {
+        let with = |scores: &[f64]| {
+            let peaks: Vec<Peak> = scores
+                .iter()
+                .map(|&score| Peak {
+                    score: score as f32,
+                    rotation: 0,
+                    voxel: 0,
+                })
+                .collect();
+            let poses = vec![at(0.0); scores.len()];
+            Background::of(&candidates(&peaks, &poses, &[], &[], None))
+        };
+        let z = with(&[1.0, 2.0, 3.0, 4.0]).z_score(5.0).unwrap();
+        assert!((z - 2.5 / 1.25f64.sqrt()).abs() < 1e-12);
+        assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
+    }
+
     /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
     #[test]
     fn an_undone_climb_is_reported_as_unrefined() {
@@ -276,9 +351,13 @@ mod tests {
             };
             // The fast path claims a gain of one.
             let refined = [(at(to), f64::from(peak.score) + 1.0)];
-            let candidates = candidates(&[peak], &[at(from)], &refined, &[]);
-            let on = [true, false, false];
-            let ranking = report(&scorer, &candidates, &[0], on, true, 0.0, &Silent);
+            let candidates = candidates(&[peak], &[at(from)], &refined, &[], None);
+            let judge = Judge {
+                scorer: &scorer,
+                rescorer: None,
+                on: [true, false, false],
+            };
+            let ranking = report(judge, &candidates, &[0], true, 0.0, &Silent);
             ranking.poses[0].clone()
         };
         let undone = climbed(touching, overlapping);

@@ -18,6 +18,8 @@ pub struct ClimbLimits {
     pub angle: f64,
     /// Radius of gyration of the ligand, Å: an angle times this is a length, so that both kinds of step compare.
     pub gyration: f64,
+    /// What plays the part of an Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
+    pub angstrom: f64,
 }
 
 /// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian about
@@ -51,7 +53,7 @@ pub fn climb(
     let mut pose = start;
     let (mut value, gradient) = score(&pose);
     let mut gradient = slope(&gradient);
-    let first_length = 0.25;
+    let first_length = 0.25 * limits.angstrom;
     let mut inverse = Matrix6::identity() * (first_length / gradient.norm().max(f64::MIN_POSITIVE));
     let mut fresh = true;
     let mut evaluations = 1;
@@ -62,13 +64,13 @@ pub fn climb(
             step = inverse * gradient;
         }
         let length = step.norm();
-        if !length.is_finite() || length < 1e-3 {
+        if !length.is_finite() || length < 1e-3 * limits.angstrom {
             break;
         }
-        step *= (1.0 / length).min(1.0);
+        step *= (limits.angstrom / length).min(1.0);
         // Halve until the score rises enough (Armijo).
         let mut next = None;
-        while evaluations < limits.evaluations && step.norm() > 1e-4 {
+        while evaluations < limits.evaluations && step.norm() > 1e-4 * limits.angstrom {
             let trial = moved(&pose, &step);
             if within(&trial) {
                 let (trial_value, trial_gradient) = score(&trial);
@@ -127,6 +129,7 @@ mod tests {
             distance: 5.0,
             angle: 1.0,
             gyration: 10.0,
+            angstrom: 1.0,
         };
         let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
         assert!((found.translation - top.translation).norm() < 0.01);
@@ -147,6 +150,7 @@ mod tests {
             distance: 2.0,
             angle: 0.2,
             gyration: 10.0,
+            angstrom: 1.0,
         };
         let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
         assert!(found.translation[0] > 1.5 && found.translation.norm() <= 2.0);

@@ -5,7 +5,7 @@ use super::costs::costs;
 use super::options::SearchError;
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::plan::DockPlan;
-use super::ranking::{candidates, clusters_of, merge, printed, report};
+use super::ranking::{Judge, candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
 use super::scan::{Chosen, choose_rank, scan};
 use cpu_time::ProcessTime;
@@ -59,25 +59,26 @@ impl Clock {
     }
 }
 
-/// Docks as planned.
+/// Docks as planned. The RMSD of `points` of the ligand, in its own frame, makes clusters: [`molecule_points`] of a molecule, the centres of
+/// the balls of a mesh.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
 pub fn dock(
     plan: &DockPlan,
-    ligand: &Molecule,
+    points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(plan.in_flight)
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| dock_in_pool(plan, ligand, progress))
+    pool.install(|| dock_in_pool(plan, points, progress))
 }
 
 fn dock_in_pool(
     plan: &DockPlan,
-    ligand: &Molecule,
+    points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let options = &plan.options;
@@ -116,8 +117,7 @@ fn dock_in_pool(
         })
         .collect();
 
-    let points = cluster_points(ligand);
-    let body = RigidBody::new(&points);
+    let body = RigidBody::new(points);
     let refined_count = plan.refined().min(peaks.len());
     progress.stage("refine", refined_count as u64);
     let refined: Vec<(Pose, f64)> = if refined_count == 0 {
@@ -129,6 +129,7 @@ fn dock_in_pool(
             distance: 3.0 * plan.spacing,
             angle: plan.covering_radius_degrees.to_radians(),
             gyration: body.gyration(),
+            angstrom: plan.angstrom,
         };
         grid_poses[..refined_count]
             .par_iter()
@@ -157,23 +158,33 @@ fn dock_in_pool(
     clock.lap("check");
 
     let on = Effect::ALL.map(|effect| plan.is_on(effect));
-    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid);
+    let rescorer = plan.fine_contacts();
+    if rescorer.is_some() {
+        progress.stage("rescore", 1);
+    }
+    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid, rescorer.as_ref());
+    clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| f64::from(peak.score));
+    let judge = Judge {
+        scorer: &scorer,
+        rescorer: rescorer.as_ref(),
+        on,
+    };
     let ranking = report(
-        &scorer,
+        judge,
         &candidates,
         &clusters,
-        on,
         options.every_pose,
         2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
-    let best = ranking.poses.first().map_or(1.0, |row| row.score.abs());
+    let scores = ranking.poses.iter().map(|row| row.score.abs());
+    let best = scores.reduce(f64::max).unwrap_or(1.0);
     let error = MeasuredError::over(&peaks, &at_grid, best);
     clock.lap("score");
 
@@ -189,8 +200,8 @@ fn dock_in_pool(
     })
 }
 
-/// Ligand points whose RMSD makes clusters: CA atoms, or all where fewer than three residues have one.
-fn cluster_points(ligand: &Molecule) -> Vec<[f64; 3]> {
+/// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.
+pub fn molecule_points(ligand: &Molecule) -> Vec<[f64; 3]> {
     let alphas: Vec<[f64; 3]> = ligand
         .atoms
         .iter()

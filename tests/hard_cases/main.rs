@@ -1,5 +1,5 @@
-//! The numerical hard cases, one file a family, each with its reason: what could go wrong there, and the independent reference that holds
-//! the code to its bound. One program, since each would compile the transforms anew.
+//! The numerical hard cases and identities of kernels, transforms, precision and the periodic box: one file a family, each case with its
+//! reason, and its story where it first failed. One program, since every one that uses the engines compiles them anew.
 
 #[path = "../../scoring/tests/scene/mod.rs"]
 mod scene;
@@ -9,5 +9,6 @@ mod kernel;
 mod knots;
 mod precision;
 mod properties;
+mod proteins;
 mod transform;
 mod wrap_around;

@@ -4,11 +4,13 @@
 //! count the reach only once: a ligand in the gap between receptor and image then scores with both. And the effective reach is one pair's:
 //! beyond it the tails of many pairs may add up in step, most so of two plates, whose knots all lie at the same distance.
 
-use crate::scene::{Pair, RADII, cloud, engine_options, knots};
+use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
+use knotdock_scoring::configuration::Configuration;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -126,6 +128,39 @@ fn the_field_ends_with_the_box() {
                 "axis {axis}, {boxes}: {there} of {here}"
             );
             assert!(slope.force.norm() < 1e-2 * here);
+        }
+    }
+}
+
+/// A ligand far wider than receptor and kernel on a grid of coarse cells: the ligand's own spread block must fit into the box. First it
+/// was the receptor's alone that was seen to, and where the window is wider than the kernel reaches (here 9 cells of 8 Å; or a kernel that
+/// is 0 everywhere, as for lambda = 1 without a skin) knots at the ligand's ends were spread outside the block: a panic in debug
+/// builds, wrong places in others. The direct sum over the same modes says what the grid should hold.
+#[test]
+fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
+    let (a, b) = (
+        knots(vec![[1.0, 2.0, 3.0]], &[1.7]),
+        cloud(60, 30.0, &RADII, 5),
+    );
+    for (spacing, lambda, offset) in [(Some(8.0), 10.0, 2.0), (None, 1.0, 0.0)] {
+        let mut options = engine_options(1e-2);
+        options.spacing = spacing;
+        options.kernel.lambda = lambda;
+        options.kernel.offset = offset;
+        let pair = Pair::<f64>::new(&a, &b, options);
+        let folded = Folded::<f64>::new(&pair.plan, &a, &b, Fold::Score);
+        let direct = Configuration::new(&pair.plan, &folded, &b, &Selection::all(&pair.plan.modes));
+        let mut work = direct.workspace();
+        let rotation = some_rotation();
+        let grid = pair.correlate(&rotation).grid;
+        let largest = grid.iter().fold(1e-9f64, |a, b| a.max(b.abs()));
+        for voxel in (0..grid.len()).step_by(grid.len() / 150) {
+            let (value, _) = direct.gradient(&pair.pose(rotation, voxel), &mut work);
+            let error = (grid[voxel] - value).abs() / largest;
+            assert!(
+                error < 1e-2,
+                "spacing {spacing:?}, voxel {voxel}: {error:e}"
+            );
         }
     }
 }

@@ -51,7 +51,7 @@ impl Default for Potential {
     /// The potential that this crate carries.
     fn default() -> Self {
         // A test holds the table to its form.
-        Self::parse(TABLE).unwrap_or_else(|_| Self(vec![vec![0.0; TYPES.len()]; TYPES.len()]))
+        Self::parse(TABLE).unwrap_or_else(|_| Self::zero())
     }
 }
 
@@ -97,28 +97,67 @@ impl Potential {
     /// # Errors
     /// [`PotentialError`] with the line that is not so, or when the energies are not finite and symmetric.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
-        let mut lines = (1..)
-            .zip(text.lines())
-            .filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
+        let mut lines = table_lines(text);
+        header(&mut lines, "")?;
+        Self::parse_rows(&mut lines, "")
+    }
+
+    /// Reads the rows of a table, one for each type in order, each with `prefix` before the type's name.
+    pub(crate) fn parse_rows<'a>(
+        lines: &mut impl Iterator<Item = (usize, &'a str)>,
+        prefix: &str,
+    ) -> Result<Self, PotentialError> {
         let wrong = |line: usize, message: String| PotentialError { line, message };
-        let expected = format!("type,{}", TYPES.join(","));
-        match lines.next() {
-            Some((_, header)) if header.trim() == expected => {}
-            Some((line, _)) => return Err(wrong(line, format!("the header is not `{expected}`"))),
-            None => return Err(wrong(1, "the table is empty".to_owned())),
-        }
         let mut rows = Vec::new();
         let mut last = 1;
-        for ((line, text), name) in lines.zip(TYPES) {
+        for ((line, text), name) in lines.by_ref().take(TYPES.len()).zip(TYPES) {
             last = line;
-            let mut fields = text.split(',').map(str::trim);
-            if fields.next() != Some(name) {
-                return Err(wrong(line, format!("this should be the row of {name}")));
-            }
-            let row: Result<Vec<f64>, _> = fields.map(str::parse).collect();
+            let fields = text
+                .strip_prefix(prefix)
+                .and_then(|text| text.strip_prefix(name))
+                .and_then(|text| text.strip_prefix(','))
+                .ok_or_else(|| wrong(line, format!("this should be the row of {prefix}{name}")))?;
+            let row: Result<Vec<f64>, _> =
+                fields.split(',').map(str::trim).map(str::parse).collect();
             rows.push(row.map_err(|_| wrong(line, "an energy is not a number".to_owned()))?);
         }
         rows.try_into().map_err(|message| wrong(last, message))
+    }
+
+    /// No energy at all.
+    pub fn zero() -> Self {
+        Self(vec![vec![0.0; TYPES.len()]; TYPES.len()])
+    }
+
+    /// Energy of a contact of types a and b, in RT.
+    pub fn energy(&self, a: usize, b: usize) -> f64 {
+        self.0[a][b]
+    }
+}
+
+/// Lines of a table with their 1-based numbers, without comments and empty lines.
+pub(crate) fn table_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty())
+}
+
+/// Takes the header of a table: `prefix`, then `type,` and the names of the types.
+pub(crate) fn header<'a>(
+    lines: &mut impl Iterator<Item = (usize, &'a str)>,
+    prefix: &str,
+) -> Result<(), PotentialError> {
+    let expected = format!("{prefix}type,{}", TYPES.join(","));
+    match lines.next() {
+        Some((_, header)) if header.trim() == expected => Ok(()),
+        Some((line, _)) => Err(PotentialError {
+            line,
+            message: format!("the header is not `{expected}`"),
+        }),
+        None => Err(PotentialError {
+            line: 1,
+            message: "the table is empty".to_owned(),
+        }),
     }
 }
 

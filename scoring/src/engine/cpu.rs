@@ -18,7 +18,7 @@ use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Columns that go through the x transforms together.
@@ -119,7 +119,6 @@ impl<T: Real> CpuEngine<T> {
         let scale = forward.cells_per_length();
         let center = forward.center();
         let mirrors = modes.mirrors();
-        let mut planner = FftPlanner::new();
         let largest = singular
             .first()
             .copied()
@@ -137,9 +136,9 @@ impl<T: Real> CpuEngine<T> {
             block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
             receptor_center: folded.center,
             mirrors,
-            inverse_x: planner.plan_fft_inverse(modes.size[0]),
-            inverse_y: planner.plan_fft_inverse(modes.size[1]),
-            inverse_z: planner.plan_fft_inverse(modes.size[2]),
+            inverse_x: T::inverse_fft(modes.size[0]),
+            inverse_y: T::inverse_fft(modes.size[1]),
+            inverse_z: T::inverse_fft(modes.size[2]),
             singular: singular.iter().map(|value| value / largest).collect(),
             plan,
         }

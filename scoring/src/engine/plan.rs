@@ -280,8 +280,10 @@ impl Plan {
         let mut points = 1.0;
         let size = [0, 1, 2].map(|axis| {
             let length = 2.0 * (receptor_extent[axis] + ligand_radius + effective_reach);
-            // The receptor's spread block must fit into the box.
-            let block = 2.0 * receptor_extent[axis] + (width as f64 + 3.0) * spacing;
+            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
+            // a kernel shorter than that window would make too small.
+            let extent = receptor_extent[axis].max(ligand_radius);
+            let block = 2.0 * extent + (width as f64 + 6.0) * spacing;
             let count = (length.max(block) / spacing).ceil().max(4.0);
             points *= count;
             if count < 1e6 {

@@ -15,14 +15,45 @@ pub mod real_fft_3d;
 pub mod spreading;
 pub mod truncation;
 
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_traits::Float;
+use rustfft::{Fft, FftPlanner};
+use std::sync::Arc;
 
 /// The two floating-point types that transforms run in.
+///
+/// Fourier transforms of a length are planned here and not where they are used: rustfft's planners are generic, and each program that
+/// named one (every test) would compile all its vector kernels anew.
 pub trait Real: rustfft::FftNum + Float + Default + std::ops::AddAssign {
     /// Rounds from f64.
     fn of(value: f64) -> Self;
     /// Widens to f64.
     fn wide(self) -> f64;
+    /// The transform of a length with exp(-2 pi i ...), without a factor.
+    fn forward_fft(length: usize) -> Arc<dyn Fft<Self>>;
+    /// The transform of a length with exp(+2 pi i ...), without a factor.
+    fn inverse_fft(length: usize) -> Arc<dyn Fft<Self>>;
+    /// The forward transform of `length` real numbers.
+    fn forward_real_fft(length: usize) -> Arc<dyn RealToComplex<Self>>;
+    /// The inverse transform to `length` real numbers.
+    fn inverse_real_fft(length: usize) -> Arc<dyn ComplexToReal<Self>>;
+}
+
+macro_rules! planned {
+    () => {
+        fn forward_fft(length: usize) -> Arc<dyn Fft<Self>> {
+            FftPlanner::new().plan_fft_forward(length)
+        }
+        fn inverse_fft(length: usize) -> Arc<dyn Fft<Self>> {
+            FftPlanner::new().plan_fft_inverse(length)
+        }
+        fn forward_real_fft(length: usize) -> Arc<dyn RealToComplex<Self>> {
+            RealFftPlanner::new().plan_fft_forward(length)
+        }
+        fn inverse_real_fft(length: usize) -> Arc<dyn ComplexToReal<Self>> {
+            RealFftPlanner::new().plan_fft_inverse(length)
+        }
+    };
 }
 
 impl Real for f32 {
@@ -32,6 +63,7 @@ impl Real for f32 {
     fn wide(self) -> f64 {
         f64::from(self)
     }
+    planned!();
 }
 
 impl Real for f64 {
@@ -41,6 +73,7 @@ impl Real for f64 {
     fn wide(self) -> f64 {
         self
     }
+    planned!();
 }
 
 /// Smallest size not below `least` that the fast Fourier transform does well.

@@ -9,7 +9,7 @@ use super::Real;
 use super::modes::{ModeSet, place};
 use super::spreading::{MAX_WIDTH, SpreadingKernel};
 use num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Lines along x that are held together while their planes are written: a cache line of complex numbers.
@@ -59,15 +59,14 @@ impl<T: Real> Forward<T> {
             let points = 2 * extent[axis].ceil() as usize + kernel.width() + 2;
             points.next_multiple_of(2).min(fine[axis])
         });
-        let mut planner = FftPlanner::new();
         Self {
             fine,
             block,
             fields,
             kernel,
-            along_x: planner.plan_fft_forward(fine[0]),
-            along_y: planner.plan_fft_forward(fine[1]),
-            along_z: planner.plan_fft_forward(fine[2]),
+            along_x: T::forward_fft(fine[0]),
+            along_y: T::forward_fft(fine[1]),
+            along_z: T::forward_fft(fine[2]),
             modes,
         }
     }

@@ -5,8 +5,8 @@
 
 use super::Real;
 use num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::{Fft, FftPlanner};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Planned transforms of one grid size.
@@ -29,14 +29,12 @@ impl<T: Real> RealFft3d<T> {
     /// Plans the transforms of a grid with `size` points per axis, each at least 1.
     pub fn new(size: [usize; 3]) -> Self {
         let [nx, ny, nz] = size;
-        let mut real = RealFftPlanner::new();
-        let mut complex = FftPlanner::new();
         Self {
             size,
-            z_forward: real.plan_fft_forward(nz),
-            z_inverse: real.plan_fft_inverse(nz),
-            y: [complex.plan_fft_forward(ny), complex.plan_fft_inverse(ny)],
-            x: [complex.plan_fft_forward(nx), complex.plan_fft_inverse(nx)],
+            z_forward: T::forward_real_fft(nz),
+            z_inverse: T::inverse_real_fft(nz),
+            y: [T::forward_fft(ny), T::inverse_fft(ny)],
+            x: [T::forward_fft(nx), T::inverse_fft(nx)],
         }
     }
 

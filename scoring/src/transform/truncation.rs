@@ -136,14 +136,13 @@ impl Tail {
 
 /// Number of modes in a set, conjugates counted.
 pub fn total(modes: &ModeSet) -> usize {
-    let half: usize = modes.columns.iter().map(|c| c.len()).sum();
     let plane: usize = modes
         .columns
         .iter()
         .filter(|c| c.kz == 0)
         .map(|c| c.len())
         .sum();
-    2 * half - plane
+    2 * modes.count - plane
 }
 
 /// The modes of the largest ball of frequencies that has at most `most`: what a correlation is cut to when it shall also cost
@@ -176,14 +175,12 @@ pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
 /// All groups of a set, by rising place.
 fn groups(modes: &ModeSet) -> Vec<Group> {
     let mut groups = Vec::with_capacity(modes.count / 2 + 1);
-    for column in &modes.columns {
+    let mirrors = modes.mirrors();
+    for (column, mirror) in modes.columns.iter().zip(mirrors) {
         // Of the plane kz = 0 the set stores both signs of ky; the mirror image joins the group.
         let mirror = match (column.kz, column.ky) {
             (0, ky) if ky < 0 => continue,
-            (0, ky) if ky > 0 => modes
-                .columns
-                .iter()
-                .find(|other| other.kz == 0 && other.ky == -ky),
+            (0, ky) if ky > 0 => modes.columns.get(mirror as usize),
             _ => None,
         };
         let wy = f64::from(column.ky) / modes.lengths[1];

@@ -11,13 +11,16 @@
 //!
 //! Behandish and Ilieş' ([`decomposition`]), Weller and Zachmann's distance-greedy packing ([`packing`]), balls about the
 //! cells of an octree ([`octree`]) and about voxels ([`voxels`]): all on one [`grid`], all covering the same nodes X, and all
-//! judged by the same [`hausdorff`] measurement.
+//! judged by the same [`hausdorff`] measurement. [`lattice`] gives balls of one radius for whoever correlates solids at a known
+//! resolution, and [`feature_size`] says how thick a solid is.
 
 pub mod ball_tree;
 pub mod cover;
 pub mod decomposition;
+pub mod feature_size;
 pub mod grid;
 pub mod hausdorff;
+pub mod lattice;
 pub mod octree;
 pub mod packing;
 pub mod sample;

@@ -6,7 +6,7 @@ use super::vectorized::{Adjoint, Forward, Sort};
 use super::window::{Quality, Window, best};
 use super::{Located, PlanError, TransformError, Workspace};
 use num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 use std::sync::Arc;
 
 /// Oversampling factors that are weighed against each other.
@@ -159,7 +159,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
             });
         };
         let window = Window::new(width, quality.shape, 0.02 * tolerance * quality.edge);
-        let mut planner = FftPlanner::new();
         Ok(Self {
             modes,
             grid: Grid {
@@ -178,8 +177,8 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 };
                 (0..n).map(factor).collect()
             }),
-            to_modes: fine.map(|n| planner.plan_fft_forward(n)),
-            to_grid: fine.map(|n| planner.plan_fft_inverse(n)),
+            to_modes: fine.map(T::forward_fft),
+            to_grid: fine.map(T::inverse_fft),
             window,
             estimate,
         })

@@ -25,14 +25,24 @@
 //! kernel's low-pass W(|w|); it is then exactly band-limited, and rings in space (nothing is windowed here, since a window over pairs
 //! is no product of two bodies' transforms and so not open to a rasteriser). The trim along the lifted axis has no meaning here.
 
+mod lens;
+mod pairs;
+mod tail_integral;
+#[cfg(test)]
+mod tests;
+
+pub use lens::lens_volume;
+pub use pairs::rim_and_reach;
+
 use super::bump::Bump;
 use super::low_pass::smooth_step_down;
-use super::radial_transform::{RadialTransform, sinc};
+use super::radial_transform::RadialTransform;
 use super::ranking::{KernelError, KernelOptions};
 use super::table::Table;
 use crate::lifted_axis::Fold;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use tail_integral::TailIntegral;
 
 /// Which frequencies of the product kernel count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,9 +92,6 @@ pub struct ProductKernel {
     tail: Table<1>,
     w_max: f64,
 }
-
-/// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its rim is left there.
-const RINGS: f64 = 24.0;
 
 impl ProductKernel {
     /// The kernel for balls of radius up to `largest` (Å, not yet grown) and frequencies up to `w_max` (1/Å); beyond it the transform
@@ -264,272 +271,5 @@ impl ProductKernel {
         let weights = self.options.slice_weights();
         let score = (0..3).map(|i| weights[i] * slices[i]).sum();
         [slices[0], slices[1], slices[2], score]
-    }
-
-    /// Distance in Å from which a pair's kernel counts as 0: exactly without a low-pass, to 1e-8 of its rim with one.
-    pub fn reach(&self, r: f64, s: f64) -> f64 {
-        let plain = r + s + 2.0 * self.options.offset;
-        match self.band {
-            Band::Whole => plain,
-            Band::LowPass => plain + RINGS * self.ring(),
-        }
-    }
-
-    /// Length over which the low-pass rings, Å.
-    fn ring(&self) -> f64 {
-        1.0 / (1.0 / self.options.resolution - 1.0 / self.options.pass_length)
-    }
-
-    /// Frequencies w and 4 pi w^2 W(w) dw times the three slices' transforms.
-    fn bands(&self, r: f64, s: f64) -> Vec<(f64, [f64; 3])> {
-        let stop = 1.0 / self.options.resolution;
-        // The sum over frequencies repeats in space with period 1 / step; it must not fall on itself.
-        let step = 1.0 / (4.0 * self.reach(r, s));
-        (0..)
-            .map(|n| f64::from(n) * step)
-            .take_while(|&w| w < stop)
-            .map(|w| {
-                let weight = 4.0 * PI * w * w * step;
-                (
-                    w,
-                    [0, 1, 2].map(|slice| weight * self.coupling(Fold::Slice(slice), r, s, w)),
-                )
-            })
-            .collect()
-    }
-
-    fn low_passed(&self, bands: &[(f64, [f64; 3])], distance: f64) -> [f64; 4] {
-        let mut slices = [0.0; 3];
-        for (w, band) in bands {
-            let wave = sinc(2.0 * w * distance);
-            for (slice, value) in slices.iter_mut().zip(band) {
-                *slice += value * wave;
-            }
-        }
-        self.with_score(slices)
-    }
-
-    /// Table over distance of one pair of radii: lanes are the slices 0, 1, 2 and the score kernel, in Å^3.
-    pub fn pair_table(&self, r: f64, s: f64) -> Table<4> {
-        let end = self.reach(r, s);
-        match self.band {
-            Band::Whole => {
-                let panel = r.min(s) / (16.0 + self.bump.alpha().min(1e3));
-                Table::fit(end, panel, |d| self.value(d, r, s))
-            }
-            Band::LowPass => {
-                let bands = self.bands(r, s);
-                let panel = 0.125 * self.options.resolution;
-                Table::fit(end, panel, |d| self.low_passed(&bands, d))
-            }
-        }
-    }
-
-    /// Whether [`Self::pair_table`] follows the kernel: not that of sharp balls, which is cheap as it is.
-    pub fn is_smooth(&self) -> bool {
-        self.band == Band::LowPass || self.bump.alpha().is_finite()
-    }
-
-    /// Integral over |w| > f of 4 pi w^2 |transform of the score kernel| up to [`Self::w_max`]: the most that dropping those modes can
-    /// move one pair.
-    pub fn leak_beyond(&self, r: f64, s: f64, frequency: f64) -> f64 {
-        let step = 0.125 / (r + s + 2.0 * self.options.offset);
-        (0..)
-            .map(|i| frequency + f64::from(i) * step)
-            .take_while(|&w| w < self.w_max)
-            .map(|w| 4.0 * PI * w * w * self.coupling(Fold::Score, r, s, w).abs() * step)
-            .sum()
-    }
-}
-
-/// Largest value of the score kernel in a pair's table, and the distance beyond which it stays below `share` of that.
-pub fn rim_and_reach(table: &Table<4>, share: f64) -> (f64, f64) {
-    let samples = 2000;
-    let distance = |i: usize| table.end() * i as f64 / samples as f64;
-    let rim = (0..samples)
-        .map(|i| table.value(distance(i))[3])
-        .fold(f64::MIN_POSITIVE, f64::max);
-    let reach = (0..samples)
-        .rev()
-        .find(|&i| table.value(distance(i))[3].abs() > share * rim)
-        .map_or(0.0, |i| distance(i + 1));
-    (rim, reach)
-}
-
-/// Volume in Å^3 that two balls of radii a and b share at distance d of their centres.
-///
-/// Inside the other while d <= |a - b|; else the two caps, pi (a + b - d)^2 (d^2 + 2 d (a + b) - 3 (a - b)^2) / (12 d)
-/// (Weisstein, "Sphere-Sphere Intersection", MathWorld).
-pub fn lens_volume(a: f64, b: f64, distance: f64) -> f64 {
-    if distance >= a + b {
-        return 0.0;
-    }
-    if distance <= (a - b).abs() {
-        return 4.0 / 3.0 * PI * a.min(b).powi(3);
-    }
-    let square = distance * distance + 2.0 * distance * (a + b) - 3.0 * (a - b).powi(2);
-    PI * (a + b - distance).powi(2) * square / (12.0 * distance)
-}
-
-/// Integral from v to 1 of u psi(u) du by double-exponential quadrature, which takes in the bump's end however steep it is.
-struct TailIntegral {
-    bump: Bump,
-    /// Distance from the nearer end of the unit interval (negative: from its start), and weight.
-    nodes: Vec<(f64, bool, f64)>,
-}
-
-impl TailIntegral {
-    fn new(bump: Bump) -> Self {
-        let step = 1.0 / 32.0;
-        let nodes = (-128..=128)
-            .map(|k| {
-                let t = f64::from(k) * step;
-                let s = 0.5 * PI * t.sinh();
-                let end = 1.0 / (1.0 + (2.0 * s.abs()).exp());
-                (end, s < 0.0, PI * t.cosh() * end * (1.0 - end) * step)
-            })
-            .filter(|&(_, _, weight)| weight > 1e-24)
-            .collect();
-        Self { bump, nodes }
-    }
-
-    fn value(&self, v: f64) -> f64 {
-        let length = 1.0 - v;
-        self.nodes
-            .iter()
-            .map(|&(end, at_start, weight)| {
-                let u = if at_start {
-                    v + length * end
-                } else {
-                    1.0 - length * end
-                };
-                length * weight * u * self.bump.value(u)
-            })
-            .sum()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Trim;
-
-    fn options(alpha: f64) -> KernelOptions {
-        KernelOptions {
-            lambda: 10.0,
-            offset: 2.0,
-            alpha,
-            resolution: 4.0,
-            pass_length: 8.0,
-            trim: Trim::FlatTop,
-        }
-    }
-
-    fn kernel(alpha: f64, band: Band) -> ProductKernel {
-        ProductKernel::new(options(alpha), band, 1.9, 3.0).unwrap()
-    }
-
-    /// The limit alpha -> infinity is the lens volume, approached like 1 / alpha: the bump's edge is about radius / alpha wide. Distances
-    /// cover coincidence, one ball inside the other, crossing, near touch and beyond.
-    #[test]
-    fn tends_to_the_lens_volume() {
-        let (a, b) = (1.5, 1.9);
-        let mut last = f64::INFINITY;
-        for alpha in [10.0, 30.0, 100.0, 300.0, 1000.0] {
-            let kernel = kernel(alpha, Band::Whole);
-            let mut worst: f64 = 0.0;
-            for d in [0.0, 1e-6, 0.2, 0.4, 1.0, 1.7, 2.5, 3.3, 3.4, 5.0] {
-                let error = (kernel.overlap(d, a, b) - lens_volume(a, b, d)).abs();
-                worst = worst.max(error / lens_volume(a, b, 0.0));
-            }
-            println!(
-                "alpha {alpha}: {worst:.2e}, times alpha {:.2}",
-                worst * alpha
-            );
-            assert!(worst * alpha < 6.0 && worst < 0.5 * last);
-            last = worst;
-        }
-        let sharp = kernel(f64::INFINITY, Band::Whole);
-        assert_eq!(sharp.overlap(0.3, a, b), 4.0 / 3.0 * PI * 1.5f64.powi(3));
-        // Two unit balls a radius apart share 5 pi / 12.
-        assert!((lens_volume(1.0, 1.0, 1.0) - 5.0 * PI / 12.0).abs() < 1e-15);
-    }
-
-    /// Overlap in space and product of transforms are the same function: the quadrature in u against the inverse radial transform.
-    #[test]
-    fn space_and_frequency_agree() {
-        let kernel = ProductKernel::new(options(2.0), Band::Whole, 1.9, 12.0).unwrap();
-        let scale = kernel.overlap(0.0, 1.5, 1.9);
-        for d in [0.0, 1e-7, 1e-3, 0.4, 1.0, 2.2, 3.3, 4.0] {
-            let step = 1.0 / 40.0;
-            let inverse: f64 = (0..480)
-                .map(|n| f64::from(n) * step)
-                .map(|w| {
-                    4.0 * PI
-                        * w
-                        * w
-                        * step
-                        * sinc(2.0 * w * d)
-                        * kernel.coupling(Fold::Slice(0), 1.5, 1.9, w)
-                })
-                .sum();
-            let direct = kernel.overlap(d, 1.5, 1.9);
-            assert!(
-                (inverse - direct).abs() < 1e-8 * scale,
-                "{d}: {inverse} against {direct}"
-            );
-        }
-        // At w = 0 both say the product of the bumps' volumes.
-        let volume =
-            kernel.spectrum(Body::Solid, 1.5, 0.0) * kernel.spectrum(Body::Solid, 1.9, 0.0);
-        let integral: f64 = (0..4000)
-            .map(|i| 1e-3 * f64::from(i))
-            .map(|d| 4.0 * PI * d * d * kernel.overlap(d, 1.5, 1.9) * 1e-3)
-            .sum();
-        assert!((integral / volume - 1.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn tables_follow_the_definition_and_end_where_they_say() {
-        for band in [Band::Whole, Band::LowPass] {
-            for alpha in [2.0, 4.0] {
-                let kernel = kernel(alpha, band);
-                let table = kernel.pair_table(1.5, 1.9);
-                let (rim, _) = rim_and_reach(&table, 1e-3);
-                let mut worst: f64 = 0.0;
-                for i in 0..200 {
-                    let d = 0.0137 + 0.05 * f64::from(i);
-                    let exact = kernel.value(d, 1.5, 1.9);
-                    for (ours, exact) in table.value(d).into_iter().zip(exact) {
-                        worst = worst.max((ours - exact).abs());
-                    }
-                }
-                let tail = table.value(0.999 * table.end())[3].abs();
-                println!("{band:?} {alpha}: rim {rim:.3}, table {worst:.1e}, tail {tail:.1e}");
-                assert!(worst < 1e-6 * rim && tail < 1e-7 * rim);
-            }
-        }
-    }
-
-    /// The four products of the double skin are the three slices with the weights of the score, in either domain.
-    #[test]
-    fn score_is_the_weighted_slices() {
-        let kernel = kernel(2.0, Band::LowPass);
-        let weights = kernel.options().slice_weights();
-        for w in [0.0, 0.05, 0.12, 0.2, 0.24] {
-            let sum: f64 = (0..3)
-                .map(|i| weights[i] * kernel.coupling(Fold::Slice(i), 1.5, 1.9, w))
-                .sum();
-            let score = kernel.coupling(Fold::Score, 1.5, 1.9, w);
-            assert!((sum - score).abs() < 1e-12 * score.abs().max(1.0));
-        }
-        assert_eq!(kernel.low_pass(0.25), 0.0);
-    }
-
-    #[test]
-    fn refuses_what_defines_no_kernel() {
-        assert!(ProductKernel::new(options(0.0), Band::Whole, 1.9, 1.0).is_err());
-        assert!(ProductKernel::new(options(2.0), Band::Whole, f64::NAN, 1.0).is_err());
-        assert!(ProductKernel::new(options(2.0), Band::Whole, 1.9, 0.0).is_err());
     }
 }

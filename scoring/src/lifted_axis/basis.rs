@@ -1,0 +1,164 @@
+//! The basis in which knots meet the fourth axis: radius classes, lifted modes, or nodes over the radii.
+
+use super::nodes::{MOST_NODES, node_value, nodes_for};
+use super::{Fold, LiftedAxis};
+use crate::kernel::table::Table;
+use crate::kernel::{ProductKernel, RankingKernel};
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// The functions of a radius in which receptor and ligand meet the lifted axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RadiusBasis {
+    /// One indicator for each distinct radius (Å): exact, and the shortest when radii are few.
+    Classes {
+        /// Distinct radii of the receptor.
+        receptor: Vec<f64>,
+        /// Distinct radii of the ligand.
+        ligand: Vec<f64>,
+    },
+    /// 1, cos and sin of 2 pi eta_k r for k = 1..=K: the lifted modes themselves, for any number of radii.
+    Modes,
+    /// Lagrange polynomials on Chebyshev nodes (Å): any number of radii for the product kernel, whose factors are smooth in the radius
+    /// and have no lifted modes.
+    Nodes {
+        /// Nodes over the receptor's radii.
+        receptor: Vec<f64>,
+        /// Nodes over the ligand's radii.
+        ligand: Vec<f64>,
+    },
+}
+
+impl RadiusBasis {
+    /// The shorter of the two for these radii.
+    pub fn choose(axis: &LiftedAxis, receptor: Vec<f64>, ligand: Vec<f64>) -> Self {
+        if receptor.len().max(ligand.len()) <= 2 * axis.modes() + 1 {
+            Self::Classes { receptor, ligand }
+        } else {
+            Self::Modes
+        }
+    }
+
+    /// The basis for a product kernel on |w| <= `w_max`, and the largest error of interpolating over radii relative to the largest ball's
+    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as `MOST_NODES` nodes bring it.
+    pub fn for_product(
+        kernel: &ProductKernel,
+        receptor: Vec<f64>,
+        ligand: Vec<f64>,
+        w_max: f64,
+        tolerance: f64,
+    ) -> (Self, f64) {
+        if receptor.len().max(ligand.len()) <= MOST_NODES {
+            return (Self::Classes { receptor, ligand }, 0.0);
+        }
+        let (receptor, a) = nodes_for(kernel, &receptor, w_max, tolerance);
+        let (ligand, b) = nodes_for(kernel, &ligand, w_max, tolerance);
+        (Self::Nodes { receptor, ligand }, a.max(b))
+    }
+
+    /// Number of functions on the receptor's and on the ligand's side.
+    pub fn sizes(&self, axis: &LiftedAxis) -> (usize, usize) {
+        match self {
+            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
+                (receptor.len(), ligand.len())
+            }
+            Self::Modes => (2 * axis.modes() + 1, 2 * axis.modes() + 1),
+        }
+    }
+
+    /// Value of function `index` at a radius of the receptor.
+    pub fn receptor_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
+        match self {
+            Self::Classes { receptor, .. } => f64::from(u8::from(receptor[index] == radius)),
+            Self::Nodes { receptor, .. } => node_value(receptor, index, radius),
+            Self::Modes => mode_value(axis, index, radius),
+        }
+    }
+
+    /// Value of function `index` at a radius of the ligand.
+    pub fn ligand_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
+        match self {
+            Self::Classes { ligand, .. } => f64::from(u8::from(ligand[index] == radius)),
+            Self::Nodes { ligand, .. } => node_value(ligand, index, radius),
+            Self::Modes => mode_value(axis, index, radius),
+        }
+    }
+
+    /// Radial spectrum that couples receptor function a with ligand function b in the folded kernel, on 0 <= |w| <= `w_max`;
+    /// `None` where it is zero.
+    pub fn coupling(
+        &self,
+        kernel: &RankingKernel,
+        axis: &LiftedAxis,
+        fold: Fold,
+        (a, b): (usize, usize),
+        w_max: f64,
+    ) -> Option<Table<1>> {
+        let profile = match self {
+            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
+                let sigma = receptor[a] + ligand[b];
+                axis.profile(|axis, k| {
+                    let turn = Complex64::cis(-2.0 * PI * axis.eta(k) * sigma)
+                        * axis.fold_factor(kernel, fold, k);
+                    if k == 0 { turn } else { 2.0 * turn }
+                })
+            }
+            Self::Modes => {
+                // sum_k Z_k exp(-i theta (r + s)) = Z_0 + 2 sum [Re Z cos theta(r + s) + Im Z sin theta(r + s)].
+                let (ka, kb) = (a.div_ceil(2), b.div_ceil(2));
+                if ka != kb {
+                    return None;
+                }
+                let mix = match (a % 2 == 1, b % 2 == 1) {
+                    _ if a == 0 => Complex64::new(1.0, 0.0),
+                    (true, true) => Complex64::new(2.0, 0.0),
+                    (false, false) => Complex64::new(-2.0, 0.0),
+                    // Im Z = Re(-i Z).
+                    _ => Complex64::new(0.0, -2.0),
+                };
+                axis.profile(|axis, k| {
+                    if k == ka as i64 {
+                        mix * axis.fold_factor(kernel, fold, k)
+                    } else {
+                        Complex64::new(0.0, 0.0)
+                    }
+                })
+            }
+        };
+        let panel = 0.125 / kernel.reach();
+        Some(Table::fit(w_max, panel.max(w_max / 2000.0), |w| {
+            [kernel.spectrum_of(&profile, w)]
+        }))
+    }
+
+    /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a radius, and the two
+    /// bodies' transforms at their radii multiply. `None` for [`Self::Modes`], whose functions stand for no radius.
+    pub fn product_coupling(
+        &self,
+        kernel: &ProductKernel,
+        fold: Fold,
+        (a, b): (usize, usize),
+        w_max: f64,
+    ) -> Option<Table<1>> {
+        let (Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand }) = self else {
+            return None;
+        };
+        let (r, s) = (receptor[a], ligand[b]);
+        let options = kernel.options();
+        let support = r + s + 2.0 * options.offset;
+        let fall = 1.0 / options.resolution - 1.0 / options.pass_length;
+        let panel = (0.25 / support).min(0.1 * fall);
+        Some(Table::fit(w_max, panel.max(w_max / 2000.0), |w| {
+            [kernel.coupling(fold, r, s, w)]
+        }))
+    }
+}
+
+fn mode_value(axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
+    let angle = 2.0 * PI * axis.eta(index.div_ceil(2) as i64) * radius;
+    if index % 2 == 1 || index == 0 {
+        angle.cos()
+    } else {
+        angle.sin()
+    }
+}

@@ -1,0 +1,67 @@
+use super::*;
+use crate::kernel::{KernelOptions, Trim};
+
+fn kernel(low: f64, high: f64) -> RankingKernel {
+    let options = KernelOptions {
+        lambda: 10.0,
+        offset: 2.0,
+        alpha: 2.0,
+        resolution: 4.0,
+        pass_length: 8.0,
+        trim: Trim::FlatTop,
+    };
+    RankingKernel::new(options, low, high, 1.0).unwrap()
+}
+
+#[test]
+fn series_converges_to_the_slices() {
+    let kernel = kernel(3.0, 3.8);
+    let mut last = usize::MAX;
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6].into_iter().rev() {
+        let (axis, error) = LiftedAxis::for_tolerance(&kernel, tolerance);
+        assert!(error <= tolerance);
+        assert!(axis.modes() <= last);
+        last = axis.modes();
+    }
+}
+
+/// Both bases are the same finite sum over eta_k written two ways: they agree to rounding.
+#[test]
+fn classes_and_modes_are_the_same_sum() {
+    let kernel = kernel(3.0, 3.8);
+    let axis = LiftedAxis::new(&kernel, 9);
+    let (r, s) = (1.61, 1.83);
+    let classes = RadiusBasis::Classes {
+        receptor: vec![r],
+        ligand: vec![s],
+    };
+    let modes = RadiusBasis::Modes;
+    for fold in [Fold::Score, Fold::Slice(0), Fold::Slice(2)] {
+        for w in [0.0, 0.05, 0.13, 0.22] {
+            let direct = classes
+                .coupling(&kernel, &axis, fold, (0, 0), 0.25)
+                .unwrap()
+                .value(w)[0];
+            let (na, nb) = modes.sizes(&axis);
+            let mut sum = 0.0;
+            for a in 0..na {
+                for b in 0..nb {
+                    if let Some(table) = modes.coupling(&kernel, &axis, fold, (a, b), 0.25) {
+                        sum += table.value(w)[0]
+                            * modes.receptor_value(&axis, a, r)
+                            * modes.ligand_value(&axis, b, s);
+                    }
+                }
+            }
+            let mut definition = Complex64::new(0.0, 0.0);
+            for k in -9..=9 {
+                definition += axis.coefficient(&kernel, w, k)
+                    * axis.fold_factor(&kernel, fold, k)
+                    * Complex64::cis(-2.0 * PI * axis.eta(k) * (r + s));
+            }
+            assert!((direct - sum).abs() < 1e-6 * direct.abs().max(1.0));
+            assert!((definition.re - sum).abs() < 1e-6 * direct.abs().max(1.0));
+            assert!(definition.im.abs() < 1e-9 * direct.abs().max(1.0));
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The potential by distance range: names, ends, and the table that a script derives.
+
+use crate::effect::contact::{Potential, PotentialError, header, table_lines};
+use serde::{Deserialize, Serialize};
+
+/// Names of the ranges as they stand in the table, from near to far.
+pub const RANGES: [&str; 3] = ["near", "middle", "far"];
+
+/// Where each range begins to give way to the next (the last: to nothing) and where it has, Å.
+pub(super) const ENDS: [[f64; 2]; 3] = [[3.5, 4.5], [5.0, 6.0], [7.0, 8.0]];
+
+/// The potential as its script wrote it: lines of `#`, a header, and a row for each range and type.
+const TABLE: &str = include_str!("fine_contact_potential.csv");
+
+/// Energies of contacts by distance range and types, in units of RT; lower is better.
+///
+/// Ours, derived by `scripts/contact_potential.py --fine`: in each range minus the logarithm of the contacts in known complexes over those
+/// in docked poses, the reference state of DARS (Chuang, Kozakov, Brenke, Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227), mean removed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct FinePotential {
+    /// One table for each of [`RANGES`].
+    pub ranges: [Potential; 3],
+}
+
+impl Default for FinePotential {
+    /// The potential that this crate carries.
+    fn default() -> Self {
+        // A test holds the table to its form.
+        Self::parse(TABLE).unwrap_or_else(|_| Self {
+            ranges: std::array::from_fn(|_| Potential::zero()),
+        })
+    }
+}
+
+impl FinePotential {
+    /// Reads a table: lines of `#`, a header `range,type,` and the names of the types, then for each range a row for each type, in order.
+    ///
+    /// # Errors
+    /// [`PotentialError`] with the line that is not so, or when the energies of a range are not finite and symmetric.
+    pub fn parse(text: &str) -> Result<Self, PotentialError> {
+        let mut lines = table_lines(text);
+        header(&mut lines, "range,")?;
+        let mut range = |name: &str| Potential::parse_rows(&mut lines, &format!("{name},"));
+        let [near, middle, far] = RANGES;
+        Ok(Self {
+            ranges: [range(near)?, range(middle)?, range(far)?],
+        })
+    }
+}
+
+/// 1 up to `start`, 0 from `stop` on, and in between the polynomial of degree 5 whose first two derivatives vanish at both.
+pub(super) fn step_down(distance: f64, [start, stop]: [f64; 2]) -> f64 {
+    let u = ((distance - start) / (stop - start)).clamp(0.0, 1.0);
+    1.0 - u * u * u * (10.0 + u * (6.0 * u - 15.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::contact::TYPES;
+
+    #[test]
+    fn the_table_is_whole_and_says_what_chemistry_does() {
+        let FinePotential { ranges } = FinePotential::parse(TABLE).unwrap();
+        assert_eq!(FinePotential::default().ranges, ranges);
+        let index = |name: &str| TYPES.iter().position(|kind| *kind == name).unwrap();
+        let near = |a: &str, b: &str| ranges[0].energy(index(a), index(b));
+        // Opposite charges attract and like ones repel where they meet, fat sticks to fat.
+        assert!(near("KNZ", "DOD") < near("KNZ", "KNZ"));
+        assert!(near("LCD", "LCD") < near("LCD", "DOD"));
+    }
+
+    #[test]
+    fn tables_that_are_none_are_refused_by_line() {
+        assert_eq!(
+            FinePotential::parse("# x\nrange,type,A\n")
+                .unwrap_err()
+                .line,
+            2
+        );
+        let first = TABLE
+            .lines()
+            .position(|line| line.starts_with("far,CA,"))
+            .unwrap();
+        let lines: Vec<&str> = TABLE.lines().collect();
+        let spoilt = |line: &str| {
+            let mut lines = lines.clone();
+            lines[first] = line;
+            FinePotential::parse(&lines.join("\n"))
+        };
+        assert_eq!(spoilt("near,CA,1").unwrap_err().line, first + 1);
+        assert_eq!(spoilt("far,CA,x").unwrap_err().line, first + 1);
+        assert!(FinePotential::parse(&lines[..first].join("\n")).is_err());
+    }
+
+    #[test]
+    fn steps_fall_smoothly() {
+        let ends = [3.5, 4.5];
+        assert_eq!(
+            [3.0, 3.5, 4.0, 4.5, 9.0].map(|d| step_down(d, ends)),
+            [1.0, 1.0, 0.5, 0.0, 0.0]
+        );
+    }
+}

@@ -1,0 +1,257 @@
+//! The two bodies of a run: molecules or meshes, and what differs between them.
+
+use std::path::Path;
+
+use knotdock::output::assemblies::write_assemblies;
+use knotdock::output::complexes::write_complexes;
+use knotdock::output::input_record::InputRecord;
+use knotdock::output::manifest::InputEntry;
+use knotdock::output::poses::PoseRow;
+use knotdock::search::meshes::{
+    GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS, sample_pair,
+};
+use knotdock::search::{
+    self, DockOptions, DockPlan, Scene, SearchError, molecule_points, plan_scene,
+};
+use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
+
+use super::console::Console;
+use super::failure::Failure;
+use super::input::{Input, label};
+use super::mesh_input::{MeshInput, is_mesh};
+
+/// The bodies as read.
+pub enum Bodies {
+    /// Two molecules, which stays first.
+    Molecules(Box<[Input; 2]>),
+    /// Two meshes, likewise.
+    Meshes(Box<[MeshInput; 2]>),
+}
+
+/// Bodies that are planned to be docked.
+pub struct Planned {
+    /// The plan.
+    pub plan: DockPlan,
+    /// Points of the ligand whose RMSD makes clusters.
+    pub points: Vec<[f64; 3]>,
+    /// How meshes were sampled.
+    pub sampled: Option<MeshPair>,
+}
+
+/// What was written of the first ranks.
+pub struct WrittenBodies {
+    /// Names of the files, in the order of the rows.
+    pub names: Vec<String>,
+    /// Chain names in complexes; none of meshes.
+    pub chains: Option<ChainMap>,
+}
+
+/// Names of the two sides.
+const SIDES: [&str; 2] = ["Receptor", "Ligand"];
+
+impl Bodies {
+    /// Reads two bodies of one kind as the command line names them.
+    pub fn read(receptor: &str, ligand: &str, reading: &ReadOptions) -> Result<Self, Failure> {
+        Self::of(
+            [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
+            reading,
+        )
+    }
+
+    /// Reads what a run recorded; see [`Input::recorded`].
+    pub fn recorded(
+        records: [&InputRecord; 2],
+        run: &Path,
+        reading: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
+        let [receptor, ligand] = records;
+        let specs = [
+            receptor.locate(&folders)?.spec(),
+            ligand.locate(&folders)?.spec(),
+        ];
+        Self::of(specs, reading)
+    }
+
+    fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
+        let [receptor, ligand] = &specs;
+        match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
+            [false, false] => Ok(Self::Molecules(Box::new([
+                Input::of(receptor, reading)?,
+                Input::of(ligand, reading)?,
+            ]))),
+            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(
+                "--waters, --hetatm, --hydrogens, --altloc and --model belong to molecules, and these are meshes",
+            )
+            .remedy("leave them out")),
+            [true, true] => Ok(Self::Meshes(Box::new([
+                MeshInput::read(receptor)?,
+                MeshInput::read(ligand)?,
+            ]))),
+            [first, _] => {
+                let (mesh, other) = if first {
+                    (receptor, ligand)
+                } else {
+                    (ligand, receptor)
+                };
+                Err(Failure::input(format!(
+                    "a mesh cannot be docked with a molecule, {}",
+                    other.path.display()
+                ))
+                .at(&mesh.path)
+                .remedy("dock two meshes in one unit of length, or two molecules"))
+            }
+        }
+    }
+
+    /// Says what was read, and what to beware of.
+    pub fn describe(&self, console: Console) {
+        match self {
+            Self::Molecules(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                console.say(format!(
+                    "Receptor: {}\nLigand: {}",
+                    receptor.molecule.report, ligand.molecule.report
+                ));
+            }
+            Self::Meshes(inputs) => {
+                for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
+                    console.say(format!("{side}: {}", input.report));
+                    for warning in input.report.warnings() {
+                        console.warn(format!("{}: {warning}", input.record.path.display()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not among these.
+    pub fn plan(
+        &self,
+        options: &mut DockOptions,
+        offset: Option<f64>,
+        given: GivenLengths,
+        console: Console,
+    ) -> Result<Planned, Failure> {
+        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
+        match self {
+            Self::Molecules(inputs) => {
+                if options.sample_grid.is_some() || options.sample_weights.is_some() {
+                    return Err(Failure::input(
+                        "--sample-grid and --sample-weights belong to meshes, and these are molecules",
+                    )
+                    .remedy("leave them out: the balls of a molecule are its atoms"));
+                }
+                let [receptor, ligand] = inputs.as_ref();
+                let plan =
+                    search::plan(&receptor.molecule, &ligand.molecule, options).map_err(refused)?;
+                Ok(Planned {
+                    plan,
+                    points: molecule_points(&ligand.molecule),
+                    sampled: None,
+                })
+            }
+            Self::Meshes(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                if options.core_weight != 1.0 {
+                    return Err(Failure::input(
+                        "--core-weight weighs buried atoms, and meshes have none",
+                    )
+                    .remedy("leave it out"));
+                }
+                let sampling = MeshOptions {
+                    per_axis: *options.sample_grid.get_or_insert(PER_AXIS),
+                    weights: *options.sample_weights.get_or_insert_default(),
+                    offset,
+                    alpha: options.alpha,
+                };
+                let pair = sample_pair(&receptor.solid, &ligand.solid, &sampling)
+                    .map_err(|error| located(&error, inputs))?;
+                pair.defaults(options, given);
+                console.say(told(&pair));
+                let scene = Scene::of_meshes(&pair, options).map_err(refused)?;
+                Ok(Planned {
+                    plan: plan_scene(scene, options).map_err(refused)?,
+                    points: pair.parts[1].knots.centers.clone(),
+                    sampled: Some(pair),
+                })
+            }
+        }
+    }
+
+    /// Writes the bodies in the poses of `rows` into a folder.
+    pub fn write(&self, rows: &[PoseRow], folder: &Path) -> Result<WrittenBodies, Failure> {
+        match self {
+            Self::Molecules(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                let written = write_complexes(&receptor.molecule, &ligand.molecule, rows, folder)?;
+                Ok(WrittenBodies {
+                    names: written.names,
+                    chains: Some(written.chains),
+                })
+            }
+            Self::Meshes(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Ok(WrittenBodies {
+                    names: write_assemblies(&receptor.mesh, &ligand.mesh, rows, folder)?,
+                    chains: None,
+                })
+            }
+        }
+    }
+
+    /// Receptor and ligand for run.json.
+    pub fn entries(&self, sampled: Option<&MeshPair>) -> Result<[InputEntry; 2], Failure> {
+        let [receptor, ligand] = match self {
+            Self::Molecules(inputs) => inputs.each_ref().map(Input::entry),
+            Self::Meshes(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                let part = |index: usize| sampled.map(|pair| &pair.parts[index]);
+                [receptor.entry(part(0)), ligand.entry(part(1))]
+            }
+        };
+        Ok([receptor?, ligand?])
+    }
+
+    /// Names for directories.
+    pub fn labels(&self) -> [String; 2] {
+        match self {
+            Self::Molecules(inputs) => inputs.each_ref().map(|input| label(&input.record)),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| label(&input.record)),
+        }
+    }
+}
+
+/// A failure that names the mesh at fault.
+fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+    let failure = Failure::input(error).remedy(error.remedy());
+    match error.part() {
+        Some(part) => failure.at(&inputs[part].record.path),
+        None => failure,
+    }
+}
+
+/// How meshes were sampled.
+fn told(pair: &MeshPair) -> String {
+    let [receptor, ligand] = pair.parts.each_ref().map(|part| {
+        let weights = match &part.weights {
+            Some(fit) => format!(
+                "weights fitted (off one inside by {:.2} rms, integral {:.3} of the volume)",
+                fit.rms_fitted, fit.volume_fitted
+            ),
+            None => "weights of one".to_owned(),
+        };
+        format!(
+            "{} balls of radius {:.4e}, one for {k} x {k} x {k} nodes; eps {:.4e}, feature size {:.4e}; {weights}",
+            part.balls,
+            part.radius,
+            part.epsilon,
+            part.feature_size,
+            k = part.per_cell,
+        )
+    });
+    format!(
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one radius, so the kernel is the cone",
+        pair.offset
+    )
+}

@@ -1,0 +1,133 @@
+//! Assemblies: two meshes in one OBJ file, the receptor as it was and the ligand in its place, one file a rank.
+//!
+//! The parts are the groups `receptor` and `ligand`. Coordinates are in the unit of the mesh files and in the receptor's frame, in the
+//! shortest digits that read back to the same f64. Vertices are those that were docked: coincident ones of the files are one, and triangles
+//! that faced inward are turned.
+
+use std::io;
+use std::path::Path;
+
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::mesh::Mesh;
+
+use super::manifest::VERSION;
+use super::poses::{PoseRow, number};
+use super::staging::{StagingError, write_whole};
+
+/// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the rows.
+///
+/// # Errors
+/// [`StagingError`] when the folder cannot be made or a file cannot be written.
+pub fn write_assemblies(
+    receptor: &Mesh,
+    ligand: &Mesh,
+    rows: &[PoseRow],
+    folder: &Path,
+) -> Result<Vec<String>, StagingError> {
+    if !rows.is_empty() {
+        std::fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
+            directory: folder.to_owned(),
+            source,
+        })?;
+    }
+    rows.iter()
+        .map(|row| {
+            let name = format!("rank_{:04}.obj", row.rank);
+            write_whole(&folder.join(&name), |file| {
+                write_assembly(file, receptor, ligand, row)
+            })?;
+            Ok(name)
+        })
+        .collect()
+}
+
+fn write_assembly(
+    file: &mut dyn io::Write,
+    receptor: &Mesh,
+    ligand: &Mesh,
+    row: &PoseRow,
+) -> io::Result<()> {
+    let [w, x, y, z] = row.pose.quaternion();
+    let t = row.pose.translation;
+    writeln!(file, "# knotdock {VERSION}, rank {}", row.rank)?;
+    writeln!(
+        file,
+        "# ligand turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}, then moved by {} {} {}",
+        number(t.x),
+        number(t.y),
+        number(t.z)
+    )?;
+    let vertices = write_part(file, "receptor", receptor, &Pose::identity(), 0)?;
+    write_part(file, "ligand", ligand, &row.pose, vertices)?;
+    Ok(())
+}
+
+/// Writes a part behind `before` vertices, and returns how many there are then.
+fn write_part(
+    file: &mut dyn io::Write,
+    name: &str,
+    mesh: &Mesh,
+    pose: &Pose,
+    before: usize,
+) -> io::Result<usize> {
+    writeln!(file, "g {name}")?;
+    for &position in mesh.positions() {
+        let [x, y, z] = pose.apply(position).map(number);
+        writeln!(file, "v {x} {y} {z}")?;
+    }
+    for triangle in mesh.triangles() {
+        let [a, b, c] = triangle.map(|corner| before + corner as usize + 1);
+        writeln!(file, "f {a} {b} {c}")?;
+    }
+    Ok(before + mesh.positions().len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The file holds both parts, and the ligand's vertices are the pose's images of its own.
+    #[test]
+    fn the_parts_are_groups_and_the_ligand_is_in_its_place() {
+        let corners = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0 / 3.0],
+        ];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let mesh = knotdock_structures::mesh::from_triangles(&corners, &faces)
+            .unwrap()
+            .0;
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let row = PoseRow {
+            rank: 7,
+            pose: Pose::from_parts([half, 0.0, 0.0, half], [10.0, 20.0, 1e-7]),
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let names = write_assemblies(&mesh, &mesh, &[row], folder.path()).unwrap();
+        assert_eq!(names, ["rank_0007.obj"]);
+        let text = std::fs::read_to_string(folder.path().join(&names[0])).unwrap();
+        let words = |start: &str| -> Vec<String> {
+            let lines = text.lines().filter(|line| line.starts_with(start));
+            lines
+                .map(|line| line[start.len()..].trim().to_owned())
+                .collect()
+        };
+        assert_eq!(words("g "), ["receptor", "ligand"]);
+        let vertices: Vec<Vec<f64>> = words("v ")
+            .iter()
+            .map(|line| line.split(' ').map(|x| x.parse().unwrap()).collect())
+            .collect();
+        assert_eq!(vertices.len(), 8);
+        assert_eq!(vertices[3], [0.0, 0.0, 1.0 / 3.0]);
+        // Welding numbers vertices as faces name them: the first face is 1 2 3, and the corner on x comes third.
+        for (index, corner) in [0, 2, 1, 3].into_iter().enumerate() {
+            assert_eq!(vertices[4 + index], row.pose.apply(corners[corner]));
+        }
+        // A quarter turn about z takes x to y.
+        assert!((vertices[6][0] - 10.0).abs() < 1e-12 && (vertices[6][1] - 21.0).abs() < 1e-12);
+        let faces = words("f ");
+        assert_eq!((faces.len(), faces[4].as_str()), (8, "5 6 7"));
+    }
+}

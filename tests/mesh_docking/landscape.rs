@@ -1,0 +1,143 @@
+//! The exact sum about the right pose: what the kernel makes of solids, before any search.
+
+use super::parts::{Pair, Part};
+use super::scenes::{broken, peg, solid, torus};
+use knotdock::search::meshes::{
+    GivenLengths, MeshOptions, MeshPair, PER_AXIS, RADIUS, RESOLUTION, SampleWeights, sample_pair,
+};
+use knotdock::search::{DockOptions, Scene};
+use knotdock_scoring::engine::Plan;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::kernel::RankingKernel;
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::sampler::weights::bump_volume;
+use nalgebra::{UnitQuaternion, Vector3};
+
+fn sampled(pair: &Pair) -> MeshPair {
+    let options = MeshOptions {
+        per_axis: PER_AXIS,
+        offset: None,
+        weights: SampleWeights::Fitted,
+        alpha: 2.0,
+    };
+    sample_pair(&solid(&pair.receptor), &solid(&pair.ligand), &options).unwrap()
+}
+
+fn scorer(meshes: &MeshPair) -> ExactScorer {
+    let mut options = DockOptions::default();
+    meshes.defaults(&mut options, GivenLengths::default());
+    let scene = Scene::of_meshes(meshes, &options).unwrap();
+    let plan = Plan::new(&scene.receptor, &scene.ligand, options.engine()).unwrap();
+    ExactScorer::new(&plan.kernel, &scene.receptor, &scene.ligand).unwrap()
+}
+
+/// A pose that turns the ligand about its middle by a rotation vector and moves it.
+fn displaced(scorer: &ExactScorer, turn: Vector3<f64>, shift: Vector3<f64>) -> Pose {
+    let center = scorer.ligand_center();
+    Pose::about(UnitQuaternion::new(turn), center, center + shift)
+}
+
+fn mesh_volume(part: &Part) -> f64 {
+    knotdock_structures::mesh::from_triangles(&part.positions, &part.triangles)
+        .unwrap()
+        .0
+        .volume()
+}
+
+/// About the right pose the exact sum falls whichever way the ligand is moved by an offset, further on by one and a half, or turned by 8 degrees.
+#[test]
+fn the_right_pose_is_the_top_of_the_landscape() {
+    for (pair, clearance) in [peg(), torus(), broken()] {
+        let meshes = sampled(&pair);
+        let scorer = scorer(&meshes);
+        let r0 = meshes.offset;
+        let none = Vector3::zeros();
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let right = scorer.score_only(&displaced(&scorer, none, none));
+        println!(
+            "{}: clearance {clearance:.4}, r0 {r0:.4}, {} and {} balls, score {right:.0}",
+            pair.name, meshes.parts[0].balls, meshes.parts[1].balls
+        );
+        assert!(right > 0.0);
+        for axis in axes {
+            for sign in [-1.0, 1.0] {
+                let shifted = [1.0, 1.5].map(|share| {
+                    scorer.score_only(&displaced(&scorer, none, sign * share * r0 * axis))
+                });
+                let angle = (sign * 8f64).to_radians();
+                let turned = scorer.score_only(&displaced(&scorer, angle * axis, none));
+                println!(
+                    "  {axis:?} {sign}: shifted {shifted:.0?}, turned by 8 degrees {turned:.0}"
+                );
+                assert!(shifted[0] < right && shifted[1] < shifted[0], "{shifted:?}");
+                assert!(turned < right, "{turned}");
+            }
+        }
+    }
+}
+
+/// Of fitted weights the summed bumps hold the volume of the solid, so that sums over pairs are integrals over volumes.
+#[test]
+fn weights_are_volumes() {
+    let (pair, _) = broken();
+    let meshes = sampled(&pair);
+    for (part, solid) in meshes.parts.iter().zip([&pair.receptor, &pair.ligand]) {
+        let fit = part.weights.as_ref().unwrap();
+        let volume = mesh_volume(solid);
+        let integral: f64 = part
+            .knots
+            .radii
+            .iter()
+            .zip(&part.knots.weights)
+            .map(|(radius, weight)| weight.re * radius.powi(3) * bump_volume(2.0))
+            .sum();
+        assert!(
+            (integral / volume - 1.0).abs() < 0.08,
+            "{integral} {volume}"
+        );
+        assert!((fit.volume_fitted - integral / volume).abs() < 1e-6);
+        // Weights of one count it several times.
+        assert!(fit.volume_unit > 1.5, "{fit:?}");
+    }
+}
+
+/// What the lengths of [`knotdock::search::meshes`] rest on: two flat faces score most a gap of one offset apart, above half of that from
+/// 0.65 to 1.55 offsets, and below zero under 0.3.
+#[test]
+fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
+    let r0 = 0.037;
+    let options = DockOptions {
+        offset: r0,
+        resolution: RESOLUTION * r0,
+        ..DockOptions::default()
+    };
+    let sum = 2.0 * RADIUS * r0;
+    let kernel = RankingKernel::new(options.engine().kernel, sum, sum, 1.15).unwrap();
+    let table = kernel.distance_table(sum);
+    let steps = 4000;
+    let step = kernel.reach() / f64::from(steps);
+    let score = |gap: f64| -> f64 {
+        (0..steps)
+            .map(|i| (f64::from(i) + 0.5) * step)
+            .filter(|&d| d > gap)
+            .map(|d| std::f64::consts::PI * table.value(d)[3] * d * (d - gap).powi(2) * step)
+            .sum()
+    };
+    let scores: Vec<f64> = (0..=60).map(|i| score(0.05 * f64::from(i) * r0)).collect();
+    let best = (0..scores.len())
+        .max_by(|&a, &b| scores[a].total_cmp(&scores[b]))
+        .unwrap();
+    assert!(
+        (18..=22).contains(&best),
+        "best at {} r0",
+        0.05 * best as f64
+    );
+    for (i, &value) in scores.iter().enumerate() {
+        if (13..=31).contains(&i) {
+            assert!(value > 0.5 * scores[best], "{i}: {value}");
+        }
+        if i <= 6 {
+            assert!(value < 0.0, "{i}: {value}");
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! A run of meshes as its users see it: files, the same bytes whatever the threads, the same run again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::parts::{Pair, broken_block};
+use super::scenes::away;
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock_scoring::se3::Pose;
+use serde_json::Value;
+
+/// A folder with receptor.stl and ligand.stl, the ligand turned away.
+pub struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub fn empty() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        Self { folder }
+    }
+
+    pub fn of(pair: &Pair) -> Self {
+        let place = Self::empty();
+        let ligand = pair.ligand.moved(|point| away().apply(point));
+        place.write("receptor.stl", &pair.receptor.stl());
+        place.write("ligand.stl", &ligand.stl());
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = cargo_bin_cmd!("knotdock");
+        command.current_dir(self.folder.path()).args(arguments);
+        command
+    }
+}
+
+/// Docks, and returns the object on standard output.
+pub fn dock(place: &Place, arguments: &[&str]) -> Value {
+    let arguments = [&["dock", "--json"], arguments].concat();
+    let output = place.command(&arguments).output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{words}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Header and rows of a table.
+fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text
+        .lines()
+        .map(|line| line.split(',').map(str::to_owned).collect());
+    (lines.next().unwrap(), lines.collect())
+}
+
+/// The pose of the first row.
+pub fn rank_one(path: &Path) -> Pose {
+    let (header, rows) = table(path);
+    let value = |name: &str| -> f64 {
+        let column = header.iter().position(|other| other == name).unwrap();
+        rows[0][column].parse().unwrap()
+    };
+    Pose::from_parts(
+        ["qw", "qx", "qy", "qz"].map(value),
+        ["tx", "ty", "tz"].map(value),
+    )
+}
+
+/// Few rotations on a coarse grid: what is asked here does not depend on where the parts end up.
+const QUICK: [&str; 8] = [
+    "receptor.stl",
+    "ligand.stl",
+    "--sample-grid",
+    "20^3",
+    "--rotations",
+    "60",
+    "--poses",
+    "50",
+];
+
+fn quick(place: &Place, more: &[&str]) -> Value {
+    dock(place, &[&QUICK, more].concat())
+}
+
+#[test]
+fn threads_change_no_byte_and_a_run_repeats_itself() {
+    let pair = broken_block(0.05);
+    let place = Place::of(&pair);
+    let first = quick(&place, &["-o", "one", "--threads", "1", "--write-top", "2"]);
+    quick(&place, &["-o", "two", "--threads", "2", "--write-top", "2"]);
+    dock(&place, &["--from", "one/run.json", "-o", "again"]);
+    for name in ["poses.csv", "top/rank_0001.obj", "top/rank_0002.obj"] {
+        let bytes = |run: &str| fs::read(place.path(run).join(name)).unwrap();
+        assert!(!bytes("one").is_empty());
+        assert_eq!(bytes("one"), bytes("two"), "{name}");
+        assert_eq!(bytes("one"), bytes("again"), "{name}");
+    }
+    // What is recorded is the same too, but for time and machine.
+    let record = |run: &str| {
+        let text = fs::read_to_string(place.path(run).join("run.json")).unwrap();
+        let mut run: Value = serde_json::from_str(&text).unwrap();
+        for entry in ["timing", "machine"] {
+            run.as_object_mut().unwrap().remove(entry);
+        }
+        run
+    };
+    assert_eq!(record("one"), record("two"));
+    assert_eq!(record("one"), record("again"));
+    let run = &first["run"];
+    assert_eq!(run["plan"]["unit"], "file");
+    assert_eq!(run["chains"], Value::Null);
+    assert_eq!(run["inputs"]["receptor"]["atoms"], Value::Null);
+    for effect in run["effects"].as_array().unwrap() {
+        assert_eq!(effect["on"], effect["effect"] == "shape");
+    }
+}
+
+/// Of one scene in another unit every length is so many times as long, and nothing else changes: no constant is in Å. By a power of two
+/// not a digit does.
+#[test]
+fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
+    let pair = broken_block(0.05);
+    let place = Place::of(&pair);
+    quick(&place, &["-o", "plain"]);
+    let (header, plain) = table(&place.path("plain/poses.csv"));
+    for (factor, name) in [(1024.0, "large"), (1.0 / 1024.0 / 1024.0, "small")] {
+        for part in ["receptor", "ligand"] {
+            let (mesh, _) =
+                knotdock_structures::mesh::read(&place.path(&format!("{part}.stl"))).unwrap();
+            let mut text = String::new();
+            for position in mesh.positions() {
+                let [x, y, z] = position.map(|value| factor * value);
+                text += &format!("v {x:?} {y:?} {z:?}\n");
+            }
+            for [a, b, c] in mesh.triangles() {
+                text += &format!("f {} {} {}\n", a + 1, b + 1, c + 1);
+            }
+            place.write(&format!("{part}_{name}.obj"), &text);
+        }
+        let mut arguments = QUICK.to_vec();
+        let files = ["receptor", "ligand"].map(|part| format!("{part}_{name}.obj"));
+        arguments[0] = &files[0];
+        arguments[1] = &files[1];
+        dock(&place, &[&arguments[..], &["-o", name]].concat());
+        let (_, scaled) = table(&place.path(name).join("poses.csv"));
+        assert_eq!(plain.len(), scaled.len());
+        for (plain, scaled) in plain.iter().zip(&scaled) {
+            for ((name, plain), scaled) in header.iter().zip(plain).zip(scaled) {
+                if ["tx", "ty", "tz"].contains(&name.as_str()) {
+                    let [plain, scaled]: [f64; 2] = [plain, scaled].map(|x| x.parse().unwrap());
+                    assert_eq!(factor * plain, scaled, "{name}");
+                } else {
+                    assert_eq!(plain, scaled, "{name}");
+                }
+            }
+        }
+    }
+}
+
+/// The assembly holds both parts as groups, the ligand where the table says; `knotdock complex` writes further ones.
+#[test]
+fn assemblies_hold_both_parts() {
+    let pair = broken_block(0.05);
+    let place = Place::of(&pair);
+    let result = quick(&place, &["-o", "run", "--write-top", "1"]);
+    let path = place.path("run/top/rank_0001.obj");
+    assert_eq!(result["complexes"].as_array().unwrap().len(), 1);
+    let text = fs::read_to_string(&path).unwrap();
+    let groups: Vec<&str> = text.lines().filter(|line| line.starts_with("g ")).collect();
+    assert_eq!(groups, ["g receptor", "g ligand"]);
+    let (both, report) = knotdock_structures::mesh::read(&path).unwrap();
+    assert!(report.is_sound() && report.parts == 2);
+    let (receptor, _) = knotdock_structures::mesh::read(&place.path("receptor.stl")).unwrap();
+    let (ligand, _) = knotdock_structures::mesh::read(&place.path("ligand.stl")).unwrap();
+    assert_eq!(
+        both.triangles().len(),
+        receptor.triangles().len() + ligand.triangles().len()
+    );
+    assert!((both.volume() - receptor.volume() - ligand.volume()).abs() < 1e-9);
+    let pose = rank_one(&place.path("run/poses.csv"));
+    for &position in ligand.positions() {
+        let image = pose.apply(position);
+        let near = both
+            .positions()
+            .iter()
+            .any(|other| (0..3).all(|axis| (other[axis] - image[axis]).abs() < 1e-12));
+        assert!(near, "{image:?}");
+    }
+    let more = place
+        .command(&["complex", "run", "--rank", "2", "-o", "more"])
+        .output()
+        .unwrap();
+    assert!(
+        more.status.success(),
+        "{}",
+        String::from_utf8_lossy(&more.stderr)
+    );
+    assert!(place.path("more/rank_0002.obj").is_file());
+}
