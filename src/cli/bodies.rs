@@ -66,13 +66,11 @@ impl Bodies {
     ) -> Result<Self, Failure> {
         let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
         let [receptor, ligand] = records;
-        Self::of(
-            [
-                receptor.locate(&folders)?.spec(),
-                ligand.locate(&folders)?.spec(),
-            ],
-            reading,
-        )
+        let specs = [
+            receptor.locate(&folders)?.spec(),
+            ligand.locate(&folders)?.spec(),
+        ];
+        Self::of(specs, reading)
     }
 
     fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
@@ -82,6 +80,10 @@ impl Bodies {
                 Input::of(receptor, reading)?,
                 Input::of(ligand, reading)?,
             ]))),
+            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(
+                "--waters, --hetatm, --hydrogens, --altloc and --model belong to molecules, and these are meshes",
+            )
+            .remedy("leave them out")),
             [true, true] => Ok(Self::Meshes(Box::new([
                 MeshInput::read(receptor)?,
                 MeshInput::read(ligand)?,

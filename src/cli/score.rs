@@ -78,17 +78,18 @@ impl Score {
         let dock = self.kernel.options()?;
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
+        let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
         let fine_contact = scene
             .fine_contacts(&dock)
             .map(|contacts| contacts.score(&pose));
         let rank_score = scored.exact + fine_contact.unwrap_or(0.0);
-        let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
-        console.say(format!("\n{}\n{}", told(&scored), told_geometry(&geometry)));
+        console.say(format!("\n{}", told(&scored)));
         if let Some(fine_contact) = fine_contact {
             console.say(format!(
                 "Fine contacts {fine_contact:.3}: `dock` ranks this pose by {rank_score:.3}"
             ));
         }
+        console.say(told_geometry(&geometry));
         if !scored.reached {
             console.warn(
                 "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
