@@ -275,6 +275,8 @@ def main():
             check_solid(spoilt, "example, radii 0.2 Å larger", ligand, spoil=0.2)
             check_pair(spoilt, options.knotdock, "example moved by 0.5 Å an axis", receptor, ligand, (1, 0, 0, 0), (0, 0, 0), spoil=0.5)
             caffeine = hydrogens["caffeine with hydrogens"]
+            # A protein's accessible area hardly grows with its radii, for its crevices close; a small molecule's does.
+            check_solid(spoilt, "caffeine, radii 0.2 Å larger", caffeine, spoil=0.2)
             check_pair(spoilt, options.knotdock, "caffeine moved by 0.5 Å an axis", caffeine, caffeine, (1, 0, 0, 0), (0.8, -0.5, 0.4), spoil=0.5, own_radii=True)
             for row in ligand.rows[:5]:
                 row["radius"] = str(float(row["radius"]) + 0.02)
