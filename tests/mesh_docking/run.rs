@@ -62,17 +62,26 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (lines.next().unwrap(), lines.collect())
 }
 
+/// Poses and scores of a table.
+pub fn scored_poses(path: &Path) -> Vec<(Pose, f64)> {
+    let (header, rows) = table(path);
+    let read = |row: &[String]| {
+        let value = |name: &str| -> f64 {
+            let column = header.iter().position(|other| other == name).unwrap();
+            row[column].parse().unwrap()
+        };
+        let pose = Pose::from_parts(
+            ["qw", "qx", "qy", "qz"].map(value),
+            ["tx", "ty", "tz"].map(value),
+        );
+        (pose, value("score"))
+    };
+    rows.iter().map(|row| read(row)).collect()
+}
+
 /// The pose of the first row.
 pub fn rank_one(path: &Path) -> Pose {
-    let (header, rows) = table(path);
-    let value = |name: &str| -> f64 {
-        let column = header.iter().position(|other| other == name).unwrap();
-        rows[0][column].parse().unwrap()
-    };
-    Pose::from_parts(
-        ["qw", "qx", "qy", "qz"].map(value),
-        ["tx", "ty", "tz"].map(value),
-    )
+    scored_poses(path).swap_remove(0).0
 }
 
 /// Few rotations on a coarse grid: what is asked here does not depend on where the parts end up.
