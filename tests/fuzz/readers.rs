@@ -6,6 +6,8 @@ use std::path::Path;
 
 use knotdock::output::poses::PoseTable;
 use knotdock::output::recorded_run::RecordedRun;
+use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
+use knotdock_scoring::rescoring::FinePotential;
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
@@ -25,10 +27,12 @@ pub enum Reader {
     Off,
     Poses,
     Run,
+    Contact,
+    FineContact,
 }
 
 impl Reader {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Pdb,
         Self::Mmcif,
         Self::Gzip,
@@ -38,6 +42,8 @@ impl Reader {
         Self::Off,
         Self::Poses,
         Self::Run,
+        Self::Contact,
+        Self::FineContact,
     ];
 
     /// Sound inputs, small so that a change is likely to hit something that matters.
@@ -52,6 +58,8 @@ impl Reader {
             Self::Off => vec![OFF.to_owned(), format!("# a comment\n{OFF}")],
             Self::Poses => vec!["rank,score,qw,qx,qy,qz,tx,ty,tz,note\n1,10.5,1,0,0,0,0.5,-1,2e1,\"a, b\"\n2,9,0.5,0.5,0.5,0.5,1,2,3,\n3,8,0,0,0,1,4,5,6,c\n".to_owned()],
             Self::Run => vec![RUN.to_owned()],
+            Self::Contact => vec![include_str!("../../scoring/src/effect/contact_potential.csv").to_owned()],
+            Self::FineContact => vec![include_str!("../../scoring/src/rescoring/fine_contact_potential.csv").to_owned()],
         };
         texts.into_iter().map(String::into_bytes).collect()
     }
@@ -101,6 +109,33 @@ impl Reader {
                     }
                 }
             }
+            Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
+            Self::FineContact => table(bytes, |text| Ok(FinePotential::parse(text)?.ranges.into())),
+        }
+    }
+}
+
+/// Reads tables of energies, which must be finite and symmetric.
+fn table(bytes: &[u8], parse: fn(&str) -> Result<Vec<Potential>, PotentialError>) -> bool {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return false;
+    };
+    match parse(text) {
+        Ok(tables) => {
+            for table in tables {
+                for a in 0..TYPES.len() {
+                    for b in 0..=a {
+                        let energy = table.energy(a, b);
+                        assert!(energy.is_finite() && energy == table.energy(b, a));
+                    }
+                }
+            }
+            true
+        }
+        Err(error) => {
+            assert!((1..=text.lines().count().max(1)).contains(&error.line));
+            assert!(!error.message.is_empty());
+            false
         }
     }
 }

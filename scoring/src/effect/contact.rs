@@ -99,7 +99,9 @@ impl Potential {
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let mut lines = table_lines(text);
         header(&mut lines, "")?;
-        Self::parse_rows(&mut lines, "")
+        let potential = Self::parse_rows(&mut lines, "")?;
+        end(&mut lines)?;
+        Ok(potential)
     }
 
     /// Reads the rows of a table, one for each type in order, each with `prefix` before the type's name.
@@ -161,6 +163,18 @@ pub(crate) fn header<'a>(
     }
 }
 
+/// Refuses what follows the last row of a table.
+pub(crate) fn end<'a>(
+    lines: &mut impl Iterator<Item = (usize, &'a str)>,
+) -> Result<(), PotentialError> {
+    lines.next().map_or(Ok(()), |(line, _)| {
+        Err(PotentialError {
+            line,
+            message: "the table has ended before this line".to_owned(),
+        })
+    })
+}
+
 /// The term for two sets of knots with contact types: `weight` times minus the potential's sum.
 pub fn term(receptor: &Knots, ligand: &Knots, weight: f64, potential: &Potential) -> Term {
     let labels = |knots: &Knots| {
@@ -204,6 +218,8 @@ mod tests {
         let line_of = |text: &str| Potential::parse(text).unwrap_err().line;
         assert_eq!(line_of(""), 1);
         assert_eq!(line_of("# x\ntype,A,B\n"), 2);
+        let lines = TABLE.lines().count();
+        assert_eq!(line_of(&format!("{TABLE}N,1\n")), lines + 1);
         let spoilt = |from: &str, to: &str| Potential::parse(&TABLE.replacen(from, to, 1));
         assert!(spoilt("\nKNZ,", "\nXXX,").is_err());
         assert!(spoilt("\nKNZ,", "\nKNZ,NaN,").is_err());

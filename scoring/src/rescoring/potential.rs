@@ -1,6 +1,6 @@
 //! The potential by distance range: names, ends, and the table that a script derives.
 
-use crate::effect::contact::{Potential, PotentialError, header, table_lines};
+use crate::effect::contact::{Potential, PotentialError, end, header, table_lines};
 use serde::{Deserialize, Serialize};
 
 /// Names of the ranges as they stand in the table, from near to far.
@@ -43,9 +43,9 @@ impl FinePotential {
         header(&mut lines, "range,")?;
         let mut range = |name: &str| Potential::parse_rows(&mut lines, &format!("{name},"));
         let [near, middle, far] = RANGES;
-        Ok(Self {
-            ranges: [range(near)?, range(middle)?, range(far)?],
-        })
+        let ranges = [range(near)?, range(middle)?, range(far)?];
+        end(&mut lines)?;
+        Ok(Self { ranges })
     }
 }
 
@@ -92,6 +92,11 @@ mod tests {
         assert_eq!(spoilt("near,CA,1").unwrap_err().line, first + 1);
         assert_eq!(spoilt("far,CA,x").unwrap_err().line, first + 1);
         assert!(FinePotential::parse(&lines[..first].join("\n")).is_err());
+        let longer = format!("{TABLE}far,N,1\n");
+        assert_eq!(
+            FinePotential::parse(&longer).unwrap_err().line,
+            lines.len() + 1
+        );
     }
 
     #[test]
