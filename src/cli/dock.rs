@@ -102,7 +102,8 @@ const RECORDED: [&str; 35] = [
     "native_ligand",
 ];
 
-const MACHINE: &str = "Machine";
+/// Heading of the options that change no result.
+pub const MACHINE: &str = "Machine";
 
 impl Dock {
     /// What the command line asks for.
@@ -135,17 +136,7 @@ impl Dock {
         request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
         let directory = self.output.unwrap_or_else(|| request.directory());
         request.bodies.describe(console);
-        let evaluator = match (&request.native, &request.bodies) {
-            (Some(native), Bodies::Molecules(inputs)) => {
-                let [receptor, ligand] = inputs.as_ref();
-                Some(native.evaluator(&receptor.molecule, &ligand.molecule)?)
-            }
-            (Some(_), Bodies::Meshes(_)) => {
-                return Err(Failure::input("a known complex is one of molecules")
-                    .remedy("leave --native, --native-receptor and --native-ligand out"));
-            }
-            (None, _) => None,
-        };
+        let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
@@ -340,11 +331,13 @@ impl Clock {
     }
 }
 
-fn hardware_threads() -> usize {
+/// Hardware threads that the process may use.
+pub fn hardware_threads() -> usize {
     std::thread::available_parallelism().map_or(1, |threads| threads.get())
 }
 
-fn machine(plan: &DockPlan) -> Machine {
+/// Where and how a plan is carried out.
+pub fn machine(plan: &DockPlan) -> Machine {
     Machine {
         system: std::env::consts::OS,
         architecture: std::env::consts::ARCH,

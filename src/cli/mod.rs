@@ -19,6 +19,7 @@ mod request;
 mod sample;
 mod score;
 mod search_arguments;
+mod tradeoff;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -53,6 +54,7 @@ enum Command {
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
     Sample(sample::Sample),
+    Tradeoff(Box<tradeoff::TradeoffCommand>),
 }
 
 fn version() -> &'static str {
@@ -78,6 +80,7 @@ pub fn main() -> ExitCode {
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
         Command::Sample(command) => command.run(console),
+        Command::Tradeoff(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use knotdock::evaluate::Evaluator;
 use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
@@ -57,6 +58,23 @@ impl Request {
             },
             options: run.options,
         })
+    }
+
+    /// Matches the known complex, if there is one, with the molecules.
+    pub fn evaluator(&self) -> Result<Option<Evaluator>, Failure> {
+        match (&self.native, &self.bodies) {
+            (Some(native), Bodies::Molecules(inputs)) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Ok(Some(
+                    native.evaluator(&receptor.molecule, &ligand.molecule)?,
+                ))
+            }
+            (Some(_), Bodies::Meshes(_)) => {
+                Err(Failure::input("a known complex is one of molecules")
+                    .remedy("leave --native, --native-receptor and --native-ligand out"))
+            }
+            (None, _) => Ok(None),
+        }
     }
 
     /// The inputs for run.json, with how meshes were sampled.
