@@ -3,6 +3,7 @@
 
 mod arguments;
 mod bodies;
+mod calibrate;
 mod complex;
 mod console;
 mod dock;
@@ -55,6 +56,7 @@ enum Command {
     Inspect(inspect::Inspect),
     Sample(sample::Sample),
     Tradeoff(Box<tradeoff::TradeoffCommand>),
+    Calibrate(calibrate::Calibrate),
 }
 
 fn version() -> &'static str {
@@ -81,6 +83,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(command) => command.run(console),
         Command::Sample(command) => command.run(console),
         Command::Tradeoff(command) => command.run(console),
+        Command::Calibrate(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

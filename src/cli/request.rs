@@ -8,7 +8,7 @@ use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::meshes::{GivenLengths, MeshPair};
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Planned};
 use super::console::Console;
 use super::failure::Failure;
 use super::native::NativeFiles;
@@ -58,6 +58,13 @@ impl Request {
             },
             options: run.options,
         })
+    }
+
+    /// Plans the run; of meshes, options that follow from them are filled in.
+    pub fn plan(&mut self, console: Console) -> Result<Planned, Failure> {
+        let (offset, given) = (self.offset, self.given);
+        self.bodies
+            .plan(&mut self.options.dock, offset, given, console)
     }
 
     /// Matches the known complex, if there is one, with the molecules.

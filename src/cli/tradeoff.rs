@@ -87,12 +87,7 @@ impl TradeoffCommand {
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
-        let Planned { plan, sampled, .. } = request.bodies.plan(
-            &mut request.options.dock,
-            request.offset,
-            request.given,
-            console,
-        )?;
+        let Planned { plan, sampled, .. } = request.plan(console)?;
         console.say(format!("\nThe default: {plan}\n"));
         let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
         let pair = match &request.bodies {

@@ -15,6 +15,7 @@ pub mod assemblies;
 pub mod atom_table;
 pub mod balls;
 pub mod complexes;
+pub mod cost_model_file;
 pub mod input_record;
 pub mod manifest;
 pub mod poses;

@@ -7,6 +7,9 @@
 
 pub mod advice;
 mod agreement;
+pub mod calibrate;
+pub mod choice;
+pub mod cost_model;
 pub mod drawing;
 mod front;
 pub mod pair;
