@@ -186,12 +186,13 @@ impl Bodies {
         sampled: Option<&MeshPair>,
     ) -> Result<DockPlan, SearchError> {
         match (self, sampled) {
-            (Self::Meshes(_), Some(pair)) => plan_scene(Scene::of_meshes(pair, options)?, options),
-            (Self::Meshes(_), None) => Err(SearchError::NoPose),
             (Self::Molecules(inputs), _) => {
                 let [receptor, ligand] = inputs.as_ref();
                 search::plan(&receptor.molecule, &ligand.molecule, options)
             }
+            (Self::Meshes(_), Some(pair)) => plan_scene(Scene::of_meshes(pair, options)?, options),
+            // Meshes that were never planned have no balls to find a pose of.
+            (Self::Meshes(_), None) => Err(SearchError::NoPose),
         }
     }
 

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::settings::Knob;
 use super::sweep::{FIRST, Measured, Tradeoff};
 
-/// Rows of the reference that a setting may miss, over those that the best setting misses, and still be taken.
-const SPARE: f64 = 0.05;
+/// Share of the reference's rows that a doubling of the time must find for it to be worth its price.
+const DOUBLING: f64 = 0.1;
 
 /// What to take, and what it gives up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -19,8 +19,8 @@ pub struct Advice {
     pub text: String,
 }
 
-/// The advice of a sweep: the cheapest setting whose error is at most the tolerance of the default and that misses at most
-/// 5 of the reference's first 100 rows more than whatever setting misses the fewest. `None` for a sweep without settings.
+/// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the reference's rows, where
+/// a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
 pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let default = tradeoff.measured.first()?;
     let tolerance = default.setting.options.tolerance;
@@ -28,38 +28,36 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
         let runs = tradeoff.measured.iter();
         runs.filter(|run| run.setting.knob != Knob::Reference)
     };
-    let best = runs().map(|run| run.agreement).fold(0.0, f64::max);
-    let serves = |run: &&Measured| {
-        run.error.rms <= tolerance.max(default.error.rms) && run.agreement >= best - SPARE
-    };
+    let serves = |run: &&Measured| run.error.rms <= tolerance.max(default.error.rms);
+    let worth = |run: &Measured| run.agreement - DOUBLING * run.cost().max(1e-6).log2();
     let cheapest = |a: &&Measured, b: &&Measured| a.cost().total_cmp(&b.cost());
-    let take = runs().filter(serves).min_by(cheapest).unwrap_or(default);
+    let take = runs()
+        .filter(serves)
+        .max_by(|a, b| worth(a).total_cmp(&worth(b)))
+        .unwrap_or(default);
+    let share = |run: &Measured| format!("{:.0}%", 100.0 * run.agreement);
     let mut text = format!(
-        "Take {}: {} of processor time ({} on the clock), an error of {:.1e} of the best score, and {:.0} of the {} rows that the reference \
-         ranks first, with {} times the rotations, are within {:.2} of one of its first {FIRST}.",
+        "Take {}: {} of processor time ({} on the clock), an error of {:.1e} of the best score, and {} of the first {FIRST} rows of the \
+         reference, which has {} times the rotations of the default, within {:.3} of one of its own.",
         told(take),
         seconds(take.cost()),
         seconds(take.wall_seconds()),
         take.error.rms,
-        100.0 * take.agreement,
-        FIRST,
+        share(take),
         rotations_ratio(tradeoff),
         tradeoff.radius,
     );
     if !take.same_score(&default.setting.options) {
         text += " It ranks by another score than the default's.";
     }
-    if take.setting.knob == Knob::Default {
-        text += " No cheaper setting does as well.";
-    } else {
+    if take.setting.knob != Knob::Default {
         text += &format!(
-            " The default takes {} and has {:.1e} and {:.0}.",
+            " The default takes {} and has {:.1e} and {}.",
             seconds(default.cost()),
             default.error.rms,
-            100.0 * default.agreement
+            share(default)
         );
     }
-    // What a third of the time, or less, still gives.
     let quick = runs()
         .filter(|run| run.cost() <= 0.5 * take.cost())
         .max_by(|a, b| {
@@ -69,10 +67,10 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
         });
     text += &match quick {
         Some(quick) => format!(
-            " In half the time or less, {} ({}) gives up most of what it must: {:.0} rows remain, at an error of {:.1e}.",
+            " In half the time or less, {} ({}) finds {}, at an error of {:.1e}.",
             told(quick),
             seconds(quick.cost()),
-            100.0 * quick.agreement,
+            share(quick),
             quick.error.rms
         ),
         None => " No setting takes half the time or less.".to_owned(),
@@ -95,10 +93,10 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
         .min_by(cheapest);
     if let Some(wider) = wider {
         text += &format!(
-            " Where time allows, {} ({}) finds {:.0} of the rows.",
+            " Where time allows, {} ({}) finds {}.",
             told(wider),
             seconds(wider.cost()),
-            100.0 * wider.agreement
+            share(wider)
         );
     }
     Some(Advice {
@@ -131,7 +129,9 @@ fn told(run: &Measured) -> String {
 }
 
 fn seconds(seconds: f64) -> String {
-    if seconds < 10.0 {
+    if seconds < 0.1 {
+        format!("{:.0} ms", 1e3 * seconds)
+    } else if seconds < 10.0 {
         format!("{seconds:.1} s")
     } else {
         format!("{seconds:.0} s")

@@ -210,41 +210,26 @@ pub struct Rung {
     pub error: f64,
 }
 
-/// Cheapest first.
-pub const LADDER: [Rung; 6] = [
-    Rung {
-        tolerance: 0.1,
-        spacing: 0.5,
-        error: 6e-3,
-    },
-    Rung {
-        tolerance: 0.03,
-        spacing: 0.5,
-        error: 1.5e-3,
-    },
-    Rung {
-        tolerance: 1e-3,
-        spacing: 0.45,
-        error: 5e-4,
-    },
-    Rung {
-        tolerance: 1e-3,
-        spacing: 0.4,
-        error: 2e-4,
-    },
-    Rung {
-        tolerance: 1e-3,
-        spacing: 0.31,
-        error: 5e-5,
-    },
-    Rung {
-        tolerance: 1e-4,
-        spacing: 0.23,
-        error: 2e-6,
-    },
+/// Cheapest first: as measured on the example pair, whose errors `cargo bench --bench cost_model` sets beside those expected.
+pub const LADDER: [Rung; 7] = [
+    Rung::new(0.1, 0.5, 6e-3),
+    Rung::new(0.03, 0.5, 1.8e-3),
+    Rung::new(1e-3, 0.5, 7e-4),
+    Rung::new(1e-3, 0.445, 3e-4),
+    Rung::new(1e-3, 0.4, 1.2e-4),
+    Rung::new(1e-3, 0.355, 6e-5),
+    Rung::new(1e-4, 0.23, 2e-6),
 ];
 
 impl Rung {
+    const fn new(tolerance: f64, spacing: f64, error: f64) -> Self {
+        Self {
+            tolerance,
+            spacing,
+            error,
+        }
+    }
+
     /// The cheapest setting whose error is at most `accuracy`; `None` below what single precision reaches.
     pub fn within(accuracy: f64) -> Option<Self> {
         LADDER.into_iter().find(|rung| rung.error <= accuracy)
@@ -299,7 +284,7 @@ mod tests {
             assert!(pair[0].tolerance >= pair[1].tolerance);
         }
         assert_eq!(Rung::within(1.0), Some(LADDER[0]));
-        assert_eq!(Rung::within(1e-3).unwrap().error, 5e-4);
+        assert_eq!(Rung::within(1e-3).unwrap().error, 7e-4);
         assert_eq!(Rung::within(1e-9), None);
     }
 }

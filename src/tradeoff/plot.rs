@@ -87,13 +87,15 @@ pub fn plot(tradeoff: &Tradeoff) -> Drawing {
             named: None,
         });
     }
+    // No pose may be near the known complex, or no error above zero.
+    panels.retain(|panel| !panel.points.is_empty());
     let width = MARGIN[0] + AXES[0] + MARGIN[2];
     let height = MARGIN[1] + AXES[1] + MARGIN[3];
     let mut marks = Vec::new();
     for (index, panel) in panels.iter().enumerate() {
         panel.draw([index as f64 * width + MARGIN[0], MARGIN[1]], &mut marks);
     }
-    let whole = width * panels.len() as f64;
+    let whole = width * panels.len().max(1) as f64;
     let below = legend(tradeoff, whole, height, &mut marks);
     Drawing {
         width: whole,
