@@ -25,17 +25,26 @@ fn molecule(name: &str) -> Molecule {
 
 fn main() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let [receptor, ligand] =
-        ["1ppe_receptor_unbound.pdb", "1ppe_ligand_unbound.pdb"].map(molecule);
+    let [receptor, ligand] = ["1ppe_receptor_unbound.pdb", "1ppe_ligand_unbound.pdb"].map(molecule);
     let fitted = calibrate(threads, &Silent).unwrap();
     println!("{threads} threads; fitted here: {fitted:?}\n");
-    println!("setting                                built-in  fitted    took   error expected    made");
+    println!(
+        "setting                                built-in  fitted    took   error expected    made"
+    );
     let default = DockOptions {
         threads,
         ..DockOptions::default()
     };
     let mut settings: Vec<(DockOptions, Option<f64>)> = [600, 1800, 3600]
-        .map(|rotations| (DockOptions { rotations, ..default.clone() }, None))
+        .map(|rotations| {
+            (
+                DockOptions {
+                    rotations,
+                    ..default.clone()
+                },
+                None,
+            )
+        })
         .to_vec();
     for rung in LADDER {
         let mut options = DockOptions {

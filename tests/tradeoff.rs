@@ -265,3 +265,119 @@ fn bad_input_is_refused_before_anything_runs() {
         assert!(!folder.path().join("out").exists());
     }
 }
+
+/// A cost model of a machine so slow that a few hundred rotations fill a minute.
+const SLOW: &str = r#"{"schema": 1, "program": "knotdock", "threads": 1, "cost_model": {"inverse": 1e-7, "field": 1e-12,
+    "prepare": 1e-12, "pair": 1e-15, "rescore": 1e-15, "climb": 1e-15, "rotation": 1e-12, "covering": 1e-12}}"#;
+
+fn dock(folder: &Path, arguments: &[&str]) -> Output {
+    cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .env("XDG_CACHE_HOME", folder)
+        .args(["dock", "--json"])
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--from` repeats it without a cost model.
+#[test]
+fn a_docking_within_an_accuracy_and_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
+    fs::create_dir(folder.path().join("knotdock")).unwrap();
+    let model = folder.path().join("knotdock/cost_model.json");
+    fs::write(&model, SLOW).unwrap();
+    let pair = [receptor.as_str(), &ligand, "--poses", "50"];
+    let with = |more: &[&str]| {
+        let output = dock(folder.path(), &[&pair[..], more].concat());
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (output.status.code(), object)
+    };
+    let accuracy = ["--accuracy", "1e-3", "--threads", "1"];
+    let plain = with(&[&accuracy[..], &["--rotations", "8", "-o", "plain"]].concat());
+    let run = &plain.1["run"];
+    let error = run["machine"]["chosen"]["predicted_error"]
+        .as_f64()
+        .unwrap();
+    assert!(error <= 1e-3 && run["error"]["rms"].as_f64().unwrap() < 2.0 * error);
+    assert_eq!(run["options"]["rotations"], 8);
+    // Seconds of a rotation follow, and with them a budget for about 700.
+    let each = run["machine"]["chosen"]["predicted_seconds"]
+        .as_f64()
+        .unwrap()
+        / 8.0;
+    let budget = format!("{}s", 700.5 * each);
+    let (code, object) = with(&[&accuracy[..], &["--budget", &budget, "-o", "one"]].concat());
+    assert_eq!(code, Some(0));
+    let run = &object["run"];
+    assert_eq!(run["options"]["rotations"], 700);
+    assert_eq!(
+        run["options"]["tolerance"],
+        plain.1["run"]["options"]["tolerance"]
+    );
+    let chosen = &run["machine"]["chosen"];
+    assert!(
+        chosen["cost_model"]
+            .as_str()
+            .unwrap()
+            .ends_with("cost_model.json")
+    );
+
+    fs::write(&model, "no model").unwrap();
+    let again = dock(folder.path(), &["--from", "one/run.json", "-o", "two"]);
+    assert!(again.status.success());
+    let table = |run: &str| fs::read(folder.path().join(run).join("poses.csv")).unwrap();
+    assert_eq!(table("one"), table("two"));
+    // A file that is no cost model is told of, and the built-in one serves.
+    let warned = dock(
+        folder.path(),
+        &[
+            &pair[..],
+            &accuracy[..],
+            &["--rotations", "8", "-o", "three"],
+        ]
+        .concat(),
+    );
+    assert!(warned.status.success());
+    assert!(String::from_utf8_lossy(&warned.stderr).contains("knotdock calibrate"));
+
+    for (more, word) in [
+        (vec!["--accuracy", "1e-9"], "no setting"),
+        (vec!["--budget", "1e-6s"], "too few"),
+        (vec!["--budget", "soon"], "--budget"),
+        (vec!["--budget", "5s", "--rotations", "60"], "--rotations"),
+        (
+            vec!["--accuracy", "1e-3", "--tolerance", "1e-3"],
+            "--tolerance",
+        ),
+        (vec!["--accuracy", "1e-3", "--spacing", "2"], "--spacing"),
+    ] {
+        let (code, object) = with(&[&more[..], &["-o", "bad"]].concat());
+        assert_eq!(code, Some(2), "{more:?}");
+        let message = object["error"]["message"].as_str().unwrap();
+        assert!(message.contains(word), "{message}");
+        assert!(object["error"]["remedy"].is_string());
+        assert!(!folder.path().join("bad").exists());
+    }
+}
+
+/// Calibration writes a model that a docking then uses.
+#[test]
+fn calibration_is_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = cargo_bin_cmd!("knotdock")
+        .env("XDG_CACHE_HOME", folder.path())
+        .args(["calibrate", "--json"])
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let file = folder.path().join("knotdock/cost_model.json");
+    assert_eq!(object["file"], file.display().to_string());
+    let written: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+    assert_eq!(written["cost_model"], object["cost_model"]);
+    for (name, seconds) in object["cost_model"].as_object().unwrap() {
+        assert!(seconds.as_f64().unwrap() > 0.0, "{name}");
+    }
+}
