@@ -5,3 +5,4 @@ pub mod output;
 pub mod pose_geometry;
 pub mod score;
 pub mod search;
+pub mod tradeoff;

@@ -24,6 +24,24 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time in seconds, from text such as `5s`, `90`, `2min` or `1h`.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let end = text
+        .find(|c: char| c.is_ascii_alphabetic() && c != 'e')
+        .unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let unit = match unit.trim() {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        other => return Err(format!("`{other}` is no unit of time; write s, min or h")),
+    };
+    above_zero(number.trim())
+        .map(|value| value * unit)
+        .map_err(|_| "write a number above zero and a unit, such as 5s or 2min".to_owned())
+}
+
 /// A finite number, zero or above.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -83,6 +101,22 @@ mod tests {
         assert_eq!(rotations_of_angle("180"), Ok(2));
         for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
             assert!(rotations_of_angle(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn times_have_units() {
+        for (text, seconds) in [
+            ("5s", 5.0),
+            ("90", 90.0),
+            ("1.5 min", 90.0),
+            ("2h", 7200.0),
+            ("1e2s", 100.0),
+        ] {
+            assert_eq!(duration(text), Ok(seconds), "{text}");
+        }
+        for text in ["", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
+            assert!(duration(text).is_err(), "{text}");
         }
     }
 

@@ -179,6 +179,23 @@ impl Bodies {
         }
     }
 
+    /// Plans with other options than those that [`Self::plan`] was given and filled in; of meshes the sampling stays.
+    pub fn plan_again(
+        &self,
+        options: &DockOptions,
+        sampled: Option<&MeshPair>,
+    ) -> Result<DockPlan, SearchError> {
+        match (self, sampled) {
+            (Self::Molecules(inputs), _) => {
+                let [receptor, ligand] = inputs.as_ref();
+                search::plan(&receptor.molecule, &ligand.molecule, options)
+            }
+            (Self::Meshes(_), Some(pair)) => plan_scene(Scene::of_meshes(pair, options)?, options),
+            // Meshes that were never planned have no balls to find a pose of.
+            (Self::Meshes(_), None) => Err(SearchError::NoPose),
+        }
+    }
+
     /// Writes the bodies in the poses of `rows` into a folder.
     pub fn write(&self, rows: &[PoseRow], folder: &Path) -> Result<WrittenBodies, Failure> {
         match self {

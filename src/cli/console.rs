@@ -82,6 +82,13 @@ pub struct ProgressLine {
     shown: bool,
 }
 
+impl ProgressLine {
+    /// Clears the line, so that a sentence can be written in its place.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 impl Progress for ProgressLine {
     fn stage(&self, name: &str, total: u64) {
         self.bar.finish_and_clear();

@@ -10,19 +10,21 @@ use knotdock::output::quality;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
-use knotdock::search::{self, DockOutcome, DockPlan, Effect};
+use knotdock::search::{self, DockOptions, DockOutcome, DockPlan, Effect};
+use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
 use knotdock_structures::molecule::LabelReport;
 use serde_json::json;
 
-use super::arguments::at_least_one;
+use super::arguments::{above_zero, at_least_one, duration};
 use super::bodies::{Bodies, Planned};
+use super::calibrate::cost_model;
 use super::console::Console;
 use super::failure::Failure;
 use super::memory;
 use super::native::{NativeArguments, match_text, measure};
 use super::reading_arguments::ReadingArguments;
 use super::request::Request;
-use super::search_arguments::{RANKING, SearchArguments};
+use super::search_arguments::{RANKING, SearchArguments, TRADE_OFFS};
 
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
@@ -50,6 +52,12 @@ pub struct Dock {
     reading: ReadingArguments,
     #[command(flatten)]
     search: SearchArguments,
+    /// Take the cheapest tolerance and spacing whose error is expected to be within X: rms over the best grid poses, as a share of the best score.
+    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], help_heading = TRADE_OFFS)]
+    accuracy: Option<f64>,
+    /// Take as many rotations as are expected to fit into a time, such as 5s or 2min; `knotdock calibrate` tells how fast this machine is.
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "angle"], help_heading = TRADE_OFFS)]
+    budget: Option<f64>,
     /// Complexes to write to top/.
     #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
     write_top: usize,
@@ -64,7 +72,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 35] = [
+const RECORDED: [&str; 37] = [
     "receptor",
     "ligand",
     "waters",
@@ -100,9 +108,12 @@ const RECORDED: [&str; 35] = [
     "native",
     "native_receptor",
     "native_ligand",
+    "accuracy",
+    "budget",
 ];
 
-const MACHINE: &str = "Machine";
+/// Heading of the options that change no result.
+pub const MACHINE: &str = "Machine";
 
 impl Dock {
     /// What the command line asks for.
@@ -135,30 +146,25 @@ impl Dock {
         request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
         let directory = self.output.unwrap_or_else(|| request.directory());
         request.bodies.describe(console);
-        let evaluator = match (&request.native, &request.bodies) {
-            (Some(native), Bodies::Molecules(inputs)) => {
-                let [receptor, ligand] = inputs.as_ref();
-                Some(native.evaluator(&receptor.molecule, &ligand.molecule)?)
-            }
-            (Some(_), Bodies::Meshes(_)) => {
-                return Err(Failure::input("a known complex is one of molecules")
-                    .remedy("leave --native, --native-receptor and --native-ligand out"));
-            }
-            (None, _) => None,
-        };
+        let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
+        let wanted = Wanted {
+            accuracy: self.accuracy,
+            budget: self.budget,
+        };
+        let (planned, chosen) = if wanted == Wanted::default() {
+            (request.plan(console)?, None)
+        } else {
+            let (planned, chosen) = plan_within(wanted, &mut request, console)?;
+            (planned, Some(chosen))
+        };
         let Planned {
             plan,
             points,
             sampled,
-        } = request.bodies.plan(
-            &mut request.options.dock,
-            request.offset,
-            request.given,
-            console,
-        )?;
+        } = planned;
         console.say(format!("\n{plan}"));
         for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
             if count > 0 {
@@ -207,13 +213,24 @@ impl Dock {
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
             timing: clock.timing(&outcome),
-            machine: machine(&plan),
+            machine: Machine {
+                chosen: chosen.clone(),
+                ..machine(&plan)
+            },
         })
         .map_err(Failure::other)?;
         manifest.write(&staging.folder().join("run.json"))?;
         staging.commit()?;
 
         console.say(format!("\n{}", told(&outcome)));
+        if let Some(chosen) = &chosen {
+            let stages = outcome.timing.iter();
+            console.say(format!(
+                "The search was expected to take {:.1} s, and took {:.1} s",
+                chosen.predicted_seconds,
+                stages.map(|stage| stage.wall_seconds).sum::<f64>()
+            ));
+        }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
         console.say(format!(
             "\n{} rows in {}",
@@ -233,6 +250,40 @@ impl Dock {
         }));
         Ok(())
     }
+}
+
+/// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
+fn plan_within(
+    wanted: Wanted,
+    request: &mut Request,
+    console: Console,
+) -> Result<(Planned, Chosen), Failure> {
+    let (model, source) = cost_model(console);
+    let rotations = request.options.dock.rotations;
+    // A first plan fills in the lengths of meshes; its rotations are not used.
+    request.options.dock.rotations = 4;
+    let first = request.plan(console)?;
+    request.options.dock.rotations = rotations;
+    let threads = request.options.dock.threads;
+    let bodies = &request.bodies;
+    let again = |options: &DockOptions| bodies.plan_again(options, first.sampled.as_ref());
+    let options = &mut request.options.dock;
+    let chosen = choose(wanted, (&model, &source), options, threads, again)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let plan = again(options).map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let error = chosen
+        .predicted_error
+        .map(|error| format!(" and an error of {error:.0e} of the best score"));
+    console.say(format!(
+        "\nChosen: --rotations {} --tolerance {} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
+        options.rotations,
+        options.tolerance,
+        plan.spacing,
+        if source == "built-in" { "built-in" } else { "calibrated" },
+        chosen.predicted_seconds,
+        error.unwrap_or_default()
+    ));
+    Ok((Planned { plan, ..first }, chosen))
 }
 
 /// Which effects were on and what they cost, and how far the fast path was off.
@@ -340,11 +391,13 @@ impl Clock {
     }
 }
 
-fn hardware_threads() -> usize {
+/// Hardware threads that the process may use.
+pub fn hardware_threads() -> usize {
     std::thread::available_parallelism().map_or(1, |threads| threads.get())
 }
 
-fn machine(plan: &DockPlan) -> Machine {
+/// Where and how a plan is carried out.
+pub fn machine(plan: &DockPlan) -> Machine {
     Machine {
         system: std::env::consts::OS,
         architecture: std::env::consts::ARCH,
@@ -356,5 +409,6 @@ fn machine(plan: &DockPlan) -> Machine {
         command: std::env::args_os()
             .map(|word| word.to_string_lossy().into_owned())
             .collect(),
+        chosen: None,
     }
 }

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod bodies;
+mod calibrate;
 mod complex;
 mod console;
 mod dock;
@@ -19,6 +20,7 @@ mod request;
 mod sample;
 mod score;
 mod search_arguments;
+mod tradeoff;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -53,6 +55,8 @@ enum Command {
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
     Sample(sample::Sample),
+    Tradeoff(Box<tradeoff::TradeoffCommand>),
+    Calibrate(calibrate::Calibrate),
 }
 
 fn version() -> &'static str {
@@ -78,6 +82,8 @@ pub fn main() -> ExitCode {
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
         Command::Sample(command) => command.run(console),
+        Command::Tradeoff(command) => command.run(console),
+        Command::Calibrate(command) => command.run(console),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use knotdock::evaluate::Evaluator;
 use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::meshes::{GivenLengths, MeshPair};
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Planned};
 use super::console::Console;
 use super::failure::Failure;
 use super::native::NativeFiles;
@@ -57,6 +58,30 @@ impl Request {
             },
             options: run.options,
         })
+    }
+
+    /// Plans the run; of meshes, options that follow from them are filled in.
+    pub fn plan(&mut self, console: Console) -> Result<Planned, Failure> {
+        let (offset, given) = (self.offset, self.given);
+        self.bodies
+            .plan(&mut self.options.dock, offset, given, console)
+    }
+
+    /// Matches the known complex, if there is one, with the molecules.
+    pub fn evaluator(&self) -> Result<Option<Evaluator>, Failure> {
+        match (&self.native, &self.bodies) {
+            (Some(native), Bodies::Molecules(inputs)) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Ok(Some(
+                    native.evaluator(&receptor.molecule, &ligand.molecule)?,
+                ))
+            }
+            (Some(_), Bodies::Meshes(_)) => {
+                Err(Failure::input("a known complex is one of molecules")
+                    .remedy("leave --native, --native-receptor and --native-ligand out"))
+            }
+            (None, _) => Ok(None),
+        }
     }
 
     /// The inputs for run.json, with how meshes were sampled.

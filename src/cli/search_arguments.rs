@@ -12,7 +12,8 @@ use knotdock_scoring::rescoring::FinePotential;
 use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
 
-const TRADE_OFFS: &str = "Accuracy against time";
+/// Heading of the options that trade accuracy for time.
+pub const TRADE_OFFS: &str = "Accuracy against time";
 const SCORE: &str = "Score";
 const MESHES: &str = "Meshes";
 

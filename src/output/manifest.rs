@@ -16,6 +16,7 @@ use crate::evaluate::MatchReport;
 use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
 use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
+use crate::tradeoff::choice::Chosen;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 1;
@@ -126,6 +127,8 @@ pub struct Machine {
     pub memory_limit_bytes: Option<u64>,
     /// The command line.
     pub command: Vec<String>,
+    /// What the plan was chosen by, where an accuracy or a time was asked for.
+    pub chosen: Option<Chosen>,
 }
 
 /// The errors that a run measured, as shares of the best score.

@@ -1,5 +1,6 @@
 //! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` (of meshes `.obj`) ..., `run.json`, and the words on the terminal; and what
-//! `knotdock sample` does: `knots.csv`, and balls as a mesh, as pseudo-atoms or in a picture.
+//! `knotdock sample` does: `knots.csv`, and balls as a mesh, as pseudo-atoms or in a picture; and what `knotdock tradeoff` does:
+//! `tradeoff.csv`, `tradeoff.json` and a picture.
 //!
 //! # Conventions
 //!
@@ -14,6 +15,7 @@ pub mod assemblies;
 pub mod atom_table;
 pub mod balls;
 pub mod complexes;
+pub mod cost_model_file;
 pub mod input_record;
 pub mod manifest;
 pub mod poses;
@@ -24,3 +26,4 @@ pub mod report;
 pub mod run_options;
 pub mod sample_picture;
 pub mod staging;
+pub mod tradeoff;

@@ -11,8 +11,31 @@ use std::path::{Path, PathBuf};
 /// Name of the folder in which a run is built, and ending of single files that are being written.
 pub const PARTIAL: &str = ".partial";
 
-/// What a run puts into its directory, in the order in which it is moved there.
-const ENTRIES: [&str; 3] = ["top", "poses.csv", "run.json"];
+/// What a command puts into its directory.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Product {
+    /// The entries, in the order in which they are moved there.
+    entries: &'static [&'static str],
+    /// The one that comes last and says which program wrote it.
+    record: &'static str,
+}
+
+/// What `knotdock dock` leaves.
+pub const RUN: Product = Product {
+    entries: &["top", "poses.csv", "run.json"],
+    record: "run.json",
+};
+
+/// What `knotdock tradeoff` leaves.
+pub const TRADEOFF: Product = Product {
+    entries: &[
+        "tradeoff.svg",
+        "tradeoff.png",
+        "tradeoff.csv",
+        "tradeoff.json",
+    ],
+    record: "tradeoff.json",
+};
 
 /// Why output could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -21,12 +44,14 @@ pub enum StagingError {
     #[error("{} already holds a run", .0.display())]
     ExistingRun(PathBuf),
     /// Overwriting was asked for, but the directory's files are not those of a run.
-    #[error("{} holds {entry} but no run.json of knotdock, so it is not a run that may be overwritten", directory.display())]
+    #[error("{} holds {entry} but no {record} of knotdock, so it is not a run that may be overwritten", directory.display())]
     NotARun {
         /// The directory.
         directory: PathBuf,
         /// The file or folder in it that a run would replace.
         entry: &'static str,
+        /// The record that would show it to be a run.
+        record: &'static str,
     },
     /// The directory cannot be made or written to.
     #[error("cannot write to {}: {source}", directory.display())]
@@ -79,6 +104,7 @@ impl StagingError {
 /// [`Staging::commit`]. Dropped before that, it leaves the directory as it was.
 #[derive(Debug)]
 pub struct Staging {
+    product: &'static Product,
     directory: PathBuf,
     folder: PathBuf,
     made_directory: bool,
@@ -103,20 +129,34 @@ impl Staging {
     /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when `force`
     /// would replace what no run has written, [`StagingError::Unwritable`] when nothing can be written there.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
+        Self::of(&RUN, directory, force)
+    }
+
+    /// As [`Staging::open`], for whichever product.
+    ///
+    /// # Errors
+    /// As [`Staging::open`].
+    pub fn of(
+        product: &'static Product,
+        directory: &Path,
+        force: bool,
+    ) -> Result<Self, StagingError> {
         let folder = directory.join(PARTIAL);
         // A staging folder here means that a run was killed, possibly between its renames: what it left is ours.
         let interrupted = folder.is_dir();
-        if let Some(entry) = ENTRIES
-            .into_iter()
+        if let Some(&entry) = product
+            .entries
+            .iter()
             .find(|entry| directory.join(entry).symlink_metadata().is_ok())
         {
             if !force {
                 return Err(StagingError::ExistingRun(directory.to_owned()));
             }
-            if !interrupted && !is_run(directory) {
+            if !interrupted && !is_ours(&directory.join(product.record)) {
                 return Err(StagingError::NotARun {
                     directory: directory.to_owned(),
                     entry,
+                    record: product.record,
                 });
             }
         }
@@ -130,6 +170,7 @@ impl Staging {
         let made_directory = !directory.exists();
         fs::create_dir_all(&folder).map_err(unwritable)?;
         Ok(Self {
+            product,
             directory: directory.to_owned(),
             folder,
             made_directory,
@@ -149,12 +190,13 @@ impl Staging {
     pub fn commit(mut self) -> Result<(), StagingError> {
         let replaced = self.folder.join("replaced");
         fs::create_dir(&replaced).map_err(|source| write_error(&replaced, source))?;
-        let outward = ENTRIES
-            .into_iter()
+        let entries = self.product.entries;
+        let outward = entries
+            .iter()
             .rev()
             .map(|entry| (self.directory.join(entry), replaced.join(entry)));
-        let inward = ENTRIES
-            .into_iter()
+        let inward = entries
+            .iter()
             .map(|entry| (self.folder.join(entry), self.directory.join(entry)));
         let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
         for (from, to) in outward.chain(inward) {
@@ -236,9 +278,9 @@ fn write_error(path: &Path, source: io::Error) -> StagingError {
     }
 }
 
-/// Whether a directory's `run.json` is one of ours.
-fn is_run(directory: &Path) -> bool {
-    fs::read(directory.join("run.json"))
+/// Whether a record is one of ours.
+fn is_ours(record: &Path) -> bool {
+    fs::read(record)
         .ok()
         .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok())
         .is_some_and(|run| run.get("program").and_then(|name| name.as_str()) == Some("knotdock"))

@@ -5,6 +5,7 @@ use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
 use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
+use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::rescoring::FineContacts;
 use knotdock_structures::Knots;
@@ -206,6 +207,19 @@ impl DockPlan {
     /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
     pub fn unresolved(&self) -> [usize; 2] {
         [&self.receptor, &self.ligand].map(|knots| self.engine.unresolved(knots).len())
+    }
+
+    /// The exact sum of what is ranked.
+    ///
+    /// # Errors
+    /// [`SearchError::Knots`] on knots that cannot be summed.
+    pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
+        Ok(ExactScorer::with_effects(
+            &self.engine.kernel,
+            &self.receptor,
+            &self.ligand,
+            &self.engine.effects,
+        )?)
     }
 
     /// Number of poses to refine.

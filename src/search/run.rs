@@ -11,7 +11,7 @@ use super::scan::{Chosen, choose_rank, scan};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Folded;
-use knotdock_scoring::exact::{ExactScore, ExactScorer};
+use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::{HalfTurn, Pose};
@@ -90,12 +90,7 @@ fn dock_in_pool(
         error: rank_error,
     } = choose_rank(plan, &folded);
     let effects = costs(plan, &folded, &engine);
-    let scorer = ExactScorer::with_effects(
-        &plan.engine.kernel,
-        &plan.receptor,
-        &plan.ligand,
-        &plan.engine.effects,
-    )?;
+    let scorer = plan.exact_scorer()?;
     progress.advance(1);
     clock.lap("prepare");
 

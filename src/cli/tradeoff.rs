@@ -1,0 +1,270 @@
+//! `knotdock tradeoff`: what accuracy costs in time for a pair, setting by setting.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use knotdock::output::report::align;
+use knotdock::output::run_options::RunOptions;
+use knotdock::output::staging::{Staging, TRADEOFF, write_whole};
+use knotdock::output::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
+use knotdock::search::Progress;
+use knotdock::tradeoff::advice::advice;
+use knotdock::tradeoff::plot::plot;
+use knotdock::tradeoff::{
+    Knob, Measured, Pair, PairError, Refused, Setting, SweepProgress, Tradeoff, sweep,
+};
+use serde_json::json;
+
+use super::arguments::at_least_one;
+use super::bodies::{Bodies, Planned};
+use super::console::{Console, ProgressLine};
+use super::dock::{MACHINE, hardware_threads, machine};
+use super::failure::Failure;
+use super::memory;
+use super::native::{NativeArguments, match_text};
+use super::reading_arguments::ReadingArguments;
+use super::request::Request;
+use super::search_arguments::SearchArguments;
+
+/// Measure what accuracy costs in time: docks a pair with each knob moved by itself around the options given, and with combinations.
+///
+/// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and tradeoff.png into a directory, and says which setting to take.
+#[derive(Args, Debug)]
+pub struct TradeoffCommand {
+    /// What stays, as for `knotdock dock`.
+    #[arg(value_name = "RECEPTOR")]
+    receptor: String,
+    /// What moves, likewise.
+    #[arg(value_name = "LIGAND")]
+    ligand: String,
+    /// Directory to write to [default: tradeoff_RECEPTOR_LIGAND].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the sweep in the directory, once the new one is done.
+    #[arg(long)]
+    force: bool,
+    /// Knobs to move: any of tolerance, spacing, resolution, rotations, per-rotation, refine, sample-grid (of meshes) and combination, with
+    /// commas between them [default: all].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    knobs: Option<Vec<Knob>>,
+    #[command(flatten)]
+    reading: ReadingArguments,
+    #[command(flatten)]
+    search: SearchArguments,
+    #[command(flatten)]
+    native: NativeArguments,
+    /// Threads [default: all hardware threads].
+    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
+    threads: Option<usize>,
+    /// Memory that each search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size, help_heading = MACHINE)]
+    memory: Option<u64>,
+}
+
+impl TradeoffCommand {
+    /// Sweeps.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let reading = self.reading.options();
+        let mut request = Request {
+            bodies: Bodies::read(&self.receptor, &self.ligand, &reading)?,
+            native: self.native.read()?,
+            options: RunOptions {
+                reading,
+                dock: self.search.options()?,
+                write_top: 0,
+            },
+            offset: self.search.offset(),
+            given: self.search.given_lengths(),
+        };
+        request.options.dock.memory = self.memory.or_else(memory::default_limit);
+        request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
+        let directory = self.output.unwrap_or_else(|| {
+            let [receptor, ligand] = request.bodies.labels();
+            PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
+        });
+        request.bodies.describe(console);
+        let evaluator = request.evaluator()?;
+        if let Some(evaluator) = &evaluator {
+            console.say(match_text(evaluator));
+        }
+        let Planned { plan, sampled, .. } = request.plan(console)?;
+        console.say(format!("\nThe default: {plan}\n"));
+        let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
+        let pair = match &request.bodies {
+            Bodies::Molecules(inputs) => {
+                Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
+            }
+            Bodies::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
+        };
+        let knobs = self.knobs.unwrap_or_else(|| Knob::SWEPT.to_vec());
+        let progress = Told {
+            line: console.progress(),
+            console,
+        };
+        let tradeoff = sweep(
+            pair,
+            &request.options.dock,
+            &knobs,
+            evaluator.as_ref(),
+            &progress,
+        )
+        .map_err(|error| failure(&error))?;
+        drop(progress);
+
+        let advice = advice(&tradeoff);
+        let inputs = request.inputs(sampled.as_ref())?;
+        let record = TradeoffRecord::new(TradeoffParts {
+            inputs: &inputs,
+            options: &request.options,
+            tradeoff: &tradeoff,
+            advice: advice.as_ref(),
+            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            machine: machine(&plan),
+        })
+        .map_err(Failure::other)?;
+        let drawing = plot(&tradeoff);
+        let svg = drawing.svg();
+        let png = drawing
+            .png()
+            .ok_or_else(|| Failure::other("the picture cannot be put into a PNG file"))?;
+        let folder = staging.folder();
+        write_whole(&folder.join("tradeoff.svg"), |file| {
+            file.write_all(svg.as_bytes())
+        })?;
+        write_whole(&folder.join("tradeoff.png"), |file| file.write_all(&png))?;
+        write_table(&tradeoff, &folder.join("tradeoff.csv"))?;
+        record.write(&folder.join("tradeoff.json"))?;
+        staging.commit()?;
+
+        console.say(format!("\n{}", table(&tradeoff)));
+        if let Some(advice) = &advice {
+            console.say(format!("\n{}", advice.text));
+        }
+        let names = ["tradeoff.csv", "tradeoff.svg", "tradeoff.png"];
+        let [csv, svg, png] = names.map(|name| directory.join(name).display().to_string());
+        console.say(format!("\nThe table is in {csv}, the picture in {svg}"));
+        console.result(&json!({
+            "directory": directory.display().to_string(),
+            "table": csv,
+            "pictures": [svg, png],
+            "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
+        }));
+        Ok(())
+    }
+}
+
+/// A failure of the default or the reference: of the request where it could not be planned.
+fn failure(error: &PairError) -> Failure {
+    use knotdock::search::SearchError;
+    let failure = match error {
+        PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
+        _ => Failure::input(error),
+    };
+    failure.remedy(error.remedy())
+}
+
+/// Settings by time, with what most want to know of them.
+fn table(tradeoff: &Tradeoff) -> String {
+    let mut header = vec![
+        "setting",
+        "wall s",
+        "CPU s",
+        "rank",
+        "error rms",
+        "worst",
+        "score apart",
+        "agreement",
+        "front",
+    ];
+    if tradeoff.with_native {
+        header.extend(["acceptable", "near-native"]);
+    }
+    let mut order: Vec<&Measured> = tradeoff.measured.iter().collect();
+    order.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let rank = |rank: Option<usize>| rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
+    let mut lines = vec![header.into_iter().map(str::to_owned).collect()];
+    for run in order {
+        let front = match (run.front_error, run.front_agreement) {
+            (true, true) => "both",
+            (true, false) => "error",
+            (false, true) => "agreement",
+            (false, false) => "",
+        };
+        let mut line = vec![
+            run.setting.name.clone(),
+            format!("{:.2}", run.wall_seconds()),
+            run.cpu_seconds()
+                .map_or_else(|| "-".to_owned(), |seconds| format!("{seconds:.2}")),
+            run.rank.to_string(),
+            format!("{:.1e}", run.error.rms),
+            format!("{:.1e}", run.error.worst),
+            format!("{:.1e}", run.definition_rms),
+            format!("{:.2}", run.agreement),
+            front.to_owned(),
+        ];
+        if let Some(native) = run.native {
+            line.extend([
+                rank(native.first_acceptable),
+                rank(native.first_near_native),
+            ]);
+        }
+        lines.push(line);
+    }
+    align(&lines)
+}
+
+/// Lines on how far the sweep is, and the bar of the search that runs.
+struct Told {
+    line: ProgressLine,
+    console: Console,
+}
+
+impl Progress for Told {
+    fn stage(&self, name: &str, total: u64) {
+        self.line.stage(name, total);
+    }
+
+    fn advance(&self, by: u64) {
+        self.line.advance(by);
+    }
+}
+
+impl SweepProgress for Told {
+    fn begins(&self, settings: usize, seconds: f64) {
+        self.line.clear();
+        self.console.say(format!(
+            "{settings} settings, in about {seconds:.0} s all together"
+        ));
+    }
+
+    fn runs(&self, number: usize, setting: &Setting) {
+        self.line.clear();
+        let text = match setting.knob {
+            Knob::Default => setting.name.clone(),
+            Knob::Reference | Knob::Combination => {
+                format!("{}: {}", setting.name, setting.arguments)
+            }
+            _ => setting.arguments.clone(),
+        };
+        self.console.say(format!("{number}: {text}"));
+    }
+
+    fn ran(&self, measured: &Measured) {
+        self.line.clear();
+        self.console.say(format!(
+            "   {}: {:.1} s, error {:.1e}, agreement {:.2}",
+            measured.setting.name,
+            measured.wall_seconds(),
+            measured.error.rms,
+            measured.agreement
+        ));
+    }
+
+    fn refused(&self, refused: &Refused) {
+        self.line.clear();
+        self.console.warn(format!(
+            "{} is left out: {}",
+            refused.setting, refused.reason
+        ));
+    }
+}

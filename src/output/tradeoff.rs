@@ -1,0 +1,205 @@
+//! `tradeoff.csv` and `tradeoff.json`: what a sweep of settings measured, a row or object a setting.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Number, Value};
+
+use super::manifest::{COMMIT, Inputs, Machine, VERSION, cpu_features};
+use super::poses::number;
+use super::run_options::RunOptions;
+use super::staging::{StagingError, write_whole};
+use crate::evaluate::MatchReport;
+use crate::tradeoff::advice::Advice;
+use crate::tradeoff::{Measured, Refused, Tradeoff};
+
+/// Number of the layout of `tradeoff.json`; it rises when an entry changes its meaning or goes.
+pub const SCHEMA: u32 = 1;
+
+/// Stages whose times are columns, in the order in which they run.
+const STAGES: [&str; 9] = [
+    "sample", "plan", "prepare", "search", "refine", "check", "rescore", "cluster", "score",
+];
+
+/// A measured setting under the names of its columns, in order.
+pub fn columns(run: &Measured) -> Vec<(String, Value)> {
+    let options = &run.setting.options;
+    let real = |value: f64| Number::from_f64(value).map_or(Value::Null, Value::Number);
+    let optional = |value: Option<f64>| value.map_or(Value::Null, real);
+    let rank = |value: Option<Option<usize>>| value.flatten().map_or(Value::Null, Value::from);
+    let native = run.native;
+    let [nx, ny, nz] = run.grid;
+    let mut columns: Vec<(String, Value)> = [
+        ("setting", Value::from(run.setting.name.as_str())),
+        ("knob", run.setting.knob.name().into()),
+        ("options", run.setting.arguments.as_str().into()),
+        ("resolution", real(options.resolution)),
+        ("spacing", real(run.spacing)),
+        ("tolerance", real(options.tolerance)),
+        ("rotations", options.rotations.into()),
+        ("per_rotation", options.per_rotation.into()),
+        ("refined", run.refined.into()),
+        (
+            "sample_grid",
+            options.sample_grid.map_or(Value::Null, Value::from),
+        ),
+        ("grid_x", nx.into()),
+        ("grid_y", ny.into()),
+        ("grid_z", nz.into()),
+        ("modes", run.modes.into()),
+        ("rank", run.rank.into()),
+        ("spreading_width", run.spreading_width.into()),
+        ("wall_seconds", real(run.wall_seconds())),
+        ("cpu_seconds", optional(run.cpu_seconds())),
+        ("error_rms", real(run.error.rms)),
+        ("error_worst", real(run.error.worst)),
+        ("low_pass_share", real(run.error.low_pass_share)),
+        ("definition_rms", real(run.definition_rms)),
+        (
+            "definition_correlation",
+            optional(run.definition_correlation),
+        ),
+        ("agreement", real(run.agreement)),
+        (
+            "first_acceptable",
+            rank(native.map(|native| native.first_acceptable)),
+        ),
+        (
+            "first_near_native",
+            rank(native.map(|native| native.first_near_native)),
+        ),
+        (
+            "acceptable_in_100",
+            rank(native.map(|native| Some(native.acceptable))),
+        ),
+        (
+            "near_native_in_100",
+            rank(native.map(|native| Some(native.near_native))),
+        ),
+        ("front_error", run.front_error.into()),
+        ("front_agreement", run.front_agreement.into()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .to_vec();
+    for name in STAGES {
+        let stage = run.timing.iter().find(|stage| stage.name == name);
+        columns.push((
+            format!("{name}_wall_seconds"),
+            optional(stage.map(|stage| stage.wall_seconds)),
+        ));
+        columns.push((
+            format!("{name}_cpu_seconds"),
+            optional(stage.and_then(|stage| stage.cpu_seconds)),
+        ));
+    }
+    columns
+}
+
+/// A value as a field of the table.
+fn field(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Number(value) => match (value.as_u64(), value.as_f64()) {
+            (None, Some(real)) => number(real),
+            _ => value.to_string(),
+        },
+        other => other.to_string(),
+    }
+}
+
+/// Writes the table, whole or not at all.
+///
+/// # Errors
+/// [`StagingError`].
+pub fn write_table(tradeoff: &Tradeoff, path: &Path) -> Result<(), StagingError> {
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for (index, run) in tradeoff.measured.iter().enumerate() {
+            let columns = columns(run);
+            if index == 0 {
+                writer.write_record(columns.iter().map(|(name, _)| name))?;
+            }
+            writer.write_record(columns.iter().map(|(_, value)| field(value)))?;
+        }
+        writer.flush()
+    })
+}
+
+/// `tradeoff.json`.
+#[derive(Debug, Serialize)]
+pub struct TradeoffRecord<'a> {
+    schema: u32,
+    program: &'static str,
+    version: &'static str,
+    commit: &'static str,
+    cpu_features: String,
+    inputs: &'a Inputs,
+    options: Map<String, Value>,
+    agreement_radius: f64,
+    settings: Vec<Map<String, Value>>,
+    refused: &'a [Refused],
+    advice: Option<&'a Advice>,
+    #[serde(rename = "match")]
+    matching: Option<&'a MatchReport>,
+    machine: Machine,
+}
+
+/// What [`TradeoffRecord::new`] puts together.
+pub struct TradeoffParts<'a> {
+    /// The input files.
+    pub inputs: &'a Inputs,
+    /// The default's options.
+    pub options: &'a RunOptions,
+    /// What was measured.
+    pub tradeoff: &'a Tradeoff,
+    /// What to take.
+    pub advice: Option<&'a Advice>,
+    /// How the native was matched, if there is one.
+    pub matching: Option<&'a MatchReport>,
+    /// Where it ran.
+    pub machine: Machine,
+}
+
+impl<'a> TradeoffRecord<'a> {
+    /// The record of a finished sweep.
+    ///
+    /// # Errors
+    /// When a part cannot be put into JSON, which would be a fault of this program.
+    pub fn new(parts: TradeoffParts<'a>) -> serde_json::Result<Self> {
+        let mut options = parts.options.record()?;
+        // A sweep writes no complexes.
+        options.remove("write_top");
+        Ok(Self {
+            schema: SCHEMA,
+            program: "knotdock",
+            version: VERSION,
+            commit: COMMIT,
+            cpu_features: cpu_features(),
+            inputs: parts.inputs,
+            options,
+            agreement_radius: parts.tradeoff.radius,
+            settings: parts
+                .tradeoff
+                .measured
+                .iter()
+                .map(|run| columns(run).into_iter().collect())
+                .collect(),
+            refused: &parts.tradeoff.refused,
+            advice: parts.advice,
+            matching: parts.matching,
+            machine: parts.machine,
+        })
+    }
+
+    /// Writes the record, whole or not at all.
+    ///
+    /// # Errors
+    /// [`StagingError`].
+    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+        write_whole(path, |file| {
+            serde_json::to_writer_pretty(&mut *file, self)?;
+            writeln!(file)
+        })
+    }
+}

@@ -1,0 +1,245 @@
+//! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are timed.
+
+use knotdock_scoring::effect::{Effect, contact, electrostatics};
+use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+
+use super::cost_model::{CostModel, Workload};
+use crate::search::{
+    Decision, DockOptions, DockOutcome, DockPlan, LengthUnit, Progress, Scene, SearchError, dock,
+    plan_scene,
+};
+use knotdock_structures::molecule::LabelReport;
+
+/// Spacing in Å of the lattice that the bodies' knots lie on: the density of atoms in proteins.
+const LATTICE: f64 = 2.6;
+/// Radii of the two bodies, Å.
+const BODIES: [f64; 2] = [19.0, 9.7];
+/// Radii of knots, Å, in turn.
+const RADII: [f64; 7] = [1.4, 1.5, 1.6, 1.65, 1.7, 1.8, 1.9];
+
+/// Fits the cost model for so many threads, all of which should have nothing else to do.
+///
+/// # Errors
+/// [`SearchError`], which would be a fault of this program.
+pub fn calibrate(threads: usize, progress: &dyn Progress) -> Result<CostModel, SearchError> {
+    let base = DockOptions {
+        rotations: 480,
+        poses: 400,
+        threads,
+        ..DockOptions::default()
+    };
+    let settings = [
+        DockOptions {
+            refine: Some(100),
+            ..base.clone()
+        },
+        DockOptions {
+            tolerance: 0.1,
+            ..base.clone()
+        },
+        DockOptions {
+            spacing: Some(1.6),
+            rotations: 240,
+            ..base
+        },
+    ];
+    // Memory is touched and the processor awake after one run.
+    run(&settings[1], progress)?;
+    let runs: Vec<Timed> = settings
+        .iter()
+        .map(|options| run(options, progress))
+        .collect::<Result<_, _>>()?;
+    Ok(fit(&runs))
+}
+
+/// A docking that was timed.
+struct Timed {
+    outcome: DockOutcome,
+    work: Workload,
+    rotations: f64,
+    in_flight: f64,
+    rotation_set_seconds: f64,
+}
+
+impl Timed {
+    /// Processor seconds of a stage; where the system does not tell, those on the clock times the threads.
+    fn stage(&self, name: &str) -> f64 {
+        let stages = self
+            .outcome
+            .timing
+            .iter()
+            .filter(|stage| stage.name == name);
+        stages
+            .map(|stage| {
+                stage
+                    .cpu_seconds
+                    .unwrap_or(self.in_flight * stage.wall_seconds)
+            })
+            .sum()
+    }
+}
+
+fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchError> {
+    let scene = scene(options)?;
+    let points = scene.ligand.centers.clone();
+    let start = std::time::Instant::now();
+    let plan: DockPlan = plan_scene(scene, options)?;
+    let rotation_set_seconds = start.elapsed().as_secs_f64();
+    let outcome = dock(&plan, &points, progress)?;
+    Ok(Timed {
+        work: Workload {
+            rank: outcome.rank as f64,
+            ..Workload::of(&plan)
+        },
+        rotations: plan.rotations as f64,
+        in_flight: plan.in_flight as f64,
+        rotation_set_seconds,
+        outcome,
+    })
+}
+
+/// Two balls of labelled knots, with every effect on.
+fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
+    let [receptor, ligand] = BODIES.map(body);
+    let (receptor, ligand) = (receptor?, ligand?);
+    let terms = vec![
+        electrostatics::term(&receptor, &ligand, options.electrostatics_weight),
+        contact::term(
+            &receptor,
+            &ligand,
+            options.contact_weight,
+            &contact::Potential::default(),
+        ),
+    ];
+    let decisions = Effect::ALL.map(|effect| Decision {
+        effect,
+        on: true,
+        reason: "calibration".to_owned(),
+    });
+    Ok(Scene {
+        unit: LengthUnit::Angstrom,
+        angstrom: 1.0,
+        receptor,
+        ligand,
+        terms,
+        decisions: decisions.to_vec(),
+        labels: [LabelReport::default(), LabelReport::default()],
+    })
+}
+
+/// A ball of knots on a lattice.
+fn body(radius: f64) -> Result<Knots, KnotsError> {
+    let steps = (radius / LATTICE) as i32;
+    let mut centers = Vec::new();
+    for x in -steps..=steps {
+        for y in -steps..=steps {
+            for z in -steps..=steps {
+                let center = [x, y, z].map(|step| LATTICE * f64::from(step));
+                if center.iter().map(|x| x * x).sum::<f64>() <= radius * radius {
+                    centers.push(center);
+                }
+            }
+        }
+    }
+    let count = centers.len();
+    let radii = (0..count).map(|index| RADII[index % RADII.len()]);
+    let charges = (0..count).map(|index| if index % 2 == 0 { 0.3 } else { -0.3 });
+    let types = (0..count).map(|index| Some((index % contact::TYPES.len()) as u8));
+    Knots::new(centers, radii.collect())?.with_labels(charges.collect(), types.collect())
+}
+
+/// Coefficients from timed runs; what a run does not tell comes from the built-in model, sped up or slowed down as the rest is.
+fn fit(runs: &[Timed]) -> CostModel {
+    let built_in = CostModel::BUILT_IN;
+    // Least squares of relative errors: seconds of a rotation over N log2 N against the rank.
+    let points: Vec<(f64, f64)> = runs
+        .iter()
+        .map(|run| {
+            let each = run.stage("search") / run.rotations / run.work.grid;
+            (run.work.rank, each)
+        })
+        .collect();
+    let (inverse, field) = line(&points).unwrap_or_else(|| {
+        let ratios = points
+            .iter()
+            .map(|(rank, each)| each / (built_in.inverse + built_in.field * rank));
+        let ratio = ratios.sum::<f64>() / points.len().max(1) as f64;
+        (built_in.inverse * ratio, built_in.field * ratio)
+    });
+    let mean = |of: &dyn Fn(&Timed) -> f64, fallback: f64| {
+        let values: Vec<f64> = runs
+            .iter()
+            .map(of)
+            .filter(|value| value.is_finite() && *value > 0.0)
+            .collect();
+        if values.is_empty() {
+            fallback
+        } else {
+            values.iter().sum::<f64>() / values.len() as f64
+        }
+    };
+    let checked = |run: &Timed| run.stage("check") / run.outcome.error.poses as f64;
+    let pair = mean(&|run| checked(run) / run.work.pairs, built_in.pair);
+    let rotation_set = |run: &Timed| {
+        run.rotation_set_seconds / (built_in.covering + built_in.rotation * run.rotations)
+    };
+    let sets = mean(&rotation_set, 1.0);
+    CostModel {
+        inverse,
+        field,
+        prepare: mean(
+            &|run| run.stage("prepare") / (run.work.modes * run.work.effects),
+            built_in.prepare,
+        ),
+        pair,
+        rescore: mean(
+            &|run| run.stage("rescore") / (run.work.rescored * run.work.ligand),
+            built_in.rescore,
+        ),
+        climb: mean(
+            &|run| run.stage("refine") / (run.work.refined * run.work.ligand),
+            built_in.climb * pair / built_in.pair,
+        ),
+        rotation: built_in.rotation * sets,
+        covering: built_in.covering * sets,
+    }
+}
+
+/// The line a + b x through (x, y) points, by least squares of relative errors; `None` unless a and b are above zero.
+fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let (mut aa, mut ab, mut bb, mut ya, mut yb) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for &(x, y) in points {
+        let weight = 1.0 / (y * y);
+        aa += weight;
+        ab += weight * x;
+        bb += weight * x * x;
+        ya += weight * y;
+        yb += weight * x * y;
+    }
+    let determinant = aa * bb - ab * ab;
+    let (a, b) = (
+        (bb * ya - ab * yb) / determinant,
+        (aa * yb - ab * ya) / determinant,
+    );
+    (a.is_finite() && b.is_finite() && a > 0.0 && b > 0.0).then_some((a, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_is_that_of_the_points() {
+        let (a, b) = line(&[(1.0, 5.0), (4.0, 11.0), (7.0, 17.0)]).unwrap();
+        assert!((a - 3.0).abs() < 1e-9 && (b - 2.0).abs() < 1e-9);
+        assert_eq!(line(&[(2.0, 5.0), (2.0, 6.0)]), None);
+        assert_eq!(line(&[(1.0, 5.0), (2.0, 1.0)]), None, "falling");
+    }
+
+    #[test]
+    fn bodies_are_of_a_protein_s_size() {
+        let sizes = BODIES.map(|radius| body(radius).unwrap().len());
+        assert!((1400..1900).contains(&sizes[0]) && (180..260).contains(&sizes[1]));
+    }
+}

@@ -1,0 +1,127 @@
+//! The setting for an accuracy that is wanted or a time that may be spent.
+
+use serde::Serialize;
+
+use super::cost_model::{CostModel, LADDER, Rung, Workload};
+use crate::search::{DockOptions, DockPlan, SearchError};
+
+/// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
+pub const FEWEST_ROTATIONS: usize = 600;
+/// Most: 6 degrees, beyond which rotations cost time and find nothing.
+pub const MOST_ROTATIONS: usize = 56_250;
+
+/// What was wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// Error of the fast path, rms over the best grid poses, as a share of the best score.
+    pub accuracy: Option<f64>,
+    /// Seconds on the clock.
+    pub budget: Option<f64>,
+}
+
+/// What was chosen, and what it is expected to cost and to give.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chosen {
+    /// Error that was asked for.
+    pub accuracy: Option<f64>,
+    /// Seconds that were asked for.
+    pub budget_seconds: Option<f64>,
+    /// Where the cost model came from: `built-in`, or the file that `knotdock calibrate` wrote.
+    pub cost_model: String,
+    /// Seconds on the clock that the search is expected to take.
+    pub predicted_seconds: f64,
+    /// Error that is expected, where the setting was chosen by it.
+    pub predicted_error: Option<f64>,
+}
+
+/// Why nothing can be chosen.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChoiceError {
+    /// The search refuses the plan.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// More accuracy than there is.
+    #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
+    Accuracy {
+        /// What was wanted.
+        wanted: f64,
+        /// The least error.
+        least: f64,
+    },
+    /// Less time than it takes.
+    #[error("{budget} s are too few: {fewest} rotations are expected to take {needed:.1} s")]
+    Budget {
+        /// Seconds that were allowed.
+        budget: f64,
+        /// Seconds that the fewest rotations take.
+        needed: f64,
+        /// The fewest rotations.
+        fewest: usize,
+    },
+}
+
+impl ChoiceError {
+    /// What the user may do about it.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Search(error) => error.remedy(),
+            Self::Accuracy { least, .. } => format!("ask for an accuracy of {least:e} or more"),
+            Self::Budget { .. } => {
+                "allow more time or more --threads, run `knotdock calibrate` if the machine is not the slow one that the estimate takes it \
+                 for, or choose --rotations"
+                    .to_owned()
+            }
+        }
+    }
+}
+
+/// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`. `plan` plans with options; `threads` is how
+/// many the run has.
+///
+/// # Errors
+/// [`ChoiceError`].
+pub fn choose(
+    wanted: Wanted,
+    (model, source): (&CostModel, &str),
+    options: &mut DockOptions,
+    threads: usize,
+    plan: impl Fn(&DockOptions) -> Result<DockPlan, SearchError>,
+) -> Result<Chosen, ChoiceError> {
+    let mut predicted_error = None;
+    if let Some(accuracy) = wanted.accuracy {
+        let least = LADDER
+            .iter()
+            .fold(f64::INFINITY, |least, rung| least.min(rung.error));
+        let rung = Rung::within(accuracy).ok_or(ChoiceError::Accuracy {
+            wanted: accuracy,
+            least,
+        })?;
+        rung.apply(options);
+        predicted_error = Some(rung.error);
+    }
+    // The rotations are left open: few are quickly planned.
+    let draft = plan(&DockOptions {
+        rotations: 4,
+        ..options.clone()
+    })?;
+    let work = Workload::of(&draft);
+    if let Some(budget) = wanted.budget {
+        let rotations = model.rotations_within(&work, budget, threads);
+        if rotations < FEWEST_ROTATIONS {
+            return Err(ChoiceError::Budget {
+                budget,
+                needed: model.seconds(&work, FEWEST_ROTATIONS, threads),
+                fewest: FEWEST_ROTATIONS,
+            });
+        }
+        // Rotations share their work in fours.
+        options.rotations = rotations.min(MOST_ROTATIONS) / 4 * 4;
+    }
+    Ok(Chosen {
+        accuracy: wanted.accuracy,
+        budget_seconds: wanted.budget,
+        cost_model: source.to_owned(),
+        predicted_seconds: model.seconds(&work, options.rotations, threads),
+        predicted_error,
+    })
+}

@@ -1,0 +1,290 @@
+//! What a docking will cost and how far off its fast path will be, before it runs.
+//!
+//! # Time
+//!
+//! A run's processor time is taken as a sum of stages, each a coefficient times what the stage works on:
+//!
+//! - a rotation: N log2 N (`inverse` + `field` q), N points of the grid, q fields of the compressed functions;
+//! - preparing: `prepare` for each mode and effect, on one thread;
+//! - an exact sum: `pair` for each pair of knots that can feel each other;
+//! - rescoring a pose, climbing a peak: `rescore`, `climb` for each knot of the ligand;
+//! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
+//!
+//! Coefficients are seconds of one thread while all are busy. The built-in ones were fitted on the machine that docs/tradeoff.md names;
+//! `knotdock calibrate` fits them where it runs.
+//!
+//! # Error
+//!
+//! The fast path's error hangs on tolerance and spacing. [`LADDER`] holds settings of both, cheapest first, each with the error that
+//! it was measured to make.
+
+use serde::{Deserialize, Serialize};
+
+use crate::search::{DockOptions, DockPlan, Effect};
+
+/// Coefficients of the time, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CostModel {
+    /// Of a rotation, whatever its fields.
+    pub inverse: f64,
+    /// Of a rotation, each field.
+    pub field: f64,
+    /// Of preparing, each mode and effect.
+    pub prepare: f64,
+    /// Of an exact sum, each pair of knots within reach.
+    pub pair: f64,
+    /// Of rescoring, each pose and ligand knot.
+    pub rescore: f64,
+    /// Of refining, each pose and ligand knot.
+    pub climb: f64,
+    /// Of making the rotation set, each rotation.
+    pub rotation: f64,
+    /// Of measuring its covering radius.
+    pub covering: f64,
+}
+
+/// Exact sums made to measure a run's error.
+const CHECKED: f64 = 100.0;
+/// Knots about which neighbours are counted.
+const PROBED: usize = 64;
+
+impl CostModel {
+    /// Coefficients of the machine of docs/tradeoff.md.
+    pub const BUILT_IN: Self = Self {
+        inverse: 2.4e-10,
+        field: 1.0e-10,
+        prepare: 6.5e-6,
+        pair: 2.2e-8,
+        rescore: 8e-7,
+        climb: 1e-5,
+        rotation: 4e-5,
+        covering: 0.15,
+    };
+
+    /// Whether every coefficient is a time.
+    pub fn is_sound(&self) -> bool {
+        let Self {
+            inverse,
+            field,
+            prepare,
+            pair,
+            rescore,
+            climb,
+            rotation,
+            covering,
+        } = *self;
+        [
+            inverse, field, prepare, pair, rescore, climb, rotation, covering,
+        ]
+        .iter()
+        .all(|value| value.is_finite() && *value > 0.0 && *value < 1e3)
+    }
+
+    /// Seconds of one thread for a rotation.
+    pub fn rotation_seconds(&self, work: &Workload) -> f64 {
+        work.grid * (self.inverse + self.field * work.rank)
+    }
+
+    /// Seconds on the clock, all cores to itself, for so many rotations on so many threads.
+    pub fn seconds(&self, work: &Workload, rotations: usize, threads: usize) -> f64 {
+        let rotations = rotations as f64;
+        let alone = self.prepare * work.modes * work.effects
+            + self.covering
+            + self.rotation * rotations / threads as f64;
+        let exact = self.pair * work.pairs * (CHECKED + work.reported);
+        let rescored = self.rescore * work.ligand * work.rescored;
+        let refined = self.climb * work.ligand * work.refined;
+        let shared = rotations * self.rotation_seconds(work) + exact + rescored + refined;
+        alone + shared / threads as f64
+    }
+
+    /// Most rotations that fit into so many seconds; zero where not even the rest does.
+    pub fn rotations_within(&self, work: &Workload, seconds: f64, threads: usize) -> usize {
+        let fixed = self.seconds(work, 0, threads);
+        let each = (self.seconds(work, 1000, threads) - fixed) / 1000.0;
+        ((seconds - fixed) / each).max(0.0) as usize
+    }
+}
+
+/// How much there is to do in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Workload {
+    /// N log2 N of the grid's N points.
+    pub grid: f64,
+    /// Fields of the compressed functions, as far as they can be foreseen.
+    pub rank: f64,
+    /// Modes kept.
+    pub modes: f64,
+    /// Effects that are on.
+    pub effects: f64,
+    /// Pairs of knots that feel each other in a pose that touches.
+    pub pairs: f64,
+    /// Knots of the ligand.
+    pub ligand: f64,
+    /// Poses that are exactly scored for the table.
+    pub reported: f64,
+    /// Poses rescored.
+    pub rescored: f64,
+    /// Poses refined.
+    pub refined: f64,
+}
+
+impl Workload {
+    /// The work of a plan, its rotations left open.
+    pub fn of(plan: &DockPlan) -> Self {
+        let options = &plan.options;
+        let points = plan.grid.iter().product::<usize>() as f64;
+        let [receptor, ligand] = plan.knots();
+        // A knot of the ligand at the surface has about as many within reach as the average knot of the receptor.
+        let step = receptor.len().div_ceil(PROBED).max(1);
+        let reach = plan.kernel_reach.powi(2);
+        let (mut near, mut probed) = (0usize, 0usize);
+        for center in receptor.centers.iter().step_by(step) {
+            let within = receptor.centers.iter().filter(|other| {
+                let square: f64 = (0..3)
+                    .map(|axis| (other[axis] - center[axis]).powi(2))
+                    .sum();
+                square <= reach
+            });
+            near += within.count();
+            probed += 1;
+        }
+        let on = |effect: Effect| f64::from(u8::from(plan.is_on(effect)));
+        let poses = options.poses as f64;
+        Self {
+            grid: points * points.log2(),
+            rank: expected_rank(plan),
+            modes: plan.modes as f64,
+            effects: Effect::ALL.into_iter().map(on).sum(),
+            pairs: ligand.len() as f64 * near as f64 / probed.max(1) as f64,
+            ligand: ligand.len() as f64,
+            // Of each cluster the founder, and whatever the fast path's error could put before it.
+            reported: if options.every_pose {
+                poses
+            } else {
+                poses * (0.27 + 5.0 * options.tolerance).min(1.0)
+            },
+            rescored: if plan.is_on(Effect::Contact) && options.fine_contact_weight > 0.0 {
+                poses
+            } else {
+                0.0
+            },
+            refined: (plan.refined() as f64).min(poses),
+        }
+    }
+}
+
+/// Fields that a tolerance needs: two of shape, two of electrostatics, three of the contact potential at 1e-2, fewer where more error is
+/// allowed, and where all balls are alike one.
+fn expected_rank(plan: &DockPlan) -> f64 {
+    let tolerance = plan.options.tolerance;
+    let share = match tolerance {
+        tolerance if tolerance >= 0.1 => 0.6,
+        tolerance if tolerance >= 0.03 => 0.85,
+        tolerance if tolerance >= 1e-3 => 1.0,
+        _ => 1.15,
+    };
+    let alike = plan.radii == [1, 1];
+    let at_default = [
+        (Effect::Shape, if alike { 1.0 } else { 2.0 }),
+        (Effect::Electrostatics, 2.0),
+        (Effect::Contact, 3.0),
+    ];
+    let fields: f64 = at_default
+        .into_iter()
+        .filter(|(effect, _)| plan.is_on(*effect))
+        .map(|(_, fields)| fields)
+        .sum();
+    (share * fields).max(1.0)
+}
+
+/// A setting of the fast path with the error that it makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rung {
+    /// Tolerance.
+    pub tolerance: f64,
+    /// Spacing as a share of the resolution.
+    pub spacing: f64,
+    /// Root mean square of the error over the best grid poses, as a share of the best score.
+    pub error: f64,
+}
+
+/// Cheapest first: as measured on the example pair, whose errors `cargo bench --bench cost_model` sets beside those expected.
+pub const LADDER: [Rung; 7] = [
+    Rung::new(0.1, 0.5, 6e-3),
+    Rung::new(0.03, 0.5, 1.8e-3),
+    Rung::new(1e-3, 0.5, 7e-4),
+    Rung::new(1e-3, 0.445, 3e-4),
+    Rung::new(1e-3, 0.4, 1.2e-4),
+    Rung::new(1e-3, 0.355, 6e-5),
+    Rung::new(1e-4, 0.23, 2e-6),
+];
+
+impl Rung {
+    const fn new(tolerance: f64, spacing: f64, error: f64) -> Self {
+        Self {
+            tolerance,
+            spacing,
+            error,
+        }
+    }
+
+    /// The cheapest setting whose error is at most `accuracy`; `None` below what single precision reaches.
+    pub fn within(accuracy: f64) -> Option<Self> {
+        LADDER.into_iter().find(|rung| rung.error <= accuracy)
+    }
+
+    /// Options with this setting.
+    pub fn apply(self, options: &mut DockOptions) {
+        options.tolerance = self.tolerance;
+        options.spacing = Some(self.spacing * options.resolution);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn work() -> Workload {
+        Workload {
+            grid: 1.85e6,
+            rank: 7.0,
+            modes: 29_772.0,
+            effects: 3.0,
+            pairs: 2e5,
+            ligand: 221.0,
+            reported: 640.0,
+            rescored: 2000.0,
+            refined: 0.0,
+        }
+    }
+
+    #[test]
+    fn rotations_fill_the_time() {
+        let model = CostModel::BUILT_IN;
+        for (seconds, threads) in [(5.0, 1), (5.0, 4), (60.0, 2)] {
+            let rotations = model.rotations_within(&work(), seconds, threads);
+            assert!(model.seconds(&work(), rotations, threads) <= seconds);
+            assert!(model.seconds(&work(), rotations + 8, threads) > seconds);
+        }
+        assert_eq!(model.rotations_within(&work(), 0.1, 2), 0);
+        assert!(model.is_sound());
+        let broken = CostModel {
+            pair: f64::NAN,
+            ..model
+        };
+        assert!(!broken.is_sound());
+    }
+
+    #[test]
+    fn the_ladder_rises_in_accuracy() {
+        for pair in LADDER.windows(2) {
+            assert!(pair[0].error > pair[1].error && pair[0].spacing >= pair[1].spacing);
+            assert!(pair[0].tolerance >= pair[1].tolerance);
+        }
+        assert_eq!(Rung::within(1.0), Some(LADDER[0]));
+        assert_eq!(Rung::within(1e-3).unwrap().error, 7e-4);
+        assert_eq!(Rung::within(1e-9), None);
+    }
+}

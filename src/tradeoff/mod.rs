@@ -1,0 +1,22 @@
+//! What accuracy costs in time: settings around a default, each run and measured, and which of them is worth taking.
+//!
+//! # Conventions
+//!
+//! - Time is that of all stages of a run, in seconds; settings are compared by processor time. Errors are shares of the best exact score.
+//! - Sampling, planning and searching are those of `knotdock dock`: nothing is modelled that can be run.
+
+pub mod advice;
+mod agreement;
+pub mod calibrate;
+pub mod choice;
+pub mod cost_model;
+pub mod drawing;
+mod front;
+pub mod pair;
+pub mod plot;
+pub mod settings;
+pub mod sweep;
+
+pub use pair::{Pair, PairError};
+pub use settings::{Knob, Setting};
+pub use sweep::{Measured, Refused, SweepProgress, Tradeoff, sweep};

@@ -1,0 +1,380 @@
+//! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
+
+use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use super::settings::Knob;
+use super::sweep::{FIRST, Measured, Tradeoff};
+
+/// Edge lengths of a panel's axes in pixels.
+const AXES: [f64; 2] = [430.0, 380.0];
+/// Room around the axes: left, above, right, below.
+const MARGIN: [f64; 4] = [76.0, 44.0, 20.0, 56.0];
+/// Where nothing of the reference is missed: half a row, which a logarithm can show.
+const NONE_MISSED: f64 = 0.5;
+
+const BLACK: Colour = [0x22, 0x22, 0x22];
+const GREY: Colour = [0xdd, 0xdd, 0xdd];
+const FRONT: Colour = [0x88, 0x88, 0x88];
+
+/// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
+fn colour(knob: Knob) -> Colour {
+    match knob {
+        Knob::Default => [0x00, 0x00, 0x00],
+        Knob::Reference => [0x77, 0x77, 0x77],
+        Knob::Tolerance => [0xd5, 0x5e, 0x00],
+        Knob::Spacing => [0xe6, 0x9f, 0x00],
+        Knob::Resolution => [0x00, 0x9e, 0x73],
+        Knob::Rotations => [0x00, 0x72, 0xb2],
+        Knob::PerRotation => [0x56, 0xb4, 0xe9],
+        Knob::Refine => [0xaa, 0x33, 0x77],
+        Knob::SampleGrid => [0x8b, 0x5a, 0x2b],
+        Knob::Combination => [0xcc, 0x33, 0x11],
+    }
+}
+
+/// A setting as a point of a panel.
+struct Point<'a> {
+    run: &'a Measured,
+    value: f64,
+    front: bool,
+}
+
+/// One pair of axes with its points.
+struct Panel<'a> {
+    title: &'static str,
+    label: &'static str,
+    points: Vec<Point<'a>>,
+    /// A value whose tick reads otherwise.
+    named: Option<(f64, &'static str)>,
+}
+
+/// Draws a sweep.
+pub fn plot(tradeoff: &Tradeoff) -> Drawing {
+    let points = |value: &dyn Fn(&Measured) -> Option<f64>, front: fn(&Measured) -> bool| {
+        let runs = tradeoff.measured.iter();
+        runs.filter_map(|run| {
+            Some(Point {
+                run,
+                value: value(run).filter(|value| *value > 0.0 && value.is_finite())?,
+                front: front(run),
+            })
+        })
+        .collect::<Vec<_>>()
+    };
+    let missed = |run: &Measured| {
+        let counted = run.setting.knob != Knob::Reference;
+        counted.then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
+    };
+    let mut panels = vec![
+        Panel {
+            title: "Fast path against the exact sum",
+            label: "error, rms, share of the best score",
+            points: points(&|run| Some(run.error.rms), |run| run.front_error),
+            named: None,
+        },
+        Panel {
+            title: "Against the reference",
+            label: "of its first 100 rows, missed (%)",
+            points: points(&missed, |run| run.front_agreement),
+            named: Some((NONE_MISSED, "none")),
+        },
+    ];
+    if tradeoff.with_native {
+        let rank = |run: &Measured| run.native?.first_near_native.map(|rank| rank as f64);
+        panels.push(Panel {
+            title: "Against the known complex",
+            label: "rank of the first near-native pose",
+            points: points(&rank, |_| false),
+            named: None,
+        });
+    }
+    // No pose may be near the known complex, or no error above zero.
+    panels.retain(|panel| !panel.points.is_empty());
+    let width = MARGIN[0] + AXES[0] + MARGIN[2];
+    let height = MARGIN[1] + AXES[1] + MARGIN[3];
+    let mut marks = Vec::new();
+    for (index, panel) in panels.iter().enumerate() {
+        panel.draw([index as f64 * width + MARGIN[0], MARGIN[1]], &mut marks);
+    }
+    let whole = width * panels.len().max(1) as f64;
+    let below = legend(tradeoff, whole, height, &mut marks);
+    Drawing {
+        width: whole,
+        height: below,
+        marks,
+    }
+}
+
+fn text(at: [f64; 2], anchor: Anchor, colour: Colour, text: impl Into<String>) -> Mark {
+    Mark::Text {
+        at,
+        anchor,
+        colour,
+        upward: false,
+        text: text.into(),
+    }
+}
+
+/// One colour a knob, and what filled discs mean, on as many lines as it takes; the height below them.
+fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 {
+    let mut knobs: Vec<Knob> = Vec::new();
+    for run in &tradeoff.measured {
+        if !knobs.contains(&run.setting.knob) {
+            knobs.push(run.setting.knob);
+        }
+    }
+    let entries = knobs
+        .iter()
+        .map(|&knob| (colour(knob), false, knob.name()))
+        .chain([(FRONT, true, "filled: nothing is better in less time")]);
+    let (mut x, mut y) = (MARGIN[0], top + 4.0);
+    for (colour, filled, name) in entries {
+        let takes = 20.0 + text_width(name) + 3.0 * CHARACTER;
+        if x + takes > width {
+            (x, y) = (MARGIN[0], y + LINE + 6.0);
+        }
+        marks.push(Mark::Disc {
+            at: [x + 6.0, y],
+            radius: 5.0,
+            colour,
+            filled,
+        });
+        marks.push(text([x + 18.0, y], Anchor::Start, BLACK, name));
+        x += takes;
+    }
+    y + LINE + 4.0
+}
+
+/// A logarithmic axis: from and to, in powers of ten.
+#[derive(Clone, Copy)]
+struct Scale {
+    low: f64,
+    high: f64,
+}
+
+impl Scale {
+    /// An axis that holds all values with some room, at least from one to five.
+    fn over(values: impl Iterator<Item = f64>) -> Self {
+        let (low, high) = values
+            .map(f64::log10)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+        if low > high {
+            return Self {
+                low: 0.0,
+                high: 1.0,
+            };
+        }
+        let room = (0.08 * (high - low)).max(0.5 * (0.7 - (high - low)).max(0.1));
+        Self {
+            low: low - room,
+            high: high + room,
+        }
+    }
+
+    /// Place from 0 to 1.
+    fn place(self, value: f64) -> f64 {
+        (value.log10() - self.low) / (self.high - self.low)
+    }
+
+    /// Where numbers stand: at powers of ten, with twos and fives between where few of these are in view.
+    fn ticks(self) -> Vec<f64> {
+        let digits: &[f64] = if self.high - self.low > 2.5 {
+            &[1.0]
+        } else {
+            &[1.0, 2.0, 5.0]
+        };
+        let powers = self.low.floor() as i32..=self.high.ceil() as i32;
+        powers
+            .flat_map(|power| digits.iter().map(move |digit| digit * 10f64.powi(power)))
+            .filter(|tick| (0.0..=1.0).contains(&self.place(*tick)))
+            .collect()
+    }
+}
+
+/// A tick's number, at most five characters.
+fn tick_text(value: f64) -> String {
+    if (0.01..1e5).contains(&value) {
+        // Powers of ten come with their rounding.
+        let text = format!("{value:.2}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{value:.0e}")
+    }
+}
+
+impl Panel<'_> {
+    /// Draws the panel with the upper left of its axes at `origin`.
+    fn draw(&self, origin: [f64; 2], marks: &mut Vec<Mark>) {
+        let [left, top] = origin;
+        let (right, bottom) = (left + AXES[0], top + AXES[1]);
+        let across = Scale::over(self.points.iter().map(|point| point.run.cost()));
+        let up = Scale::over(self.points.iter().map(|point| point.value));
+        let line = |through: Vec<[f64; 2]>, colour| Mark::Line {
+            through,
+            colour,
+            width: 1.0,
+            dashed: false,
+        };
+        for tick in across.ticks() {
+            let x = left + AXES[0] * across.place(tick);
+            marks.push(line(vec![[x, top], [x, bottom]], GREY));
+            marks.push(text(
+                [x, bottom + 14.0],
+                Anchor::Middle,
+                BLACK,
+                tick_text(tick),
+            ));
+        }
+        let mut ticks = up.ticks();
+        if let Some((value, _)) = self.named {
+            ticks.retain(|tick| *tick > 1.5 * value);
+            ticks.extend(
+                self.points
+                    .iter()
+                    .any(|point| point.value <= value)
+                    .then_some(value),
+            );
+        }
+        for tick in ticks {
+            let y = bottom - AXES[1] * up.place(tick);
+            let name = match self.named {
+                Some((value, name)) if value == tick => name.to_owned(),
+                _ => tick_text(tick),
+            };
+            marks.push(line(vec![[left, y], [right, y]], GREY));
+            marks.push(text([left - 8.0, y], Anchor::End, BLACK, name));
+        }
+        let corners = [
+            [left, top],
+            [right, top],
+            [right, bottom],
+            [left, bottom],
+            [left, top],
+        ];
+        marks.push(line(corners.to_vec(), BLACK));
+        let middle = left + AXES[0] / 2.0;
+        marks.push(text(
+            [middle, top - 18.0],
+            Anchor::Middle,
+            BLACK,
+            self.title,
+        ));
+        marks.push(text(
+            [middle, bottom + 36.0],
+            Anchor::Middle,
+            BLACK,
+            "processor time, s",
+        ));
+        marks.push(Mark::Text {
+            at: [left - 60.0, top + AXES[1] / 2.0],
+            anchor: Anchor::Middle,
+            colour: BLACK,
+            upward: true,
+            text: self.label.to_owned(),
+        });
+
+        let place = |point: &Point| {
+            [
+                left + AXES[0] * across.place(point.run.cost()),
+                bottom - AXES[1] * up.place(point.value),
+            ]
+        };
+        let mut front: Vec<[f64; 2]> = self.points.iter().filter(|p| p.front).map(place).collect();
+        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        marks.push(Mark::Line {
+            through: front,
+            colour: FRONT,
+            width: 1.5,
+            dashed: true,
+        });
+        for point in &self.points {
+            marks.push(Mark::Disc {
+                at: place(point),
+                radius: 5.0,
+                colour: colour(point.run.setting.knob),
+                filled: point.front,
+            });
+        }
+        let places: Vec<[f64; 2]> = self.points.iter().map(place).collect();
+        self.name_points(&places, [left, top, right, bottom], marks);
+    }
+
+    /// Writes the names of settings beside their points, where they cover neither points nor each other: those of the front, the default and
+    /// the reference first. A name for which there is no room is left out; the table has it.
+    fn name_points(&self, places: &[[f64; 2]], frame: [f64; 4], marks: &mut Vec<Mark>) {
+        const APART: f64 = 9.0;
+        let mut taken: Vec<[f64; 4]> = places
+            .iter()
+            .map(|&[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0])
+            .collect();
+        let important = |point: &Point| {
+            point.front || matches!(point.run.setting.knob, Knob::Default | Knob::Reference)
+        };
+        let mut order: Vec<usize> = (0..self.points.len()).collect();
+        order.sort_by_key(|&index| !important(&self.points[index]));
+        for index in order {
+            let ([x, y], point) = (places[index], &self.points[index]);
+            let name = &point.run.setting.name;
+            let (wide, high) = (text_width(name), LINE);
+            let candidates = [
+                ([x + APART, y], Anchor::Start),
+                ([x - APART, y], Anchor::End),
+                ([x, y - high], Anchor::Middle),
+                ([x, y + high], Anchor::Middle),
+                ([x + 0.7 * APART, y - 0.8 * high], Anchor::Start),
+                ([x + 0.7 * APART, y + 0.8 * high], Anchor::Start),
+                ([x - 0.7 * APART, y - 0.8 * high], Anchor::End),
+                ([x - 0.7 * APART, y + 0.8 * high], Anchor::End),
+            ];
+            let free = candidates.into_iter().find_map(|(at, anchor)| {
+                let from = match anchor {
+                    Anchor::Start => at[0],
+                    Anchor::Middle => at[0] - wide / 2.0,
+                    Anchor::End => at[0] - wide,
+                };
+                let (upper, lower) = (at[1] - high / 2.0, at[1] + high / 2.0);
+                let area = [from, upper, from + wide, lower];
+                let inside = area[0] > frame[0] + 2.0
+                    && area[1] > frame[1] + 2.0
+                    && area[2] < frame[2] - 2.0
+                    && area[3] < frame[3] - 2.0;
+                let covers = |other: &[f64; 4]| {
+                    area[0] < other[2]
+                        && other[0] < area[2]
+                        && area[1] < other[3]
+                        && other[1] < area[3]
+                };
+                (inside && !taken.iter().any(covers)).then_some((at, anchor, area))
+            });
+            if let Some((at, anchor, area)) = free {
+                taken.push(area);
+                let colour = colour(point.run.setting.knob);
+                marks.push(text(at, anchor, colour, name.as_str()));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_lie_within_the_axis_and_read_as_people_write() {
+        let narrow = Scale::over([3.0, 40.0].into_iter());
+        assert_eq!(narrow.ticks(), [5.0, 10.0, 20.0, 50.0].map(|t: f64| t));
+        let wide = Scale::over([1e-6, 1e-1].into_iter());
+        assert!(wide.ticks().len() >= 5);
+        for scale in [
+            narrow,
+            wide,
+            Scale::over([7.0].into_iter()),
+            Scale::over(std::iter::empty()),
+        ] {
+            assert!(scale.low < scale.high && !scale.ticks().is_empty());
+        }
+        let texts = [0.5, 10.0, 1e-6, 0.05].map(tick_text);
+        assert_eq!(texts, ["0.5", "10", "1e-6", "0.05"]);
+    }
+}

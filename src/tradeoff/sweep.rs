@@ -1,0 +1,372 @@
+//! Runs each setting of a sweep through the ordinary search and measures what it costs and what it gives up.
+//!
+//! # What is measured
+//!
+//! - **Time** by stage, on the clock and of all processors.
+//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking run measures it.
+//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's resolution and
+//!   sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set against it at the poses that the
+//!   reference ranks first.
+//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within the radius of clusters.
+//! - **Ranks** of near poses, where a known complex is given.
+
+use knotdock_scoring::se3::Pose;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::agreement::{agreement, compare};
+use super::front::front;
+use super::pair::{Pair, PairError, Prepared, Preparer};
+use super::settings::{FINEST_TOLERANCE, Knob, Planned, Setting, settings};
+use crate::evaluate::{Capri, Evaluator};
+use crate::search::cluster::RigidBody;
+use crate::search::outcome::MeasuredError;
+use crate::search::{DockOptions, DockOutcome, DockPlan, Progress, SearchError, StageTime, dock};
+
+/// Rows whose agreement is measured.
+pub const FIRST: usize = 100;
+/// Interface RMSD in Å up to which a pose is near-native.
+pub const NEAR_NATIVE: f64 = 2.5;
+
+/// How a setting ranks poses near the known complex, by rows of its table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NativeRanks {
+    /// Rank of the first pose that CAPRI calls acceptable or better.
+    pub first_acceptable: Option<usize>,
+    /// Rank of the first pose whose interface RMSD is at most [`NEAR_NATIVE`].
+    pub first_near_native: Option<usize>,
+    /// Acceptable or better ones among the first 100.
+    pub acceptable: usize,
+    /// Near-native ones among the first 100.
+    pub near_native: usize,
+}
+
+/// What a setting was measured to cost and to give.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The setting.
+    pub setting: Setting,
+    /// Grid points an axis.
+    pub grid: [usize; 3],
+    /// Grid spacing.
+    pub spacing: f64,
+    /// Modes kept in three dimensions, conjugates not counted.
+    pub modes: usize,
+    /// Rank of the lifted axis.
+    pub rank: usize,
+    /// Width of the spreading window.
+    pub spreading_width: usize,
+    /// Poses refined.
+    pub refined: usize,
+    /// Time by stage; the search's own stages after sampling and planning.
+    pub timing: Vec<StageTime>,
+    /// The fast path's error against the exact sum.
+    pub error: MeasuredError,
+    /// Root mean square of the exact sum against the reference score, as a share of its best.
+    pub definition_rms: f64,
+    /// Correlation of the two; `None` where either does not vary.
+    pub definition_correlation: Option<f64>,
+    /// Share of the reference's first rows found again.
+    pub agreement: f64,
+    /// Ranks of near poses, with a known complex.
+    pub native: Option<NativeRanks>,
+    /// Whether no other setting with the default's score has a smaller error in less time.
+    pub front_error: bool,
+    /// Whether no other setting finds more of the reference's rows in less time.
+    pub front_agreement: bool,
+}
+
+impl Measured {
+    /// Seconds of all stages: on the clock.
+    pub fn wall_seconds(&self) -> f64 {
+        self.timing.iter().map(|stage| stage.wall_seconds).sum()
+    }
+
+    /// Seconds of all stages and processors, where the system tells.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        self.timing.iter().map(|stage| stage.cpu_seconds).sum()
+    }
+
+    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock where the system does
+    /// not tell.
+    pub fn cost(&self) -> f64 {
+        self.cpu_seconds().unwrap_or_else(|| self.wall_seconds())
+    }
+
+    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
+    pub fn same_score(&self, default: &DockOptions) -> bool {
+        let options = &self.setting.options;
+        (options.resolution, options.pass_length, options.sample_grid)
+            == (default.resolution, default.pass_length, default.sample_grid)
+    }
+}
+
+/// A setting that could not be run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    /// Its name.
+    pub setting: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// All that a sweep measured.
+#[derive(Clone, Debug)]
+pub struct Tradeoff {
+    /// The settings that ran: the default, the reference, then in the order of [`settings`].
+    pub measured: Vec<Measured>,
+    /// Those that did not.
+    pub refused: Vec<Refused>,
+    /// Radius of agreement, in the unit of lengths.
+    pub radius: f64,
+    /// Whether a known complex was given.
+    pub with_native: bool,
+}
+
+/// Who is told how far a sweep has come.
+pub trait SweepProgress: Progress {
+    /// The default has run: so many settings, and about so many seconds for all.
+    fn begins(&self, settings: usize, seconds: f64);
+    /// A setting is about to run: its number from 1.
+    fn runs(&self, number: usize, setting: &Setting);
+    /// A setting has run.
+    fn ran(&self, measured: &Measured);
+    /// A setting is left out.
+    fn refused(&self, refused: &Refused);
+}
+
+/// Sweeps `knobs` around `default`, whose lengths, of meshes, are all filled in.
+///
+/// # Errors
+/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are listed with the reason.
+pub fn sweep(
+    pair: Pair,
+    default: &DockOptions,
+    knobs: &[Knob],
+    evaluator: Option<&Evaluator>,
+    progress: &dyn SweepProgress,
+) -> Result<Tradeoff, PairError> {
+    let mut preparer = Preparer::new(pair);
+    let first = preparer.prepare(default)?;
+    let planned = Planned {
+        spacing: first.plan.spacing,
+        refined: first.plan.refined(),
+    };
+    let mut refused: Vec<Refused> = Vec::new();
+    let mut ready: Vec<(Setting, Prepared)> = Vec::new();
+    for setting in settings(default, planned, knobs) {
+        match preparer.prepare(&setting.options) {
+            Ok(prepared) => ready.push((setting, prepared)),
+            Err(error) if setting.knob == Knob::Reference => return Err(error),
+            Err(error) => {
+                let left_out = Refused {
+                    setting: setting.name,
+                    reason: error.to_string(),
+                };
+                progress.refused(&left_out);
+                refused.push(left_out);
+            }
+        }
+    }
+    let exact = preparer.prepare(&DockOptions {
+        tolerance: default.tolerance.min(FINEST_TOLERANCE),
+        ..default.clone()
+    })?;
+    let body = RigidBody::new(&first.points);
+    let mut reference: Option<Reference> = None;
+    let mut runs: Vec<Run> = Vec::new();
+    for (index, (setting, prepared)) in ready.iter().enumerate() {
+        progress.runs(index + 1, setting);
+        let (measured, poses) = match run(setting, prepared, evaluator, progress) {
+            Ok(run) => run,
+            Err(error) if matches!(setting.knob, Knob::Default | Knob::Reference) => {
+                return Err(error.into());
+            }
+            Err(error) => {
+                let left_out = Refused {
+                    setting: setting.name.clone(),
+                    reason: error.to_string(),
+                };
+                progress.refused(&left_out);
+                refused.push(left_out);
+                continue;
+            }
+        };
+        match setting.knob {
+            Knob::Default => progress.begins(ready.len(), estimate(&measured, &ready)),
+            Knob::Reference => {
+                reference = Some(Reference {
+                    scores: exact_scores(&exact.plan, &poses)?,
+                    poses: poses.clone(),
+                });
+            }
+            _ => {}
+        }
+        runs.push(Run {
+            measured,
+            poses,
+            plan: &prepared.plan,
+        });
+        let Some(reference) = &reference else {
+            continue;
+        };
+        // The default ran before there was a reference to compare it with.
+        let new = if setting.knob == Knob::Reference {
+            0
+        } else {
+            runs.len() - 1
+        };
+        for run in &mut runs[new..] {
+            run.set_against(reference, &body, default.cluster_radius)?;
+            progress.ran(&run.measured);
+        }
+    }
+    let mut measured: Vec<Measured> = runs.into_iter().map(|run| run.measured).collect();
+    mark_fronts(&mut measured, default);
+    Ok(Tradeoff {
+        measured,
+        refused,
+        radius: default.cluster_radius,
+        with_native: evaluator.is_some(),
+    })
+}
+
+/// What the reference ranks first, and the reference score of each.
+struct Reference {
+    poses: Vec<Pose>,
+    scores: Vec<f64>,
+}
+
+/// A setting that has run, with what it ranks first.
+struct Run<'a> {
+    measured: Measured,
+    poses: Vec<Pose>,
+    plan: &'a DockPlan,
+}
+
+impl Run<'_> {
+    fn set_against(
+        &mut self,
+        reference: &Reference,
+        body: &RigidBody,
+        radius: f64,
+    ) -> Result<(), SearchError> {
+        let scores = exact_scores(self.plan, &reference.poses)?;
+        let compared = compare(&scores, &reference.scores);
+        self.measured.definition_rms = compared.rms;
+        self.measured.definition_correlation = compared.correlation;
+        self.measured.agreement = agreement(body, &reference.poses, &self.poses, radius);
+        Ok(())
+    }
+}
+
+/// Runs a setting; what needs the reference is left at zero. With it the first poses of its table.
+fn run(
+    setting: &Setting,
+    prepared: &Prepared,
+    evaluator: Option<&Evaluator>,
+    progress: &dyn Progress,
+) -> Result<(Measured, Vec<Pose>), SearchError> {
+    let plan = &prepared.plan;
+    let outcome = dock(plan, &prepared.points, progress)?;
+    let native = evaluator.map(|evaluator| native_ranks(evaluator, &outcome));
+    let first = outcome.poses.iter().take(FIRST);
+    let poses = first.map(|row| row.pose).collect();
+    let mut timing = prepared.timing.clone();
+    timing.extend(&outcome.timing);
+    let measured = Measured {
+        setting: setting.clone(),
+        grid: plan.grid,
+        spacing: plan.spacing,
+        modes: plan.modes,
+        rank: outcome.rank,
+        spreading_width: plan.spreading_width,
+        refined: plan.refined(),
+        timing,
+        error: outcome.error,
+        definition_rms: 0.0,
+        definition_correlation: None,
+        agreement: 0.0,
+        native,
+        front_error: false,
+        front_agreement: false,
+    };
+    Ok((measured, poses))
+}
+
+/// The exact sum of a plan's score at some poses.
+fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, SearchError> {
+    let scorer = plan.exact_scorer()?;
+    Ok(poses
+        .par_iter()
+        .map(|pose| scorer.score_only(pose))
+        .collect())
+}
+
+fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
+    let qualities: Vec<(bool, bool)> = outcome
+        .poses
+        .par_iter()
+        .map(|row| {
+            let quality = evaluator.evaluate(&row.pose);
+            (
+                quality.capri != Capri::Incorrect,
+                quality.irmsd <= NEAR_NATIVE,
+            )
+        })
+        .collect();
+    let rank = |near: fn(&(bool, bool)) -> bool| qualities.iter().position(near).map(|at| at + 1);
+    let count =
+        |near: fn(&&(bool, bool)) -> bool| qualities.iter().take(FIRST).filter(near).count();
+    NativeRanks {
+        first_acceptable: rank(|near| near.0),
+        first_near_native: rank(|near| near.1),
+        acceptable: count(|near| near.0),
+        near_native: count(|near| near.1),
+    }
+}
+
+/// About how many seconds on the clock all settings take, going by what the default took: transforms grow as the grid does, and exact sums stay.
+fn estimate(default: &Measured, ready: &[(Setting, Prepared)]) -> f64 {
+    let work = |plan: &DockPlan| {
+        let points = plan.grid.iter().product::<usize>() as f64;
+        points * points.log2()
+    };
+    let stage = |name: &str| {
+        let of_name = default.timing.iter().filter(|stage| stage.name == name);
+        of_name.map(|stage| stage.wall_seconds).sum::<f64>()
+    };
+    let (prepare, search) = (stage("prepare"), stage("search"));
+    let rest = default.wall_seconds() - prepare - search;
+    let Some((_, first)) = ready.first() else {
+        return 0.0;
+    };
+    let seconds = ready.iter().map(|(_, prepared)| {
+        let grid = work(&prepared.plan) / work(&first.plan);
+        let rotations = prepared.plan.rotations as f64 / first.plan.rotations as f64;
+        prepare * grid + search * grid * rotations + rest
+    });
+    seconds.sum()
+}
+
+/// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among all. The
+/// reference agrees with itself, so it is on neither and beats nothing.
+fn mark_fronts(measured: &mut [Measured], default: &DockOptions) {
+    let other = |run: &Measured| run.setting.knob != Knob::Reference;
+    let errors: Vec<(f64, Option<f64>)> = measured
+        .iter()
+        .map(|run| {
+            let counts = other(run) && run.same_score(default);
+            (run.cost(), counts.then_some(run.error.rms))
+        })
+        .collect();
+    let losses: Vec<(f64, Option<f64>)> = measured
+        .iter()
+        .map(|run| (run.cost(), other(run).then_some(1.0 - run.agreement)))
+        .collect();
+    let fronts = front(&errors).into_iter().zip(front(&losses));
+    for (run, (error, agreement)) in measured.iter_mut().zip(fronts) {
+        run.front_error = error;
+        run.front_agreement = agreement;
+    }
+}
