@@ -49,11 +49,13 @@ pub enum ChoiceError {
         least: f64,
     },
     /// Less time than it takes.
-    #[error("{budget} s are too few: {fewest} rotations are expected to take {needed:.1} s")]
+    #[error(
+        "{budget} s are too few: {fewest} rotations or more are expected to take {needed:.2} s at least"
+    )]
     Budget {
         /// Seconds that were allowed.
         budget: f64,
-        /// Seconds that the fewest rotations take.
+        /// The fewest seconds that they take.
         needed: f64,
         /// The fewest rotations.
         fewest: usize,
@@ -106,16 +108,14 @@ pub fn choose(
     })?;
     let work = Workload::of(&draft);
     if let Some(budget) = wanted.budget {
-        let rotations = model.rotations_within(&work, budget, threads);
-        if rotations < FEWEST_ROTATIONS {
-            return Err(ChoiceError::Budget {
+        let range = FEWEST_ROTATIONS..=MOST_ROTATIONS;
+        options.rotations = model
+            .rotations_within(&work, budget, threads, range)
+            .map_err(|needed| ChoiceError::Budget {
                 budget,
-                needed: model.seconds(&work, FEWEST_ROTATIONS, threads),
+                needed,
                 fewest: FEWEST_ROTATIONS,
-            });
-        }
-        // Rotations share their work in fours.
-        options.rotations = rotations.min(MOST_ROTATIONS) / 4 * 4;
+            })?;
     }
     Ok(Chosen {
         accuracy: wanted.accuracy,

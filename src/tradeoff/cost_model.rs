@@ -10,8 +10,8 @@
 //! - rescoring a pose, climbing a peak: `rescore`, `climb` for each knot of the ligand;
 //! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
 //!
-//! Coefficients are seconds of one thread while all are busy. The built-in ones were fitted on the machine that docs/tradeoff.md names;
-//! `knotdock calibrate` fits them where it runs.
+//! Coefficients are seconds of one thread while all are busy. The built-in ones are those of a
+//! two-core Intel Xeon at 2.50 GHz; `knotdock calibrate` fits them where it runs.
 //!
 //! # Error
 //!
@@ -46,18 +46,24 @@ pub struct CostModel {
 
 /// Exact sums made to measure a run's error.
 const CHECKED: f64 = 100.0;
+/// Share of the poses kept that found clusters at 3,600 rotations, and the power by which it falls as rotations rise: as counted on the example pair
+/// at 600, 3,600 and 7,200.
+const CLUSTERED: f64 = 0.27;
+const THINNING: f64 = 0.42;
+/// Share of the poses that are scored for each unit of the tolerance, likewise.
+const DOUBTFUL: f64 = 5.0;
 /// Knots about which neighbours are counted.
 const PROBED: usize = 64;
 
 impl CostModel {
-    /// Coefficients of the machine of docs/tradeoff.md.
+    /// Coefficients of a two-core Intel Xeon at 2.50 GHz.
     pub const BUILT_IN: Self = Self {
-        inverse: 2.4e-10,
-        field: 1.0e-10,
-        prepare: 6.5e-6,
-        pair: 2.2e-8,
-        rescore: 8e-7,
-        climb: 1e-5,
+        inverse: 2.6e-10,
+        field: 1.1e-10,
+        prepare: 6.3e-6,
+        pair: 1.5e-8,
+        rescore: 5.7e-7,
+        climb: 3.5e-5,
         rotation: 4e-5,
         covering: 0.15,
     };
@@ -88,22 +94,38 @@ impl CostModel {
 
     /// Seconds on the clock, all cores to itself, for so many rotations on so many threads.
     pub fn seconds(&self, work: &Workload, rotations: usize, threads: usize) -> f64 {
-        let rotations = rotations as f64;
+        let count = rotations as f64;
         let alone = self.prepare * work.modes * work.effects
             + self.covering
-            + self.rotation * rotations / threads as f64;
-        let exact = self.pair * work.pairs * (CHECKED + work.reported);
+            + self.rotation * count / threads as f64;
+        let exact = self.pair * work.pairs * (CHECKED + work.reported(count));
         let rescored = self.rescore * work.ligand * work.rescored;
         let refined = self.climb * work.ligand * work.refined;
-        let shared = rotations * self.rotation_seconds(work) + exact + rescored + refined;
+        let shared = count * self.rotation_seconds(work) + exact + rescored + refined;
         alone + shared / threads as f64
     }
 
-    /// Most rotations that fit into so many seconds; zero where not even the rest does.
-    pub fn rotations_within(&self, work: &Workload, seconds: f64, threads: usize) -> usize {
-        let fixed = self.seconds(work, 0, threads);
-        let each = (self.seconds(work, 1000, threads) - fixed) / 1000.0;
-        ((seconds - fixed) / each).max(0.0) as usize
+    /// The most rotations, in fours, from `range` that fit into so many seconds; where none do, the fewest seconds that any of them take.
+    ///
+    /// # Errors
+    /// These seconds.
+    pub fn rotations_within(
+        &self,
+        work: &Workload,
+        seconds: f64,
+        threads: usize,
+        range: std::ops::RangeInclusive<usize>,
+    ) -> Result<usize, f64> {
+        // Not a matter of dividing: fewer rotations leave more clusters, each of which is an exact sum.
+        let mut least = f64::INFINITY;
+        for rotations in range.step_by(4).collect::<Vec<_>>().into_iter().rev() {
+            let needed = self.seconds(work, rotations, threads);
+            if needed <= seconds {
+                return Ok(rotations);
+            }
+            least = least.min(needed);
+        }
+        Err(least)
     }
 }
 
@@ -122,8 +144,10 @@ pub struct Workload {
     pub pairs: f64,
     /// Knots of the ligand.
     pub ligand: f64,
-    /// Poses that are exactly scored for the table.
-    pub reported: f64,
+    /// Poses kept of all rotations.
+    pub poses: f64,
+    /// Share of them that the fast path's error could put before the founder of their cluster; all where every pose is listed.
+    pub doubtful: f64,
     /// Poses rescored.
     pub rescored: f64,
     /// Poses refined.
@@ -159,11 +183,11 @@ impl Workload {
             effects: Effect::ALL.into_iter().map(on).sum(),
             pairs: ligand.len() as f64 * near as f64 / probed.max(1) as f64,
             ligand: ligand.len() as f64,
-            // Of each cluster the founder, and whatever the fast path's error could put before it.
-            reported: if options.every_pose {
-                poses
+            poses,
+            doubtful: if options.every_pose {
+                1.0
             } else {
-                poses * (0.27 + 5.0 * options.tolerance).min(1.0)
+                DOUBTFUL * options.tolerance
             },
             rescored: if plan.is_on(Effect::Contact) && options.fine_contact_weight > 0.0 {
                 poses
@@ -172,6 +196,14 @@ impl Workload {
             },
             refined: (plan.refined() as f64).min(poses),
         }
+    }
+}
+
+impl Workload {
+    /// Poses that are exactly scored for the table: of each cluster the founder, and whatever might come before it.
+    fn reported(&self, rotations: f64) -> f64 {
+        let founders = CLUSTERED * (3600.0 / rotations).powf(THINNING);
+        self.poses * (founders + self.doubtful).min(1.0)
     }
 }
 
@@ -254,7 +286,8 @@ mod tests {
             effects: 3.0,
             pairs: 2e5,
             ligand: 221.0,
-            reported: 640.0,
+            poses: 2000.0,
+            doubtful: 0.05,
             rescored: 2000.0,
             refined: 0.0,
         }
@@ -263,12 +296,15 @@ mod tests {
     #[test]
     fn rotations_fill_the_time() {
         let model = CostModel::BUILT_IN;
-        for (seconds, threads) in [(5.0, 1), (5.0, 4), (60.0, 2)] {
-            let rotations = model.rotations_within(&work(), seconds, threads);
+        for (seconds, threads) in [(9.0, 1), (5.0, 4), (60.0, 2)] {
+            let within = |range| model.rotations_within(&work(), seconds, threads, range);
+            let rotations = within(600..=100_000).unwrap();
             assert!(model.seconds(&work(), rotations, threads) <= seconds);
-            assert!(model.seconds(&work(), rotations + 8, threads) > seconds);
+            assert!(model.seconds(&work(), rotations + 4, threads) > seconds);
+            assert_eq!(within(600..=800), Ok(800));
         }
-        assert_eq!(model.rotations_within(&work(), 0.1, 2), 0);
+        let least = model.rotations_within(&work(), 0.1, 2, 600..=1200);
+        assert!(least.unwrap_err() > 0.1);
         assert!(model.is_sound());
         let broken = CostModel {
             pair: f64::NAN,
