@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn ticks_lie_within_the_axis_and_read_as_people_write() {
         let narrow = Scale::over([3.0, 40.0].into_iter());
-        assert_eq!(narrow.ticks(), [5.0, 10.0, 20.0, 50.0].map(|t: f64| t));
+        assert_eq!(narrow.ticks(), [5.0, 10.0, 20.0]);
         let wide = Scale::over([1e-6, 1e-1].into_iter());
         assert!(wide.ticks().len() >= 5);
         for scale in [
