@@ -87,7 +87,8 @@ fn check(folder: &Path, object: &Value) {
     };
     let error = |setting: &Value| number(setting, "error_rms");
     let missed = |setting: &Value| 1.0 - number(setting, "agreement");
-    let fronts: [(&str, bool, &dyn Fn(&Value) -> f64); 2] = [
+    type Loss<'a> = &'a dyn Fn(&Value) -> f64;
+    let fronts: [(&str, bool, Loss); 2] = [
         ("front_error", true, &error),
         ("front_agreement", false, &missed),
     ];
