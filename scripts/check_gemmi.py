@@ -40,10 +40,14 @@ WATERS = set()
 # Standard residues under the names of force fields, which gemmi does not know.
 FORCE_FIELD_NAMES = set("HSD HSE HSP HID HIE HIP CYX CYM ASH GLH LYN ADE URA CYT GUA THY".split())
 
+# Ions under names of force fields; gemmi takes POT for polonium.
+FORCE_FIELD_IONS = {"CLA": "Cl", "POT": "K", "SOD": "Na", "CAL": "Ca", "CES": "Cs"}
+
 # Files that differ for a reason. Part of the path: why.
 MEANT = {
     "pdb1tw7_step3_charmm2namd.pdb": "residue 10000 has its fifth digit in the column of the insertion code; gemmi reads 1000 with code 0",
     "pdb1tw7_step3_charmm2namd_doubled_hex.pdb": "residue numbers in hexadecimal; gemmi reads the digits before the first letter",
+    "nucl_res.pdb": "made-up residues RA, RC and so on, whose CA stands where calcium does; gemmi goes by the place, here nucleotides have carbon",
     "RANDOM_WALK_TOPO.pdb": "atoms named X of no element have no radius: refused with the line and a remedy",
     "1YJP_invalid.cif.gz": "an atom named X of no element has no radius: refused with the line and a remedy",
 }
@@ -145,6 +149,8 @@ def element_of(atom, residue):
         if letters[:1] in ("H", "D"):
             return "H" if atom.element.name != "D" else "D"
         return "Se" if letters.startswith("SE") else letters[:1] or atom.element.name
+    if atom.name == residue.name and atom.name in FORCE_FIELD_IONS:
+        return FORCE_FIELD_IONS[atom.name]
     ion = re.sub("[^A-Z].*", "", residue.name)
     if letters == ion and gemmi.Element(letters).atomic_number > 0:
         return gemmi.Element(letters).name

@@ -43,7 +43,7 @@ pub(super) fn resolve(
     let by_names = if is_standard(residue_name) {
         of_standard_residue(residue_name, atom_name)
     } else {
-        None
+        of_ion(residue_name, atom_name)
     };
     match (given, by_names) {
         // Old files and other programs' columns hold chain letters and numbers there, and calcium for CA.
@@ -58,8 +58,7 @@ pub(super) fn resolve(
             origin: Origin::Column,
         }),
         (_, named) => Some(Resolved {
-            symbol: named
-                .or_else(|| of_other_residue(residue_name, atom_name, name_column, aligned))?,
+            symbol: named.or_else(|| of_other_residue(atom_name, name_column, aligned))?,
             origin: if column.is_empty() {
                 Origin::Derived
             } else {
@@ -121,24 +120,42 @@ fn of_standard_residue(residue_name: &str, atom_name: &str) -> Option<&'static s
     }
 }
 
+/// Ions under the names of the CHARMM force field.
+const FORCE_FIELD_IONS: [(&str, &str); 5] = [
+    ("CLA", "Cl"),
+    ("POT", "K"),
+    ("SOD", "Na"),
+    ("CAL", "Ca"),
+    ("CES", "Cs"),
+];
+
+/// Ions are named after themselves: ZN in ZN, FE in FE2, CU in CU1. Some programs write N beside NA, and C beside CLA.
+fn of_ion(residue_name: &str, atom_name: &str) -> Option<&'static str> {
+    let (name, residue) = (letters(atom_name), letters(residue_name));
+    if name.is_empty() || name != residue {
+        return None;
+    }
+    let of_force_field = FORCE_FIELD_IONS.iter().find(|(ion, _)| *ion == name);
+    match of_force_field {
+        Some(&(_, element)) => Some(element),
+        None if name.len() <= 2 => symbol(name),
+        None => None,
+    }
+}
+
+/// The first run of letters in a name.
+fn letters(text: &str) -> &str {
+    let start = text.trim_start_matches(|c: char| !c.is_ascii_alphabetic());
+    let end = start.find(|c: char| !c.is_ascii_alphabetic());
+    &start[..end.unwrap_or(start.len())]
+}
+
 fn of_other_residue(
-    residue_name: &str,
     atom_name: &str,
     name_column: NameColumn,
     aligned: bool,
 ) -> Option<&'static str> {
-    let letters = |text: &str| -> String {
-        text.chars()
-            .skip_while(|c| !c.is_ascii_alphabetic())
-            .take_while(char::is_ascii_alphabetic)
-            .collect()
-    };
     let name = letters(atom_name);
-    // Ions are named after themselves: ZN in ZN, FE in FE2, CU in CU1.
-    let residue = letters(residue_name);
-    if !name.is_empty() && name == residue && name.len() <= 2 {
-        return symbol(&name);
-    }
     let one = name.get(..1).and_then(symbol);
     // Of the two-letter elements that begin like hydrogen only mercury is met.
     if name.starts_with('H') && !(name_column == NameColumn::Filled && atom_name == "HG") {
@@ -180,6 +197,18 @@ mod tests {
         assert_eq!(of("ALA", "CA", "CA", Filled), ("C", Origin::Corrected));
         assert_eq!(of("CA", "CA", "", Filled), ("Ca", Origin::Derived));
         assert_eq!(of("CA", "CA", "CA", Filled), ("Ca", Origin::Column));
+    }
+
+    #[test]
+    fn ions_are_named_after_themselves() {
+        // Some preparation programs write N beside sodium.
+        assert_eq!(of("NA", "NA", "N", Blank), ("Na", Origin::Corrected));
+        assert_eq!(of("FE2", "FE", "", Filled), ("Fe", Origin::Derived));
+        // CHARMM's names of chloride, potassium and sodium, beside other atoms of ligands.
+        assert_eq!(of("CLA", "CLA", "", Blank), ("Cl", Origin::Derived));
+        assert_eq!(of("POT", "POT", "", Blank), ("K", Origin::Derived));
+        assert_eq!(of("SOD", "SOD", "NA", Blank), ("Na", Origin::Column));
+        assert_eq!(of("CLA", "CGA", "", Blank), ("C", Origin::Derived));
     }
 
     #[test]
