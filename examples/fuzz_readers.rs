@@ -11,9 +11,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use cpu_time::ThreadTime;
 use readers::Reader;
 
-/// An input that takes longer than this is reported too.
+/// An input that takes longer than this is reported too: processor time, whatever else the machine does.
 const SLOW: Duration = Duration::from_secs(2);
 /// Faults shown of each reader.
 const SHOWN: usize = 10;
@@ -62,7 +63,7 @@ fn fuzz(reader: Reader, number: u64, inputs: u64) -> usize {
     let start = Instant::now();
     for index in 0..inputs {
         let bytes = mutations::mutated(&seeds, number, index);
-        let begun = Instant::now();
+        let begun = ThreadTime::now();
         let done = catch_unwind(AssertUnwindSafe(|| {
             reader.read(&bytes, scratch.path(), index)
         }));
