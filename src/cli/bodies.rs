@@ -1,18 +1,16 @@
 //! The two bodies of a run: molecules or meshes, and what differs between them.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use knotdock::output::assemblies::write_assemblies;
 use knotdock::output::complexes::write_complexes;
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock::output::poses::PoseRow;
-use knotdock::search::meshes::{
-    GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS, sample_pair,
-};
-use knotdock::search::{
-    self, DockOptions, DockPlan, Scene, SearchError, molecule_points, plan_scene,
-};
+use knotdock::search::meshes::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
+use knotdock::search::{DockOptions, SearchError};
+use knotdock::tradeoff::pair::{Pair, Prepared, Sampling};
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
@@ -26,16 +24,6 @@ pub enum Bodies {
     Molecules(Box<[Input; 2]>),
     /// Two meshes, likewise.
     Meshes(Box<[MeshInput; 2]>),
-}
-
-/// Bodies that are planned to be docked.
-pub struct Planned {
-    /// The plan.
-    pub plan: DockPlan,
-    /// Points of the ligand whose RMSD makes clusters.
-    pub points: Vec<[f64; 3]>,
-    /// How meshes were sampled.
-    pub sampled: Option<MeshPair>,
 }
 
 /// What was written of the first ranks.
@@ -132,7 +120,7 @@ impl Bodies {
         offset: Option<f64>,
         given: GivenLengths,
         console: Console,
-    ) -> Result<Planned, Failure> {
+    ) -> Result<Prepared, Failure> {
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         match self {
             Self::Molecules(inputs) => {
@@ -142,17 +130,10 @@ impl Bodies {
                     )
                     .remedy("leave them out: the balls of a molecule are its atoms"));
                 }
-                let [receptor, ligand] = inputs.as_ref();
-                let plan =
-                    search::plan(&receptor.molecule, &ligand.molecule, options).map_err(refused)?;
-                Ok(Planned {
-                    plan,
-                    points: molecule_points(&ligand.molecule),
-                    sampled: None,
-                })
+                let molecules = inputs.each_ref().map(|input| &input.molecule);
+                Prepared::molecules(molecules, options).map_err(refused)
             }
             Self::Meshes(inputs) => {
-                let [receptor, ligand] = inputs.as_ref();
                 if options.core_weight != 1.0 {
                     return Err(Failure::input(
                         "--core-weight weighs buried atoms, and meshes have none",
@@ -165,34 +146,23 @@ impl Bodies {
                     offset,
                     alpha: options.alpha,
                 };
-                let pair = sample_pair(&receptor.solid, &ligand.solid, &sampling)
-                    .map_err(|error| located(&error, inputs))?;
-                pair.defaults(options, given);
-                console.say(told(&pair));
-                let scene = Scene::of_meshes(&pair, options).map_err(refused)?;
-                Ok(Planned {
-                    plan: plan_scene(scene, options).map_err(refused)?,
-                    points: pair.parts[1].knots.centers.clone(),
-                    sampled: Some(pair),
-                })
+                let solids = inputs.each_ref().map(|input| &input.solid);
+                let sampling =
+                    Sampling::of(solids, &sampling).map_err(|error| located(&error, inputs))?;
+                sampling.pair.defaults(options, given);
+                console.say(told(&sampling.pair));
+                Prepared::meshes(Arc::new(sampling), options).map_err(refused)
             }
         }
     }
 
-    /// Plans with other options than those that [`Self::plan`] was given and filled in; of meshes the sampling stays.
-    pub fn plan_again(
-        &self,
-        options: &DockOptions,
-        sampled: Option<&MeshPair>,
-    ) -> Result<DockPlan, SearchError> {
-        match (self, sampled) {
-            (Self::Molecules(inputs), _) => {
-                let [receptor, ligand] = inputs.as_ref();
-                search::plan(&receptor.molecule, &ligand.molecule, options)
+    /// What is docked.
+    pub fn pair(&self) -> Pair<'_> {
+        match self {
+            Self::Molecules(inputs) => {
+                Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
             }
-            (Self::Meshes(_), Some(pair)) => plan_scene(Scene::of_meshes(pair, options)?, options),
-            // Meshes that were never planned have no balls to find a pose of.
-            (Self::Meshes(_), None) => Err(SearchError::NoPose),
+            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
         }
     }
 
@@ -218,12 +188,12 @@ impl Bodies {
     }
 
     /// Receptor and ligand for run.json.
-    pub fn entries(&self, sampled: Option<&MeshPair>) -> Result<[InputEntry; 2], Failure> {
+    pub fn entries(&self, sampling: Option<&Sampling>) -> Result<[InputEntry; 2], Failure> {
         let [receptor, ligand] = match self {
             Self::Molecules(inputs) => inputs.each_ref().map(Input::entry),
             Self::Meshes(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
-                let part = |index: usize| sampled.map(|pair| &pair.parts[index]);
+                let part = |index: usize| sampling.map(|sampling| &sampling.pair.parts[index]);
                 [receptor.entry(part(0)), ligand.entry(part(1))]
             }
         };

@@ -9,10 +9,9 @@ use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;
 
-use super::arguments::at_least_one;
 use super::console::Console;
-use super::dock::{MACHINE, hardware_threads};
 use super::failure::Failure;
+use super::machine_arguments::ThreadArguments;
 
 /// Measure how fast this machine docks, in some seconds, for `knotdock dock --budget`: run it while nothing else does.
 ///
@@ -22,9 +21,8 @@ pub struct Calibrate {
     /// File to write instead.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Threads that are busy meanwhile [default: all hardware threads].
-    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
-    threads: Option<usize>,
+    #[command(flatten)]
+    threads: ThreadArguments,
 }
 
 impl Calibrate {
@@ -34,7 +32,7 @@ impl Calibrate {
             Failure::input("there is no cache folder: neither XDG_CACHE_HOME nor HOME names one")
                 .remedy("name a file with -o")
         })?;
-        let threads = self.threads.unwrap_or_else(hardware_threads);
+        let threads = self.threads.count();
         let progress = console.progress();
         let model = calibrate(threads, &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;

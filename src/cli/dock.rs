@@ -10,16 +10,18 @@ use knotdock::output::quality;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
-use knotdock::search::{self, DockOptions, DockOutcome, DockPlan, Effect};
+use knotdock::search::{self, DockOutcome};
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
-use knotdock_structures::molecule::LabelReport;
+use knotdock::tradeoff::pair::{Prepared, Preparer};
 use serde_json::json;
 
-use super::arguments::{above_zero, at_least_one, duration};
-use super::bodies::{Bodies, Planned};
+use super::arguments::{above_zero, duration};
+use super::bodies::Bodies;
 use super::calibrate::cost_model;
 use super::console::Console;
+use super::dock_report::{assumed, told};
 use super::failure::Failure;
+use super::machine_arguments::{MachineArguments, machine};
 use super::memory;
 use super::native::{NativeArguments, match_text, measure};
 use super::reading_arguments::ReadingArguments;
@@ -63,12 +65,8 @@ pub struct Dock {
     write_top: usize,
     #[command(flatten)]
     native: NativeArguments,
-    /// Threads [default: all hardware threads].
-    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
-    threads: Option<usize>,
-    /// Memory that the search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
-    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size, help_heading = MACHINE)]
-    memory: Option<u64>,
+    #[command(flatten)]
+    machine: MachineArguments,
 }
 
 /// What run.json records, so that none of it goes with --from.
@@ -112,9 +110,6 @@ const RECORDED: [&str; 37] = [
     "budget",
 ];
 
-/// Heading of the options that change no result.
-pub const MACHINE: &str = "Machine";
-
 impl Dock {
     /// What the command line asks for.
     fn request(&self) -> Result<Request, Failure> {
@@ -142,8 +137,7 @@ impl Dock {
             Some(path) => Request::recorded(path, console)?,
             None => self.request()?,
         };
-        request.options.dock.memory = self.memory.or_else(memory::default_limit);
-        request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
+        self.machine.apply(&mut request.options.dock);
         let directory = self.output.unwrap_or_else(|| request.directory());
         request.bodies.describe(console);
         let evaluator = request.evaluator()?;
@@ -154,17 +148,18 @@ impl Dock {
             accuracy: self.accuracy,
             budget: self.budget,
         };
-        let (planned, chosen) = if wanted == Wanted::default() {
+        let (prepared, chosen) = if wanted == Wanted::default() {
             (request.plan(console)?, None)
         } else {
-            let (planned, chosen) = plan_within(wanted, &mut request, console)?;
-            (planned, Some(chosen))
+            let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
+            (prepared, Some(chosen))
         };
-        let Planned {
+        let Prepared {
             plan,
             points,
-            sampled,
-        } = planned;
+            sampling,
+            ..
+        } = prepared;
         console.say(format!("\n{plan}"));
         for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
             if count > 0 {
@@ -199,7 +194,7 @@ impl Dock {
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
         let written = request.bodies.write(top, &staging.folder().join("top"))?;
-        let inputs = request.inputs(sampled.as_ref())?;
+        let inputs = request.inputs(sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
             options: &request.options,
@@ -257,20 +252,20 @@ fn plan_within(
     wanted: Wanted,
     request: &mut Request,
     console: Console,
-) -> Result<(Planned, Chosen), Failure> {
+) -> Result<(Prepared, Chosen), Failure> {
     let (model, source) = cost_model(console);
     let rotations = request.options.dock.rotations;
     // A first plan fills in the lengths of meshes; its rotations are not used.
     request.options.dock.rotations = 4;
     let first = request.plan(console)?;
     request.options.dock.rotations = rotations;
-    let threads = request.options.dock.threads;
-    let bodies = &request.bodies;
-    let again = |options: &DockOptions| bodies.plan_again(options, first.sampled.as_ref());
     let options = &mut request.options.dock;
-    let chosen = choose(wanted, (&model, &source), options, threads, again)
+    let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
+    let chosen = choose(wanted, (&model, &source), options, &mut preparer)
         .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
-    let plan = again(options).map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let prepared = preparer
+        .prepare(options)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
     let error = chosen
         .predicted_error
         .map(|error| format!(" and an error of {error:.0e} of the best score"));
@@ -278,88 +273,12 @@ fn plan_within(
         "\nChosen: --rotations {} --tolerance {} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
         options.rotations,
         options.tolerance,
-        plan.spacing,
+        prepared.plan.spacing,
         if source == "built-in" { "built-in" } else { "calibrated" },
         chosen.predicted_seconds,
         error.unwrap_or_default()
     ));
-    Ok((Planned { plan, ..first }, chosen))
-}
-
-/// Which effects were on and what they cost, and how far the fast path was off.
-fn told(outcome: &DockOutcome) -> String {
-    let effects = outcome
-        .effects
-        .iter()
-        .map(|cost| match (cost.on, cost.effect) {
-            (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
-            (true, Effect::Shape) => format!(
-                "Effect shape ({}): rank {}, {:.2} ms a rotation",
-                cost.reason, cost.rank, cost.milliseconds_per_rotation
-            ),
-            (true, effect) => format!(
-                "Effect {effect} ({}): without it {} ranks and {:.2} ms a rotation less",
-                cost.reason, cost.rank, cost.milliseconds_per_rotation
-            ),
-        });
-    let mut lines: Vec<String> = effects.collect();
-    lines.push(format!(
-        "All together: rank {}, {:.1e} of the best score lost by compression",
-        outcome.rank, outcome.rank_error
-    ));
-    let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
-    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
-    if let (true, Some(stage)) = (rescored, stage) {
-        lines.push(format!(
-            "Rescored by the fine contact potential in {:.2} s",
-            stage.wall_seconds
-        ));
-    }
-    let error = outcome.error;
-    lines.push(format!(
-        "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
-        error.poses, error.rms, error.worst
-    ));
-    lines.push(format!(
-        "The low-pass moved their shape scores by {:.0}% of the best on average",
-        100.0 * error.low_pass_share
-    ));
-    lines.push(format!(
-        "{} poses in {} clusters",
-        outcome.poses_kept, outcome.clusters
-    ));
-    lines.join("\n")
-}
-
-/// What was assumed of one side's charges and contact types, where effects use them.
-fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
-    let names = |unknown: &std::collections::BTreeMap<String, usize>| {
-        let names = unknown
-            .iter()
-            .map(|(name, count)| format!("{count} {name}"));
-        names.collect::<Vec<_>>().join(", ")
-    };
-    let mut parts = Vec::new();
-    if plan.is_on(Effect::Electrostatics) {
-        let [amino, carboxyl] = labels.termini;
-        parts.push(format!(
-            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} gaps capped",
-            labels.net_charge, plan.options.ph, labels.gaps
-        ));
-        if !labels.unknown_charges.is_empty() {
-            parts.push(format!(
-                "no charges known for {}",
-                names(&labels.unknown_charges)
-            ));
-        }
-    }
-    if plan.is_on(Effect::Contact) && !labels.unknown_types.is_empty() {
-        parts.push(format!(
-            "no contact types for {}",
-            names(&labels.unknown_types)
-        ));
-    }
-    (!parts.is_empty()).then(|| format!("The {side}: {}", parts.join("; ")))
+    Ok((prepared, chosen))
 }
 
 /// When the run began.
@@ -388,27 +307,5 @@ impl Clock {
             effects: EffectTime::of(&outcome.effects),
             peak_memory_bytes: memory::peak(),
         }
-    }
-}
-
-/// Hardware threads that the process may use.
-pub fn hardware_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, |threads| threads.get())
-}
-
-/// Where and how a plan is carried out.
-pub fn machine(plan: &DockPlan) -> Machine {
-    Machine {
-        system: std::env::consts::OS,
-        architecture: std::env::consts::ARCH,
-        hardware_threads: hardware_threads(),
-        threads: plan.options.threads,
-        rotations_in_flight: plan.in_flight,
-        memory_limit_bytes: plan.options.memory,
-        memory_estimate_bytes: plan.memory_bytes(),
-        command: std::env::args_os()
-            .map(|word| word.to_string_lossy().into_owned())
-            .collect(),
-        chosen: None,
     }
 }

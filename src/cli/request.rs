@@ -6,9 +6,10 @@ use knotdock::evaluate::Evaluator;
 use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
-use knotdock::search::meshes::{GivenLengths, MeshPair};
+use knotdock::search::meshes::GivenLengths;
+use knotdock::tradeoff::pair::{Prepared, Sampling};
 
-use super::bodies::{Bodies, Planned};
+use super::bodies::Bodies;
 use super::console::Console;
 use super::failure::Failure;
 use super::native::NativeFiles;
@@ -61,7 +62,7 @@ impl Request {
     }
 
     /// Plans the run; of meshes, options that follow from them are filled in.
-    pub fn plan(&mut self, console: Console) -> Result<Planned, Failure> {
+    pub fn plan(&mut self, console: Console) -> Result<Prepared, Failure> {
         let (offset, given) = (self.offset, self.given);
         self.bodies
             .plan(&mut self.options.dock, offset, given, console)
@@ -85,8 +86,8 @@ impl Request {
     }
 
     /// The inputs for run.json, with how meshes were sampled.
-    pub fn inputs(&self, sampled: Option<&MeshPair>) -> Result<Inputs, Failure> {
-        let [receptor, ligand] = self.bodies.entries(sampled)?;
+    pub fn inputs(&self, sampling: Option<&Sampling>) -> Result<Inputs, Failure> {
+        let [receptor, ligand] = self.bodies.entries(sampling)?;
         Ok(Inputs {
             receptor,
             ligand,

@@ -11,16 +11,14 @@ use knotdock::search::Progress;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{
-    Knob, Measured, Pair, PairError, Refused, Setting, SweepProgress, Tradeoff, sweep,
+    Knob, Measured, PairError, Refused, Setting, SweepProgress, Tradeoff, sweep,
 };
 use serde_json::json;
 
-use super::arguments::at_least_one;
-use super::bodies::{Bodies, Planned};
+use super::bodies::Bodies;
 use super::console::{Console, ProgressLine};
-use super::dock::{MACHINE, hardware_threads, machine};
 use super::failure::Failure;
-use super::memory;
+use super::machine_arguments::{MachineArguments, machine};
 use super::native::{NativeArguments, match_text};
 use super::reading_arguments::ReadingArguments;
 use super::request::Request;
@@ -53,12 +51,8 @@ pub struct TradeoffCommand {
     search: SearchArguments,
     #[command(flatten)]
     native: NativeArguments,
-    /// Threads [default: all hardware threads].
-    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = MACHINE)]
-    threads: Option<usize>,
-    /// Memory that each search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
-    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size, help_heading = MACHINE)]
-    memory: Option<u64>,
+    #[command(flatten)]
+    machine: MachineArguments,
 }
 
 impl TradeoffCommand {
@@ -76,8 +70,7 @@ impl TradeoffCommand {
             offset: self.search.offset(),
             given: self.search.given_lengths(),
         };
-        request.options.dock.memory = self.memory.or_else(memory::default_limit);
-        request.options.dock.threads = self.threads.unwrap_or_else(hardware_threads);
+        self.machine.apply(&mut request.options.dock);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
@@ -87,22 +80,19 @@ impl TradeoffCommand {
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
-        let Planned { plan, sampled, .. } = request.plan(console)?;
-        console.say(format!("\nThe default: {plan}\n"));
+        let first = request.plan(console)?;
+        console.say(format!("\nThe default: {}\n", first.plan));
+        let machine = machine(&first.plan);
+        let inputs = request.inputs(first.sampling.as_deref())?;
         let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
-        let pair = match &request.bodies {
-            Bodies::Molecules(inputs) => {
-                Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
-            }
-            Bodies::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
-        };
         let knobs = self.knobs.unwrap_or_else(|| Knob::SWEPT.to_vec());
         let progress = Told {
             line: console.progress(),
             console,
         };
         let tradeoff = sweep(
-            pair,
+            request.bodies.pair(),
+            first,
             &request.options.dock,
             &knobs,
             evaluator.as_ref(),
@@ -112,14 +102,13 @@ impl TradeoffCommand {
         drop(progress);
 
         let advice = advice(&tradeoff);
-        let inputs = request.inputs(sampled.as_ref())?;
         let record = TradeoffRecord::new(TradeoffParts {
             inputs: &inputs,
             options: &request.options,
             tradeoff: &tradeoff,
             advice: advice.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
-            machine: machine(&plan),
+            machine,
         })
         .map_err(Failure::other)?;
         let drawing = plot(&tradeoff);

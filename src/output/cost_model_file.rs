@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::staging::{StagingError, write_whole};
+use super::staging::{StagingError, write_json};
 use crate::tradeoff::cost_model::CostModel;
 
 /// Number of the layout of the file; it rises when an entry or what a coefficient multiplies changes.
@@ -72,10 +72,7 @@ pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), Stagi
         threads,
         cost_model: *model,
     };
-    write_whole(path, |stream| {
-        serde_json::to_writer_pretty(&mut *stream, &file)?;
-        writeln!(stream)
-    })
+    write_json(path, &file)
 }
 
 /// Reads a cost model; `None` where there is no such file.

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 use super::input_record::{InputRecord, NativeRecord};
 use super::run_options::RunOptions;
-use super::staging::{StagingError, write_whole};
+use super::staging::{StagingError, write_json};
 use crate::evaluate::MatchReport;
 use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
@@ -218,10 +218,7 @@ impl<'a> Manifest<'a> {
     /// # Errors
     /// [`StagingError`].
     pub fn write(&self, path: &Path) -> Result<(), StagingError> {
-        write_whole(path, |file| {
-            serde_json::to_writer_pretty(&mut *file, self)?;
-            writeln!(file)
-        })
+        write_json(path, self)
     }
 }
 

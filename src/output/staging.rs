@@ -8,6 +8,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 /// Name of the folder in which a run is built, and ending of single files that are being written.
 pub const PARTIAL: &str = ".partial";
 
@@ -269,6 +271,17 @@ pub fn write_whole(
             let _ = fs::remove_file(&target);
             write_error(path, source)
         })
+}
+
+/// Writes a value as indented JSON with a line end, whole or not at all.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), StagingError> {
+    write_whole(path, |file| {
+        serde_json::to_writer_pretty(&mut *file, value)?;
+        writeln!(file)
+    })
 }
 
 fn write_error(path: &Path, source: io::Error) -> StagingError {

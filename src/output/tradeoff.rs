@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value};
 use super::manifest::{COMMIT, Inputs, Machine, VERSION, cpu_features};
 use super::poses::number;
 use super::run_options::RunOptions;
-use super::staging::{StagingError, write_whole};
+use super::staging::{StagingError, write_json, write_whole};
 use crate::evaluate::MatchReport;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
@@ -197,9 +197,6 @@ impl<'a> TradeoffRecord<'a> {
     /// # Errors
     /// [`StagingError`].
     pub fn write(&self, path: &Path) -> Result<(), StagingError> {
-        write_whole(path, |file| {
-            serde_json::to_writer_pretty(&mut *file, self)?;
-            writeln!(file)
-        })
+        write_json(path, self)
     }
 }

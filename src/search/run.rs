@@ -158,6 +158,9 @@ fn dock_in_pool(
         progress.stage("rescore", 1);
     }
     let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid, rescorer.as_ref());
+    if rescorer.is_some() {
+        progress.advance(1);
+    }
     clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();

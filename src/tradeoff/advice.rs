@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use super::measured::{FIRST, Measured, Tradeoff};
 use super::settings::Knob;
-use super::sweep::{FIRST, Measured, Tradeoff};
 
 /// Share of the reference's rows that a doubling of the time must find for it to be worth its price.
 const DOUBLING: f64 = 0.1;

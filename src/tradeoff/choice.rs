@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::cost_model::{CostModel, LADDER, Rung, Workload};
-use crate::search::{DockOptions, DockPlan, SearchError};
+use super::pair::{PairError, Preparer};
+use crate::search::DockOptions;
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
 pub const FEWEST_ROTATIONS: usize = 600;
@@ -37,9 +38,9 @@ pub struct Chosen {
 /// Why nothing can be chosen.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChoiceError {
-    /// The search refuses the plan.
+    /// The pair cannot be docked so.
     #[error(transparent)]
-    Search(#[from] SearchError),
+    Pair(#[from] PairError),
     /// More accuracy than there is.
     #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
     Accuracy {
@@ -66,7 +67,7 @@ impl ChoiceError {
     /// What the user may do about it.
     pub fn remedy(&self) -> String {
         match self {
-            Self::Search(error) => error.remedy(),
+            Self::Pair(error) => error.remedy(),
             Self::Accuracy { least, .. } => format!("ask for an accuracy of {least:e} or more"),
             Self::Budget { .. } => {
                 "allow more time or more --threads, run `knotdock calibrate` if the machine is not the slow one that the estimate takes it \
@@ -77,8 +78,7 @@ impl ChoiceError {
     }
 }
 
-/// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`. `plan` plans with options; `threads` is how
-/// many the run has.
+/// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`.
 ///
 /// # Errors
 /// [`ChoiceError`].
@@ -86,8 +86,7 @@ pub fn choose(
     wanted: Wanted,
     (model, source): (&CostModel, &str),
     options: &mut DockOptions,
-    threads: usize,
-    plan: impl Fn(&DockOptions) -> Result<DockPlan, SearchError>,
+    preparer: &mut Preparer,
 ) -> Result<Chosen, ChoiceError> {
     let mut predicted_error = None;
     if let Some(accuracy) = wanted.accuracy {
@@ -102,11 +101,12 @@ pub fn choose(
         predicted_error = Some(rung.error);
     }
     // The rotations are left open: few are quickly planned.
-    let draft = plan(&DockOptions {
+    let draft = preparer.prepare(&DockOptions {
         rotations: 4,
         ..options.clone()
     })?;
-    let work = Workload::of(&draft);
+    let work = Workload::of(&draft.plan);
+    let threads = options.threads;
     if let Some(budget) = wanted.budget {
         let range = FEWEST_ROTATIONS..=MOST_ROTATIONS;
         options.rotations = model

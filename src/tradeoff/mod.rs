@@ -12,11 +12,13 @@ pub mod choice;
 pub mod cost_model;
 pub mod drawing;
 mod front;
+pub mod measured;
 pub mod pair;
 pub mod plot;
 pub mod settings;
 pub mod sweep;
 
+pub use measured::{Measured, Refused, Tradeoff};
 pub use pair::{Pair, PairError};
 pub use settings::{Knob, Setting};
-pub use sweep::{Measured, Refused, SweepProgress, Tradeoff, sweep};
+pub use sweep::{SweepProgress, sweep};

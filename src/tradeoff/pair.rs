@@ -1,5 +1,6 @@
-//! Two bodies that are docked again and again with other options.
+//! Two bodies made ready to be docked, once or again and again with other options.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
@@ -43,28 +44,102 @@ impl PairError {
     }
 }
 
-/// A setting made ready to run.
+/// Meshes as balls, and what it took to make them.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// The balls of both.
+    pub pair: MeshPair,
+    /// Time.
+    pub time: StageTime,
+}
+
+impl Sampling {
+    /// Samples two meshes.
+    ///
+    /// # Errors
+    /// [`MeshSceneError`].
+    pub fn of(
+        [receptor, ligand]: [&Solid; 2],
+        options: &MeshOptions,
+    ) -> Result<Self, MeshSceneError> {
+        let (pair, time) = timed("sample", || sample_pair(receptor, ligand, options));
+        Ok(Self { pair: pair?, time })
+    }
+}
+
+/// A docking made ready to run.
 pub struct Prepared {
     /// Its plan.
     pub plan: DockPlan,
     /// Points of the ligand whose RMSD makes clusters.
     pub points: Vec<[f64; 3]>,
+    /// How meshes were sampled.
+    pub sampling: Option<Arc<Sampling>>,
     /// What sampling (of meshes) and planning took.
     pub timing: Vec<StageTime>,
 }
 
-/// A pair with the samplings of its meshes that settings have needed so far.
+impl Prepared {
+    /// Plans a docking of molecules.
+    ///
+    /// # Errors
+    /// [`SearchError`].
+    pub fn molecules(
+        [receptor, ligand]: [&Molecule; 2],
+        options: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        let (planned, time) = timed("plan", || plan(receptor, ligand, options));
+        Ok(Self {
+            plan: planned?,
+            points: molecule_points(ligand),
+            sampling: None,
+            timing: vec![time],
+        })
+    }
+
+    /// Plans a docking of sampled meshes; `options` have all lengths.
+    ///
+    /// # Errors
+    /// [`SearchError`].
+    pub fn meshes(sampling: Arc<Sampling>, options: &DockOptions) -> Result<Self, SearchError> {
+        let (planned, time) = timed("plan", || {
+            let scene = Scene::of_meshes(&sampling.pair, options)?;
+            plan_scene(scene, options)
+        });
+        Ok(Self {
+            plan: planned?,
+            points: sampling.pair.parts[1].knots.centers.clone(),
+            timing: vec![sampling.time, time],
+            sampling: Some(sampling),
+        })
+    }
+}
+
+/// Makes dockings of a pair ready, with the samplings of its meshes that were needed so far.
 pub struct Preparer<'a> {
     pair: Pair<'a>,
-    sampled: Vec<(usize, SampleWeights, MeshPair, StageTime)>,
+    sampled: Vec<(SamplingKey, Arc<Sampling>)>,
+}
+
+/// What a sampling depends on, of one pair and one offset.
+type SamplingKey = (usize, SampleWeights);
+
+fn key(options: &DockOptions) -> SamplingKey {
+    (
+        options.sample_grid.unwrap_or(PER_AXIS),
+        options.sample_weights.unwrap_or_default(),
+    )
 }
 
 impl<'a> Preparer<'a> {
-    /// Nothing sampled yet.
-    pub fn new(pair: Pair<'a>) -> Self {
+    /// Knows what `first`, prepared with `options`, needed.
+    pub fn new(pair: Pair<'a>, options: &DockOptions, first: &Prepared) -> Self {
+        let sampled = first.sampling.iter();
         Self {
             pair,
-            sampled: Vec::new(),
+            sampled: sampled
+                .map(|sampling| (key(options), Arc::clone(sampling)))
+                .collect(),
         }
     }
 
@@ -75,54 +150,35 @@ impl<'a> Preparer<'a> {
     /// [`PairError`].
     pub fn prepare(&mut self, options: &DockOptions) -> Result<Prepared, PairError> {
         match self.pair {
-            Pair::Molecules([receptor, ligand]) => {
-                let (planned, time) = timed("plan", || plan(receptor, ligand, options));
-                Ok(Prepared {
-                    plan: planned?,
-                    points: molecule_points(ligand),
-                    timing: vec![time],
-                })
-            }
+            Pair::Molecules(molecules) => Ok(Prepared::molecules(molecules, options)?),
             Pair::Meshes(solids) => {
-                let (sampled, sampling) = self.sampled(solids, options)?;
-                let (planned, time) = timed("plan", || {
-                    Scene::of_meshes(sampled, options).and_then(|scene| plan_scene(scene, options))
-                });
-                Ok(Prepared {
-                    plan: planned?,
-                    points: sampled.parts[1].knots.centers.clone(),
-                    timing: vec![sampling, time],
-                })
+                let sampling = self.sampling(solids, options)?;
+                Ok(Prepared::meshes(sampling, options)?)
             }
         }
     }
 
-    fn sampled(
+    fn sampling(
         &mut self,
-        [receptor, ligand]: [&Solid; 2],
+        solids: [&Solid; 2],
         options: &DockOptions,
-    ) -> Result<(&MeshPair, StageTime), PairError> {
-        let per_axis = options.sample_grid.unwrap_or(PER_AXIS);
-        let weights = options.sample_weights.unwrap_or_default();
-        let known = |(nodes, kind, ..): &(usize, SampleWeights, MeshPair, StageTime)| {
-            (*nodes, *kind) == (per_axis, weights)
-        };
-        let place = match self.sampled.iter().position(known) {
-            Some(place) => place,
-            None => {
-                let sampling = MeshOptions {
-                    per_axis,
-                    offset: Some(options.offset),
-                    weights,
-                    alpha: options.alpha,
-                };
-                let (pair, time) = timed("sample", || sample_pair(receptor, ligand, &sampling));
-                self.sampled.push((per_axis, weights, pair?, time));
-                self.sampled.len() - 1
-            }
-        };
-        let (_, _, pair, time) = &self.sampled[place];
-        Ok((pair, *time))
+    ) -> Result<Arc<Sampling>, MeshSceneError> {
+        let wanted = key(options);
+        if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
+            return Ok(Arc::clone(known));
+        }
+        let (per_axis, weights) = wanted;
+        let sampling = Arc::new(Sampling::of(
+            solids,
+            &MeshOptions {
+                per_axis,
+                offset: Some(options.offset),
+                weights,
+                alpha: options.alpha,
+            },
+        )?);
+        self.sampled.push((wanted, Arc::clone(&sampling)));
+        Ok(sampling)
     }
 }
 

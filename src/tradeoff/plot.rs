@@ -1,8 +1,8 @@
 //! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
 
 use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use super::measured::{FIRST, Measured, Tradeoff};
 use super::settings::Knob;
-use super::sweep::{FIRST, Measured, Tradeoff};
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 380.0];

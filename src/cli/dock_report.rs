@@ -1,0 +1,82 @@
+//! What `knotdock dock` tells of a run: effects, errors, and what was assumed of the inputs.
+
+use std::collections::BTreeMap;
+
+use knotdock::search::{DockOutcome, DockPlan, Effect};
+use knotdock_structures::molecule::LabelReport;
+
+/// Which effects were on and what they cost, and how far the fast path was off.
+pub fn told(outcome: &DockOutcome) -> String {
+    let effects = outcome
+        .effects
+        .iter()
+        .map(|cost| match (cost.on, cost.effect) {
+            (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
+            (true, Effect::Shape) => format!(
+                "Effect shape ({}): rank {}, {:.2} ms a rotation",
+                cost.reason, cost.rank, cost.milliseconds_per_rotation
+            ),
+            (true, effect) => format!(
+                "Effect {effect} ({}): without it {} ranks and {:.2} ms a rotation less",
+                cost.reason, cost.rank, cost.milliseconds_per_rotation
+            ),
+        });
+    let mut lines: Vec<String> = effects.collect();
+    lines.push(format!(
+        "All together: rank {}, {:.1e} of the best score lost by compression",
+        outcome.rank, outcome.rank_error
+    ));
+    let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
+    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
+    if let (true, Some(stage)) = (rescored, stage) {
+        lines.push(format!(
+            "Rescored by the fine contact potential in {:.2} s",
+            stage.wall_seconds
+        ));
+    }
+    let error = outcome.error;
+    lines.push(format!(
+        "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
+        error.poses, error.rms, error.worst
+    ));
+    lines.push(format!(
+        "The low-pass moved their shape scores by {:.0}% of the best on average",
+        100.0 * error.low_pass_share
+    ));
+    lines.push(format!(
+        "{} poses in {} clusters",
+        outcome.poses_kept, outcome.clusters
+    ));
+    lines.join("\n")
+}
+
+/// What was assumed of one side's charges and contact types, where effects use them.
+pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
+    let names = |unknown: &BTreeMap<String, usize>| {
+        let names = unknown
+            .iter()
+            .map(|(name, count)| format!("{count} {name}"));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let mut parts = Vec::new();
+    if plan.is_on(Effect::Electrostatics) {
+        let [amino, carboxyl] = labels.termini;
+        parts.push(format!(
+            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} gaps capped",
+            labels.net_charge, plan.options.ph, labels.gaps
+        ));
+        if !labels.unknown_charges.is_empty() {
+            parts.push(format!(
+                "no charges known for {}",
+                names(&labels.unknown_charges)
+            ));
+        }
+    }
+    if plan.is_on(Effect::Contact) && !labels.unknown_types.is_empty() {
+        parts.push(format!(
+            "no contact types for {}",
+            names(&labels.unknown_types)
+        ));
+    }
+    (!parts.is_empty()).then(|| format!("The {side}: {}", parts.join("; ")))
+}

@@ -1,0 +1,115 @@
+//! What a sweep measures of each setting.
+//!
+//! - **Time** by stage, on the clock and of all processors.
+//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking run measures it.
+//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's resolution and
+//!   sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set against it at the poses that the
+//!   reference ranks first.
+//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within the radius of clusters.
+//! - **Ranks** of near poses, where a known complex is given.
+
+use serde::Serialize;
+
+use super::settings::Setting;
+use crate::search::outcome::MeasuredError;
+use crate::search::{DockOptions, StageTime};
+
+/// Rows whose agreement is measured.
+pub const FIRST: usize = 100;
+/// Interface RMSD in Å up to which a pose is near-native.
+pub const NEAR_NATIVE: f64 = 2.5;
+
+/// How a setting ranks poses near the known complex, by rows of its table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NativeRanks {
+    /// Rank of the first pose that CAPRI calls acceptable or better.
+    pub first_acceptable: Option<usize>,
+    /// Rank of the first pose whose interface RMSD is at most [`NEAR_NATIVE`].
+    pub first_near_native: Option<usize>,
+    /// Acceptable or better ones among the first 100.
+    pub acceptable: usize,
+    /// Near-native ones among the first 100.
+    pub near_native: usize,
+}
+
+/// What a setting was measured to cost and to give.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The setting.
+    pub setting: Setting,
+    /// Grid points an axis.
+    pub grid: [usize; 3],
+    /// Grid spacing.
+    pub spacing: f64,
+    /// Modes kept in three dimensions, conjugates not counted.
+    pub modes: usize,
+    /// Rank of the lifted axis.
+    pub rank: usize,
+    /// Width of the spreading window.
+    pub spreading_width: usize,
+    /// Poses refined.
+    pub refined: usize,
+    /// Time by stage; the search's own stages after sampling and planning.
+    pub timing: Vec<StageTime>,
+    /// The fast path's error against the exact sum.
+    pub error: MeasuredError,
+    /// Root mean square of the exact sum against the reference score, as a share of its best.
+    pub definition_rms: f64,
+    /// Correlation of the two; `None` where either does not vary.
+    pub definition_correlation: Option<f64>,
+    /// Share of the reference's first rows found again.
+    pub agreement: f64,
+    /// Ranks of near poses, with a known complex.
+    pub native: Option<NativeRanks>,
+    /// Whether no other setting with the default's score has a smaller error in less time.
+    pub front_error: bool,
+    /// Whether no other setting finds more of the reference's rows in less time.
+    pub front_agreement: bool,
+}
+
+impl Measured {
+    /// Seconds of all stages: on the clock.
+    pub fn wall_seconds(&self) -> f64 {
+        self.timing.iter().map(|stage| stage.wall_seconds).sum()
+    }
+
+    /// Seconds of all stages and processors, where the system tells.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        self.timing.iter().map(|stage| stage.cpu_seconds).sum()
+    }
+
+    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock where the system does
+    /// not tell.
+    pub fn cost(&self) -> f64 {
+        self.cpu_seconds().unwrap_or_else(|| self.wall_seconds())
+    }
+
+    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
+    pub fn same_score(&self, default: &DockOptions) -> bool {
+        let options = &self.setting.options;
+        (options.resolution, options.pass_length, options.sample_grid)
+            == (default.resolution, default.pass_length, default.sample_grid)
+    }
+}
+
+/// A setting that could not be run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    /// Its name.
+    pub setting: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// All that a sweep measured.
+#[derive(Clone, Debug)]
+pub struct Tradeoff {
+    /// The settings that ran: the default, the reference, then in the order of [`settings`].
+    pub measured: Vec<Measured>,
+    /// Those that did not.
+    pub refused: Vec<Refused>,
+    /// Radius of agreement, in the unit of lengths.
+    pub radius: f64,
+    /// Whether a known complex was given.
+    pub with_native: bool,
+}
