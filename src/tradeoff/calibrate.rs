@@ -227,6 +227,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cost_model::LADDER;
     use super::*;
 
     #[test]
@@ -235,6 +236,20 @@ mod tests {
         assert!((a - 3.0).abs() < 1e-9 && (b - 2.0).abs() < 1e-9);
         assert_eq!(line(&[(2.0, 5.0), (2.0, 6.0)]), None);
         assert_eq!(line(&[(1.0, 5.0), (2.0, 1.0)]), None, "falling");
+    }
+
+    #[test]
+    fn each_rung_costs_more_than_the_last() {
+        let seconds = LADDER.map(|rung| {
+            let mut options = DockOptions {
+                rotations: 4,
+                ..DockOptions::default()
+            };
+            rung.apply(&mut options);
+            let plan = plan_scene(scene(&options).unwrap(), &options).unwrap();
+            CostModel::BUILT_IN.seconds(&Workload::of(&plan), 3600, 1)
+        });
+        assert!(seconds.is_sorted(), "{seconds:?}");
     }
 
     #[test]
