@@ -14,6 +14,10 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
+#[path = "../src/test_support.rs"]
+mod test_support;
+use test_support::Numbers;
+
 fn options(tolerance: f64) -> EngineOptions {
     EngineOptions {
         kernel: KernelOptions {
@@ -32,13 +36,8 @@ fn options(tolerance: f64) -> EngineOptions {
 
 /// Labelled knots strewn over a ball: a third without charge, one in seven of no contact type.
 fn cloud(count: usize, size: f64, seed: u64) -> Knots {
-    let mut state = seed;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut numbers = Numbers(seed);
+    let mut next = || numbers.next();
     let mut centers = Vec::new();
     while centers.len() < count {
         let p: [f64; 3] = std::array::from_fn(|_| size * (2.0 * next() - 1.0));

@@ -6,17 +6,17 @@ use knotdock_scoring::transform::nonequispaced::{Plan, PlanError, TransformError
 use num_complex::{Complex, Complex64};
 use std::f64::consts::PI;
 
-/// A linear congruential generator (Knuth's MMIX constants), so that every run sees the same numbers.
-struct Random(u64);
+#[path = "../src/test_support.rs"]
+mod test_support;
+use test_support::Numbers;
+
+/// Numbers, points and weights that every run sees alike.
+struct Random(Numbers);
 
 impl Random {
     /// In [-1, 1).
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.next() - 1.0
     }
 
     fn points<const D: usize>(&mut self, count: usize) -> Vec<[f64; D]> {
@@ -91,7 +91,7 @@ fn meets_the_direct_sum<T: Real, const D: usize>(
     points: usize,
     seed: u64,
 ) {
-    let mut random = Random(seed);
+    let mut random = Random(Numbers(seed));
     let points = random.points::<D>(points);
     let weights = random.numbers(points.len());
     let modes = random.numbers(plan.mode_count());
@@ -216,7 +216,7 @@ fn single_precision_meets_swept_tolerances() {
 fn many_slabs_and_clusters_meet_the_direct_sum() {
     // Points in two tight clusters leave most planes and rows of the grid empty, which the transform skips; a long first axis
     // lets the ring of planes turn several times.
-    let mut random = Random(3);
+    let mut random = Random(Numbers(3));
     let modes = [90, 12, 10];
     let points: Vec<[f64; 3]> = (0..60)
         .map(|i| std::array::from_fn(|_| [0.31, 0.97][i % 2] + 0.02 * random.next()))
@@ -242,7 +242,7 @@ fn types_are_adjoint_to_rounding_whatever_the_tolerance() {
     fn check<const D: usize>(modes: [usize; D]) {
         for tolerance in [1e-1, 1e-3, 1e-9] {
             let plan = Plan::<f64, D>::new(modes, tolerance, 40).unwrap();
-            let mut random = Random(17);
+            let mut random = Random(Numbers(17));
             let points = random.points::<D>(40);
             let weights = random.numbers(40);
             let modes = random.numbers(plan.mode_count());
@@ -276,7 +276,7 @@ fn parseval_holds_on_equispaced_points() {
             ]
         })
         .collect();
-    let weights = Random(23).numbers(240);
+    let weights = Random(Numbers(23)).numbers(240);
     let energy = |values: &[Complex64]| values.iter().map(|v| v.norm_sqr()).sum::<f64>();
     let plan = Plan::<f64, 3>::new(modes, 1e-10, 240).unwrap();
     let ratio = energy(&forward(&plan, &points, &weights)) / (240.0 * energy(&weights));
@@ -287,7 +287,7 @@ fn parseval_holds_on_equispaced_points() {
 fn moving_the_points_turns_the_modes() {
     // f_k of points moved by s is f_k exp(-2 pi i k.s); this also pins the sign and the order of the modes.
     let modes = [9, 4, 7];
-    let mut random = Random(29);
+    let mut random = Random(Numbers(29));
     let points = random.points::<3>(30);
     let weights = random.numbers(30);
     let shift = [0.137, -0.61, 0.29];
@@ -329,7 +329,7 @@ fn direct_sums_of_one_point_are_plane_waves() {
 #[test]
 fn real_weights_are_complex_ones_without_imaginary_part() {
     let plan = Plan::<f64, 3>::new([10, 7, 12], 1e-5, 40).unwrap();
-    let mut random = Random(31);
+    let mut random = Random(Numbers(31));
     let points = plan.locate(&random.points::<3>(40)).unwrap();
     let real: Vec<f64> = (0..40).map(|_| random.next()).collect();
     let complex: Vec<Complex64> = real.iter().map(|&w| w.into()).collect();
@@ -345,7 +345,7 @@ fn real_weights_are_complex_ones_without_imaginary_part() {
 fn the_edge_of_the_box_and_periodic_images() {
     // Points on a face lie half in one image of the box, half in the next; 1 - 2^-53 and -1e-300 fold onto the period itself.
     let plan = Plan::<f64, 3>::new([12, 14, 9], 1e-8, 8).unwrap();
-    let weights = Random(37).numbers(8);
+    let weights = Random(Numbers(37)).numbers(8);
     let edge = [
         0.0,
         1.0,
@@ -383,9 +383,9 @@ fn no_points_and_coincident_points() {
             .iter()
             .all(|value| value.norm() == 0.0)
     );
-    assert!(adjoint(&plan, &[], &Random(1).numbers(336)).is_empty());
+    assert!(adjoint(&plan, &[], &Random(Numbers(1)).numbers(336)).is_empty());
     // A thousand points at one place are one point with the sum of their weights.
-    let weights = Random(41).numbers(1000);
+    let weights = Random(Numbers(41)).numbers(1000);
     let many = forward(&plan, &[[0.3, 0.6, 0.9]; 1000], &weights);
     let one = forward(&plan, &[[0.3, 0.6, 0.9]], &[weights.iter().sum()]);
     assert!(error(&many, &one) < 1e-12);
@@ -394,7 +394,7 @@ fn no_points_and_coincident_points() {
 #[test]
 fn results_do_not_depend_on_what_the_workspace_did_before() {
     let plan = Plan::<f64, 3>::new([20, 6, 9], 1e-6, 50).unwrap();
-    let mut random = Random(43);
+    let mut random = Random(Numbers(43));
     let points = random.points::<3>(50);
     let weights = random.numbers(50);
     let modes = random.numbers(plan.mode_count());

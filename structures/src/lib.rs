@@ -21,5 +21,7 @@ pub mod molecule;
 pub mod sampler;
 #[cfg(feature = "mesh")]
 pub mod sphere_tree;
+#[cfg(all(test, feature = "mesh"))]
+mod test_support;
 
 pub use knots::Knots;

@@ -71,7 +71,7 @@ impl Reader {
             Self::Pdb | Self::Mmcif | Self::Gzip => {
                 let ending = if self == Self::Mmcif { "cif" } else { "pdb" };
                 let path = scratch.join("input").with_extension(ending);
-                fs::write(&path, bytes).unwrap();
+                replace(&path, bytes);
                 molecule(&path, index)
             }
             Self::Stl => mesh(bytes, MeshFormat::Stl),
@@ -80,7 +80,7 @@ impl Reader {
             Self::Off => mesh(bytes, MeshFormat::Off),
             Self::Poses => {
                 let path = scratch.join("poses.csv");
-                fs::write(&path, bytes).unwrap();
+                replace(&path, bytes);
                 match PoseTable::read(&path) {
                     Ok(table) => {
                         for row in table.rows() {
@@ -99,7 +99,7 @@ impl Reader {
             }
             Self::Run => {
                 let path = scratch.join("run.json");
-                fs::write(&path, bytes).unwrap();
+                replace(&path, bytes);
                 match RecordedRun::read(&path) {
                     Ok(_) => true,
                     Err(error) => {
@@ -113,6 +113,14 @@ impl Reader {
             Self::FineContact => table(bytes, |text| Ok(FinePotential::parse(text)?.ranges.into())),
         }
     }
+}
+
+/// Puts an input where the last one was. As a new file: some file systems flush one that is cut short and written again, which took fifty
+/// times as long as reading it.
+fn replace(path: &Path, bytes: &[u8]) {
+    // There is none before the first input.
+    let _ = fs::remove_file(path);
+    fs::write(path, bytes).unwrap();
 }
 
 /// Reads tables of energies, which must be finite and symmetric.

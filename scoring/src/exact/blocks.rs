@@ -193,18 +193,14 @@ fn halve(points: &[Vector3<f64>], members: &mut [usize]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::Numbers;
 
     /// Every knot within reach must be visited, once, whatever the crowd: a spread cloud, coincident knots (no axis to halve
     /// along), knots 1e6 Å apart (boxes that a cell list could not hold), and counts around the sizes of blocks and groups.
     #[test]
     fn every_knot_within_reach_is_visited_once() {
-        let mut state = 7u64;
-        let mut next = move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut numbers = Numbers(7);
+        let mut next = || numbers.next();
         for count in [1, 7, 8, 9, 127, 128, 129, 2500] {
             for spread in [0.0, 30.0, 1e6] {
                 let points: Vec<Vector3<f64>> = (0..count)

@@ -3,6 +3,7 @@
 use super::*;
 use crate::affinity::DoubleSkin;
 use crate::kernel::{KernelOptions, Trim};
+use crate::test_support::Numbers;
 use num_complex::Complex64;
 
 fn kernel() -> RankingKernel {
@@ -18,13 +19,8 @@ fn kernel() -> RankingKernel {
 }
 
 fn cloud(count: usize, spread: f64, seed: u64) -> Knots {
-    let mut state = seed;
-    let mut next = move || {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut numbers = Numbers(seed);
+    let mut next = || numbers.next();
     let radii = [1.5, 1.65, 1.9];
     Knots::new(
         (0..count)

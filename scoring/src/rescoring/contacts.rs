@@ -156,16 +156,12 @@ fn typed(knots: &Knots, center: Vector3<f64>) -> Vec<Atom> {
 mod tests {
     use super::*;
     use crate::rescoring::RANGES;
+    use crate::test_support::Numbers;
 
     /// Atoms strewn over a ball by a linear congruence, some without a type.
     fn cloud(count: usize, size: f64, seed: u64, at: f64) -> Knots {
-        let mut state = seed;
-        let mut next = move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut numbers = Numbers(seed);
+        let mut next = || numbers.next();
         let centers: Vec<[f64; 3]> = (0..count)
             .map(|_| std::array::from_fn(|_| at + size * (next() - 0.5)))
             .collect();

@@ -304,15 +304,11 @@ impl<T: Real> Forward<T> {
 mod tests {
     use super::super::ndft::ndft_3d;
     use super::*;
+    use crate::test_support::Numbers;
 
     fn points(count: usize, radius: f64, seed: u64) -> (Vec<[f64; 3]>, Vec<f64>) {
-        let mut state = seed;
-        let mut next = move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut numbers = Numbers(seed);
+        let mut next = || numbers.next();
         let points = (0..count)
             .map(|_| std::array::from_fn(|_| radius * (2.0 * next() - 1.0)))
             .collect();

@@ -14,21 +14,12 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
+#[path = "../../src/test_support.rs"]
+mod test_support;
+pub use test_support::Numbers;
+
 /// Radii like those of protein atoms, Å.
 pub const RADII: [f64; 3] = [1.5, 1.7, 1.9];
-
-/// Numbers in [0, 1) by a fixed linear congruence: the same on every machine.
-pub struct Numbers(pub u64);
-
-impl Numbers {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// Knots strewn over a ball about the origin, radii cycling through `radii`. Lengths in Å.
 pub fn cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {

@@ -189,33 +189,14 @@ pub(crate) fn reduce(balls: &[Ball], epsilon: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::from_triangles;
     use crate::sampler::grid::Grid;
-
-    fn cube() -> Solid {
-        let positions: Vec<[f64; 3]> = (0..8)
-            .map(|i| [0, 1, 2].map(|axis| f64::from(i >> axis & 1) - 0.5))
-            .collect();
-        let quads = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let triangles: Vec<[u32; 3]> = quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect();
-        Solid::new(&from_triangles(&positions, &triangles).unwrap().0).unwrap()
-    }
+    use crate::test_support::cuboid;
 
     /// As printed, |r(x) - r(x')| lets a small ball strike a larger one that contains it: with the smallest balls taken first
     /// the middle of the cube then goes missing. And whatever the order and mu, every node must end up covered.
     #[test]
     fn a_small_ball_never_strikes_a_larger_one() {
-        let solid = cube();
+        let solid = cuboid([0.5; 3]);
         let field = DepthField::new(&solid, Grid::new(&solid, 11));
         let nodes = field.inside();
         let smallest_first: Vec<f64> = nodes.iter().map(|&node| -field.depth[node]).collect();

@@ -67,8 +67,8 @@ fn touching_radius(solid: &Solid, inside: [f64; 3], most: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::from_triangles;
     use crate::sampler::grid::Grid;
+    use crate::test_support::cuboid;
 
     /// A plate is as thick as it is nearly everywhere on its surface; a cube's largest ball at a face is as large as its edges allow: over
     /// the surface the median of half - max(|u|, |v|), which is half (1 - 1 / sqrt 2).
@@ -78,22 +78,7 @@ mod tests {
             ([0.5, 0.5, 0.04], 0.04),
             ([0.5, 0.5, 0.5], 0.5 * (1.0 - 0.5f64.sqrt())),
         ] {
-            let positions: Vec<[f64; 3]> = (0..8)
-                .map(|i| [0, 1, 2].map(|axis| half[axis] * (2.0 * f64::from(i >> axis & 1) - 1.0)))
-                .collect();
-            let quads = [
-                [0, 4, 6, 2],
-                [1, 3, 7, 5],
-                [0, 1, 5, 4],
-                [2, 6, 7, 3],
-                [0, 2, 3, 1],
-                [4, 5, 7, 6],
-            ];
-            let triangles: Vec<[u32; 3]> = quads
-                .iter()
-                .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-                .collect();
-            let solid = Solid::new(&from_triangles(&positions, &triangles).unwrap().0).unwrap();
+            let solid = cuboid(half);
             let field = DepthField::new(&solid, Grid::new(&solid, 40));
             let found = feature_size(&solid, &field);
             assert!(

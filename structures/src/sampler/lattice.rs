@@ -42,29 +42,9 @@ pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Solid, from_triangles};
     use crate::sampler::grid::Grid;
     use crate::sampler::weights;
-
-    /// A box of these half sides.
-    fn cuboid(half: [f64; 3]) -> Solid {
-        let positions: Vec<[f64; 3]> = (0..8)
-            .map(|i| [0, 1, 2].map(|axis| half[axis] * (2.0 * f64::from(i >> axis & 1) - 1.0)))
-            .collect();
-        let quads = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let triangles: Vec<[u32; 3]> = quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect();
-        Solid::new(&from_triangles(&positions, &triangles).unwrap().0).unwrap()
-    }
+    use crate::test_support::cuboid;
 
     /// Cells of one node are the nodes; larger ones keep their number of nodes and first moments: no volume is lost or moved.
     #[test]
