@@ -70,7 +70,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 37] = [
+const RECORDED: [&str; 40] = [
     "receptor",
     "ligand",
     "waters",
@@ -80,6 +80,9 @@ const RECORDED: [&str; 37] = [
     "model",
     "rotations",
     "angle",
+    "fine_rotations",
+    "fine_angle",
+    "fine_share",
     "resolution",
     "pass_length",
     "spacing",

@@ -26,6 +26,12 @@ pub fn told(outcome: &DockOutcome) -> String {
         "All together: rank {}, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error
     ));
+    if let Some(fine) = outcome.fine {
+        lines.push(format!(
+            "Searched {} finer rotations, those nearest to the best {} rotations",
+            fine.rotations, fine.cells
+        ));
+    }
     let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
     let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
     if let (true, Some(stage)) = (rescored, stage) {

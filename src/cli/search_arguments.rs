@@ -115,6 +115,15 @@ pub struct SearchArguments {
     /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
     #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
     angle: Option<usize>,
+    /// Search again, among this many rotations, about the best: their peaks take the place of the best rotations' own.
+    #[arg(long, value_name = "N", value_parser = at_least_one, help_heading = TRADE_OFFS)]
+    fine_rotations: Option<usize>,
+    /// The same by the field's count for an angle in degrees, as with --angle.
+    #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "fine_rotations", help_heading = TRADE_OFFS)]
+    fine_angle: Option<usize>,
+    /// Share of the finer rotations that are searched.
+    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().fine_share, help_heading = TRADE_OFFS)]
+    fine_share: f64,
     #[command(flatten)]
     kernel: KernelArguments,
     /// Peaks kept of each rotation.
@@ -187,6 +196,8 @@ impl SearchArguments {
         let kernel = self.kernel.options()?;
         Ok(DockOptions {
             rotations: self.angle.unwrap_or(self.rotations),
+            fine_rotations: self.fine_angle.or(self.fine_rotations),
+            fine_share: self.fine_share,
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,

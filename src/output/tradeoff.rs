@@ -17,8 +17,8 @@ use crate::tradeoff::{Measured, Refused, Tradeoff};
 pub const SCHEMA: u32 = 1;
 
 /// Stages whose times are columns, in the order in which they run.
-const STAGES: [&str; 9] = [
-    "sample", "plan", "prepare", "search", "refine", "check", "rescore", "cluster", "score",
+const STAGES: [&str; 10] = [
+    "sample", "plan", "prepare", "search", "fine", "refine", "check", "rescore", "cluster", "score",
 ];
 
 /// A measured setting under the names of its columns, in order.
@@ -37,6 +37,14 @@ pub fn columns(run: &Measured) -> Vec<(String, Value)> {
         ("spacing", real(run.spacing)),
         ("tolerance", real(options.tolerance)),
         ("rotations", options.rotations.into()),
+        (
+            "fine_rotations",
+            options.fine_rotations.map_or(Value::Null, Value::from),
+        ),
+        (
+            "fine_share",
+            optional(options.fine_rotations.map(|_| options.fine_share)),
+        ),
         ("per_rotation", options.per_rotation.into()),
         ("refined", run.refined.into()),
         (

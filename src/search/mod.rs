@@ -1,6 +1,7 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
 pub mod cluster;
+pub mod coarse_to_fine;
 mod costs;
 pub mod effects;
 pub mod meshes;

@@ -15,6 +15,11 @@ use serde::{Deserialize, Serialize};
 pub struct DockOptions {
     /// Number of rotations sampled.
     pub rotations: usize,
+    /// Size of the finer set of rotations that is searched about the best; `None`: no finer search.
+    pub fine_rotations: Option<usize>,
+    /// Share of the finer set that is searched.
+    #[serde(default = "default_fine_share")]
+    pub fine_share: f64,
     /// Resolution: the ranking kernel's low-pass stops at 1 / resolution.
     pub resolution: f64,
     /// Length whose inverse is the pass frequency; `None`: `PASS_RATIO` times the resolution.
@@ -71,12 +76,19 @@ pub const REFINED_BY_SHAPE: usize = 300;
 /// Default pass length as a multiple of the resolution.
 pub const PASS_RATIO: f64 = 2.0;
 
+/// Share of a finer set of rotations that is searched.
+fn default_fine_share() -> f64 {
+    0.05
+}
+
 impl Default for DockOptions {
     /// Resolution, offset, lambda, the weights of effects and that nothing is refined were chosen on training pairs; the rest is the
     /// literature's or this project's first measured setting.
     fn default() -> Self {
         Self {
             rotations: 3600,
+            fine_rotations: None,
+            fine_share: default_fine_share(),
             resolution: 4.5,
             pass_length: None,
             spacing: None,
@@ -159,6 +171,22 @@ impl DockOptions {
                     bound: format!("between 1 and {most}"),
                 });
             }
+        }
+        if let Some(finer) = self.fine_rotations
+            && !(self.rotations..=10_000_000).contains(&finer)
+        {
+            return Err(SearchError::Option {
+                name: "fine-rotations",
+                value: finer.to_string(),
+                bound: "no fewer than the rotations and at most 10000000".to_owned(),
+            });
+        }
+        if !(self.fine_share > 0.0 && self.fine_share <= 1.0) {
+            return Err(SearchError::Option {
+                name: "fine-share",
+                value: self.fine_share.to_string(),
+                bound: "above 0 and at most 1".to_owned(),
+            });
         }
         if !(self.cluster_radius.is_finite() && self.cluster_radius >= 0.0) {
             return Err(SearchError::Option {

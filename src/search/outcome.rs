@@ -1,5 +1,6 @@
 //! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
 
+use super::coarse_to_fine::FineSearched;
 use super::peaks::Peak;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
@@ -117,6 +118,8 @@ pub struct DockOutcome {
     pub rank_error: f64,
     /// What each term cost.
     pub effects: Vec<EffectCost>,
+    /// What a finer search about the best rotations covered, where one was asked for.
+    pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,
 }

@@ -23,7 +23,7 @@ impl Peak {
 }
 
 /// Voxels around a peak that may hold no further one, on each axis and side.
-const NEIGHBOURS: usize = 2;
+pub(super) const NEIGHBOURS: usize = 2;
 
 /// Appends the `count` best voxels of a periodic grid (nx, ny, nz), each at least `NEIGHBOURS` + 1 voxels from the others along some
 /// axis, to `found`. `row_best` holds each row's largest value; grid and row bests are overwritten around peaks.

@@ -2,12 +2,15 @@
 
 use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
 use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
-use super::rotations::{BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name};
+use super::rotations::{
+    BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
+};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::rescoring::FineContacts;
+use knotdock_scoring::se3::HalfTurn;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
@@ -71,6 +74,9 @@ pub struct DockPlan {
     pub(super) ligand: Knots,
     #[serde(skip)]
     pub(super) set: Vec<UnitQuaternion<f64>>,
+    /// The finer set; empty without a finer search.
+    #[serde(skip)]
+    pub(super) fine_set: Vec<UnitQuaternion<f64>>,
 }
 
 /// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
@@ -127,6 +133,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
                 + ReceptorField::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
                 + 64 * options.rotations as u64
+                + 64 * options.fine_rotations.unwrap_or(0) as u64
                 + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
                 + 400 * options.poses as u64
                 + (16 << 20);
@@ -157,6 +164,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
     }
     let set = rotation_set(options.rotations);
+    let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
     let (a, b) = match &engine.basis {
         knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
             (receptor.len(), ligand.len())
@@ -189,6 +197,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         receptor,
         ligand,
         set,
+        fine_set,
     })
 }
 
@@ -202,6 +211,14 @@ impl DockPlan {
     /// The knots that are docked, of receptor and ligand.
     pub fn knots(&self) -> [&Knots; 2] {
         [&self.receptor, &self.ligand]
+    }
+
+    /// A rotation by its index, those of the finer set after those of the coarse one, and which half-turn of the first of its four it is.
+    pub(super) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
+        match index.checked_sub(self.set.len()) {
+            None => (self.set[index], HalfTurn::ALL[index % 4]),
+            Some(fine) => (self.fine_set[fine], HalfTurn::ALL[fine % 4]),
+        }
     }
 
     /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
@@ -276,6 +293,14 @@ impl std::fmt::Display for DockPlan {
             unit = self.unit,
             digits = digits,
             finer = finer,
-        )
+        )?;
+        if let Some(finer) = self.options.fine_rotations {
+            write!(
+                f,
+                "; then about {:.0}% of {finer} finer rotations, about the best",
+                100.0 * self.options.fine_share
+            )?;
+        }
+        Ok(())
     }
 }

@@ -32,11 +32,20 @@ fn rotation(index: usize, count: usize) -> UnitQuaternion<f64> {
 /// images are relaxed as charges that push each other apart, which evens out the domain's edges and leaves every rotation a nearer neighbour on
 /// average than the spiral itself does.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
-    let quarter = count.div_ceil(4);
-    let mut base = domain(quarter);
+    let mut base = domain(count.div_ceil(4));
     if count <= MOST_RELAXED {
         relax(&mut base);
     }
+    with_images(&base, count)
+}
+
+/// A set as [`rotation_set`] makes it, but never relaxed: quickly made, and less even at the edges of the domain.
+pub(super) fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
+    with_images(&domain(count.div_ceil(4)), count)
+}
+
+/// Each rotation followed by its half-turns, `count` in all.
+fn with_images(base: &[Point], count: usize) -> Vec<UnitQuaternion<f64>> {
     base.iter()
         .flat_map(|&point| {
             let rotation = UnitQuaternion::from_quaternion(Quaternion::from(

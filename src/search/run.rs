@@ -1,20 +1,21 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
 use super::cluster::RigidBody;
+use super::coarse_to_fine::search_finer;
 use super::costs::costs;
 use super::options::SearchError;
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::plan::DockPlan;
 use super::ranking::{Judge, candidates, clusters_of, merge, printed, report};
 use super::refine::{ClimbLimits, climb};
-use super::scan::{Chosen, choose_rank, scan};
+use super::scan::{Chosen, all_rotations, choose_rank, scan};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
-use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -95,19 +96,24 @@ fn dock_in_pool(
     clock.lap("prepare");
 
     progress.stage("search", plan.rotations as u64);
-    let peaks = scan(plan, &engine, progress);
+    let rotations = all_rotations(plan);
+    let mut peaks = scan(plan, &engine, &rotations, options.poses, progress);
     clock.lap("search");
     if peaks.is_empty() {
         return Err(SearchError::NoPose);
     }
+    let mut fine = None;
+    if !plan.fine_set.is_empty() {
+        let (finer, searched) = search_finer(plan, &engine, peaks, progress);
+        (peaks, fine) = (finer, Some(searched));
+        clock.lap("fine");
+    }
     let grid_poses: Vec<Pose> = peaks
         .iter()
         .map(|peak| {
-            let index = peak.rotation as usize;
-            let half_turn = HalfTurn::ALL[index % 4];
+            let (rotation, half_turn) = plan.rotation(peak.rotation as usize);
             let place =
                 plan.engine.receptor_center + engine.position_after(half_turn, peak.voxel as usize);
-            let rotation = plan.set[index];
             Pose::about(rotation, plan.engine.ligand_center, place)
         })
         .collect();
@@ -194,6 +200,7 @@ fn dock_in_pool(
         rank_error,
         rank: engine.rank(),
         effects,
+        fine,
         timing: clock.stages,
     })
 }

@@ -92,36 +92,63 @@ pub(super) fn choose_rank(plan: &DockPlan, folded: &Folded<f32>) -> Chosen {
         })
 }
 
-/// The best peaks over all rotations, best first.
-pub(super) fn scan(plan: &DockPlan, engine: &CpuEngine<f32>, progress: &dyn Progress) -> Vec<Peak> {
+/// Four rotations of a set that differ by half-turns and so share the ligand's transform.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quartet {
+    /// Index of the first ([`DockPlan::rotation`]).
+    pub first: usize,
+    /// Which of the four are searched.
+    pub wanted: [bool; 4],
+}
+
+/// The coarse set, in fours.
+pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
+    let count = plan.set.len();
+    let quartet = |first| Quartet {
+        first,
+        wanted: std::array::from_fn(|image| first + image < count),
+    };
+    (0..count).step_by(4).map(quartet).collect()
+}
+
+/// The best `most` peaks over the rotations given, best first.
+pub(super) fn scan(
+    plan: &DockPlan,
+    engine: &CpuEngine<f32>,
+    quartets: &[Quartet],
+    most: usize,
+    progress: &dyn Progress,
+) -> Vec<Peak> {
     let options = &plan.options;
     let next = AtomicUsize::new(0);
+    // No list grows beyond all peaks that there are.
+    let all = 4 * quartets.len() * options.per_rotation;
+    let most = most.min(all);
     let mut peaks: Vec<Peak> = (0..plan.in_flight)
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace();
-            let mut found = Vec::with_capacity(2 * options.poses + options.per_rotation);
-            loop {
-                // Four rotations that differ by half-turns share the ligand's transform.
-                let first = 4 * next.fetch_add(1, Ordering::Relaxed);
-                let Some(rotation) = plan.set.get(first) else {
-                    break;
-                };
-                engine.turn(rotation, &mut work);
-                for (index, half_turn) in (first..plan.set.len()).zip(HalfTurn::ALL) {
+            let mut found = Vec::with_capacity(2 * most + options.per_rotation);
+            while let Some(quartet) = quartets.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let (rotation, _) = plan.rotation(quartet.first);
+                engine.turn(&rotation, &mut work);
+                for (image, half_turn) in HalfTurn::ALL.into_iter().enumerate() {
+                    if !quartet.wanted[image] {
+                        continue;
+                    }
                     engine.correlate_turned(half_turn, &mut work);
                     find_peaks(
                         plan.grid,
                         &mut work.grid,
                         &mut work.row_best,
-                        index as u32,
+                        (quartet.first + image) as u32,
                         options.per_rotation,
                         &mut found,
                     );
-                    if found.len() >= 2 * options.poses {
+                    if found.len() >= 2 * most {
                         found.sort_unstable_by(Peak::order);
-                        found.truncate(options.poses);
+                        found.truncate(most);
                     }
                     progress.advance(1);
                 }
@@ -132,6 +159,6 @@ pub(super) fn scan(plan: &DockPlan, engine: &CpuEngine<f32>, progress: &dyn Prog
         .collect();
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
-    peaks.truncate(options.poses);
+    peaks.truncate(most);
     peaks
 }

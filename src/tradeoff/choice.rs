@@ -108,7 +108,8 @@ pub fn choose(
     let work = Workload::of(&draft.plan);
     let threads = options.threads;
     if let Some(budget) = wanted.budget {
-        let range = FEWEST_ROTATIONS..=MOST_ROTATIONS;
+        let most = options.fine_rotations.unwrap_or(MOST_ROTATIONS);
+        let range = FEWEST_ROTATIONS..=most.clamp(FEWEST_ROTATIONS, MOST_ROTATIONS);
         options.rotations = model
             .rotations_within(&work, budget, threads, range)
             .map_err(|needed| ChoiceError::Budget {

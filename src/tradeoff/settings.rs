@@ -20,6 +20,8 @@ pub enum Knob {
     Resolution,
     /// Rotations.
     Rotations,
+    /// A finer search about the best rotations.
+    CoarseToFine,
     /// Peaks kept of each rotation.
     PerRotation,
     /// Poses refined off the grid.
@@ -32,11 +34,12 @@ pub enum Knob {
 
 impl Knob {
     /// The knobs that a sweep can be limited to.
-    pub const SWEPT: [Self; 8] = [
+    pub const SWEPT: [Self; 9] = [
         Self::Tolerance,
         Self::Spacing,
         Self::Resolution,
         Self::Rotations,
+        Self::CoarseToFine,
         Self::PerRotation,
         Self::Refine,
         Self::SampleGrid,
@@ -52,6 +55,7 @@ impl Knob {
             Self::Spacing => "spacing",
             Self::Resolution => "resolution",
             Self::Rotations => "rotations",
+            Self::CoarseToFine => "coarse-to-fine",
             Self::PerRotation => "per-rotation",
             Self::Refine => "refine",
             Self::SampleGrid => "sample-grid",
@@ -159,6 +163,12 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
                     add(knob, None, &[rotations(factor)]);
                 }
             }
+            Knob::CoarseToFine => {
+                for factor in [4.0, 16.0] {
+                    let finer = rounded_to_fours(factor * default.rotations as f64);
+                    add(knob, None, &[Change::FineRotations(finer)]);
+                }
+            }
             Knob::PerRotation => {
                 for peaks in [1, 10] {
                     add(knob, None, &[Change::PerRotation(peaks)]);
@@ -205,6 +215,7 @@ enum Change {
     Spacing(f64),
     Resolution(f64),
     Rotations(usize),
+    FineRotations(usize),
     PerRotation(usize),
     Refine(usize),
     SampleGrid(usize),
@@ -222,7 +233,12 @@ impl Change {
                     .map(|length| length * value / options.resolution);
                 options.resolution = value;
             }
-            Self::Rotations(value) => options.rotations = value,
+            Self::Rotations(value) => {
+                options.rotations = value;
+                // A finer set is finer.
+                options.fine_rotations = options.fine_rotations.filter(|finer| *finer >= value);
+            }
+            Self::FineRotations(value) => options.fine_rotations = Some(value),
             Self::PerRotation(value) => options.per_rotation = value,
             Self::Refine(value) => options.refine = Some(value),
             Self::SampleGrid(value) => options.sample_grid = Some(value),
@@ -236,6 +252,7 @@ impl Change {
             Self::Spacing(value) => format!("--spacing {value}"),
             Self::Resolution(value) => format!("--resolution {value}"),
             Self::Rotations(value) => format!("--rotations {value}"),
+            Self::FineRotations(value) => format!("--fine-rotations {value}"),
             Self::PerRotation(value) => format!("--per-rotation {value}"),
             Self::Refine(value) => format!("--refine {value}"),
             Self::SampleGrid(value) => format!("--sample-grid {value}^3"),

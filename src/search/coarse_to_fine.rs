@@ -1,0 +1,169 @@
+//! Coarse to fine: rotations of a finer set about the best of the coarse one.
+//!
+//! Each rotation of the finer set belongs to the nearest rotation of the coarse one, in whose *cell* it lies. The coarse rotations' cells are
+//! searched in the order of their best peaks, until a given share of the finer set has been. In a searched cell the best peaks of all its rotations, coarse
+//! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
+//! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
+
+use super::peaks::{NEIGHBOURS, Peak};
+use super::plan::DockPlan;
+use super::run::Progress;
+use super::scan::{Quartet, scan};
+use knotdock_scoring::engine::CpuEngine;
+use nalgebra::{UnitQuaternion, Vector3};
+use rayon::prelude::*;
+
+/// What a finer search covered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FineSearched {
+    /// Rotations of the finer set that were searched.
+    pub rotations: usize,
+    /// Coarse rotations whose cells these are.
+    pub cells: usize,
+}
+
+/// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both, best first, and what was searched.
+pub(super) fn search_finer(
+    plan: &DockPlan,
+    engine: &CpuEngine<f32>,
+    coarse: Vec<Peak>,
+    progress: &dyn Progress,
+) -> (Vec<Peak>, FineSearched) {
+    let cell_of = nearest(&plan.fine_set, &plan.set);
+    let mut sizes = vec![0usize; plan.set.len()];
+    for &cell in &cell_of {
+        sizes[cell as usize] += 1;
+    }
+    let wanted = (plan.options.fine_share * plan.fine_set.len() as f64).ceil() as usize;
+    let mut chosen = vec![false; plan.set.len()];
+    let (mut rotations, mut cells) = (0, 0);
+    for peak in &coarse {
+        if rotations >= wanted {
+            break;
+        }
+        let cell = peak.rotation as usize;
+        if !std::mem::replace(&mut chosen[cell], true) {
+            rotations += sizes[cell];
+            cells += 1;
+        }
+    }
+    let quartets: Vec<Quartet> = cell_of
+        .chunks(4)
+        .enumerate()
+        .map(|(index, cells)| Quartet {
+            first: plan.set.len() + 4 * index,
+            wanted: std::array::from_fn(|image| {
+                cells.get(image).is_some_and(|&cell| chosen[cell as usize])
+            }),
+        })
+        .filter(|quartet| quartet.wanted.contains(&true))
+        .collect();
+    progress.stage("fine", rotations as u64);
+    let fine = scan(plan, engine, &quartets, usize::MAX, progress);
+
+    let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(plan.set.len()) {
+        Some(index) => cell_of[index],
+        None => peak.rotation,
+    };
+    let (mut crowded, mut peaks): (Vec<Peak>, Vec<Peak>) = coarse
+        .into_iter()
+        .partition(|peak| chosen[peak.rotation as usize]);
+    crowded.extend(fine);
+    crowded.sort_unstable_by(|a, b| cell(a).cmp(&cell(b)).then(a.order(b)));
+    let position = |peak: &Peak| {
+        let (_, half_turn) = plan.rotation(peak.rotation as usize);
+        engine.position_after(half_turn, peak.voxel as usize)
+    };
+    for group in crowded.chunk_by(|a, b| cell(a) == cell(b)) {
+        peaks.extend(apart(
+            group,
+            plan.options.per_rotation,
+            plan.spacing,
+            position,
+        ));
+    }
+    peaks.sort_unstable_by(Peak::order);
+    peaks.truncate(plan.options.poses);
+    (peaks, FineSearched { rotations, cells })
+}
+
+/// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's peaks may.
+fn apart(
+    peaks: &[Peak],
+    count: usize,
+    spacing: f64,
+    position: impl Fn(&Peak) -> Vector3<f64>,
+) -> Vec<Peak> {
+    // Half a voxel over, for positions of different half-turns lie between one another's voxels.
+    let least = (NEIGHBOURS as f64 + 0.5) * spacing;
+    let mut kept: Vec<(Vector3<f64>, Peak)> = Vec::with_capacity(count.min(peaks.len()));
+    for peak in peaks {
+        if kept.len() == count {
+            break;
+        }
+        let at = position(peak);
+        if kept.iter().all(|(other, _)| (at - other).amax() > least) {
+            kept.push((at, *peak));
+        }
+    }
+    kept.into_iter().map(|(_, peak)| peak).collect()
+}
+
+/// The nearest rotation of `coarse` to each of `fine`; the first of several.
+fn nearest(fine: &[UnitQuaternion<f64>], coarse: &[UnitQuaternion<f64>]) -> Vec<u32> {
+    let parts = |q: &UnitQuaternion<f64>| [q.w as f32, q.i as f32, q.j as f32, q.k as f32];
+    let coarse: Vec<[f32; 4]> = coarse.iter().map(parts).collect();
+    fine.par_iter()
+        .map(|rotation| {
+            let [w, x, y, z] = parts(rotation);
+            let mut best = (0, -1.0f32);
+            for (index, p) in (0u32..).zip(&coarse) {
+                // |q.p| is the cosine of half the angle between them.
+                let cosine = (p[0] * w + p[1] * x + p[2] * y + p[3] * z).abs();
+                if cosine > best.1 {
+                    best = (index, cosine);
+                }
+            }
+            best.0
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rotations::{rotation_set, spiral_set};
+    use super::*;
+
+    #[test]
+    fn cells_are_those_of_the_nearest_rotation() {
+        let (coarse, fine) = (rotation_set(60), spiral_set(960));
+        let cells = nearest(&fine, &coarse);
+        let mut sizes = [0usize; 60];
+        for (rotation, &cell) in fine.iter().zip(&cells) {
+            sizes[cell as usize] += 1;
+            let angle = |other: &UnitQuaternion<f64>| rotation.angle_to(other);
+            let least = coarse.iter().map(angle).fold(f64::INFINITY, f64::min);
+            assert!(angle(&coarse[cell as usize]) < least + 1e-3);
+        }
+        // Sixteen on average.
+        assert!(
+            sizes.iter().all(|size| (6..=32).contains(size)),
+            "{sizes:?}"
+        );
+    }
+
+    #[test]
+    fn peaks_of_a_cell_keep_their_distance() {
+        let peak = |voxel: u32| Peak {
+            score: 100.0 - voxel as f32,
+            rotation: 0,
+            voxel,
+        };
+        let peaks: Vec<Peak> = (0..10).map(peak).collect();
+        let on_a_line = |peak: &Peak| Vector3::new(f64::from(peak.voxel), 0.0, 0.0);
+        let kept = apart(&peaks, 3, 1.0, on_a_line);
+        assert_eq!(kept, [peak(0), peak(3), peak(6)]);
+        assert_eq!(apart(&peaks, 9, 1.0, on_a_line).len(), 4);
+        assert_eq!(apart(&peaks[..0], 3, 1.0, on_a_line), []);
+    }
+}
