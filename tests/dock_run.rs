@@ -162,6 +162,45 @@ fn any_number_of_threads_gives_the_same_bytes() {
     assert_eq!(one, comparable(&folder.path().join("five")));
 }
 
+/// A finer search can only find better peaks in the cells that it searches, keeps the number of poses, and says where each came from.
+#[test]
+fn a_finer_search_about_the_best_rotations() {
+    let folder = place();
+    let dock = |more: &str| {
+        let arguments =
+            "dock receptor.pdb ligand.pdb --rotations 60 --poses 60 --no-cluster --quiet";
+        run(folder.path(), &format!("{arguments} {more}"));
+    };
+    dock("-o coarse");
+    dock("-o fine --fine-rotations 480 --fine-share 0.2 --threads 1");
+    dock("-o again --fine-rotations 480 --fine-share 0.2 --threads 2");
+    let [coarse, fine, again] =
+        ["coarse", "fine", "again"].map(|name| comparable(&folder.path().join(name)));
+    assert_eq!(fine, again);
+    let [coarse_rows, fine_rows] = ["coarse", "fine"].map(|name| rows(&folder.path().join(name)));
+    assert_eq!(coarse_rows.len(), fine_rows.len());
+    let best = |rows: &[BTreeMap<String, String>]| {
+        let scores = rows.iter().map(|row| number(row, "score_grid"));
+        scores.fold(f64::NEG_INFINITY, f64::max)
+    };
+    assert!(best(&fine_rows) > best(&coarse_rows));
+    let finer = |row: &&BTreeMap<String, String>| number(row, "rotation") >= 60.0;
+    assert!(fine_rows.iter().any(|row| finer(&row)) && !fine_rows.iter().all(|row| finer(&row)));
+    assert!(coarse_rows.iter().all(|row| !finer(&row)));
+    // Grid poses of finer rotations score what the fast path said, to its tolerance.
+    let scale = best(&fine_rows);
+    for row in fine_rows.iter().filter(finer).take(20) {
+        let apart = number(row, "score_grid") - number(row, "score");
+        assert!(apart.abs() < 0.02 * scale, "{row:?}");
+    }
+    let record = |files: &BTreeMap<String, Vec<u8>>| -> Value {
+        serde_json::from_slice(&files["run.json"]).unwrap()
+    };
+    let searched = &record(&fine)["finer_search"];
+    assert!((96..160).contains(&searched["rotations"].as_u64().unwrap()));
+    assert!(record(&coarse)["finer_search"].is_null());
+}
+
 #[test]
 fn a_recorded_run_repeats_to_the_byte() {
     let folder = place();

@@ -86,6 +86,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             "cpu_features",
             "effects",
             "error",
+            "finer_search",
             "inputs",
             "machine",
             "match",

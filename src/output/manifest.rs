@@ -13,6 +13,7 @@ use super::input_record::{InputRecord, NativeRecord};
 use super::run_options::RunOptions;
 use super::staging::{StagingError, write_json};
 use crate::evaluate::MatchReport;
+use crate::search::coarse_to_fine::FineSearched;
 use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
 use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
@@ -153,6 +154,7 @@ pub struct Manifest<'a> {
     plan: &'a DockPlan,
     rank: usize,
     effects: &'a [EffectCost],
+    finer_search: Option<FineSearched>,
     error: ErrorRecord,
     results: Results,
     chains: Option<&'a ChainMap>,
@@ -201,6 +203,7 @@ impl<'a> Manifest<'a> {
             plan: parts.plan,
             rank: parts.outcome.rank,
             effects: &parts.outcome.effects,
+            finer_search: parts.outcome.fine,
             error: ErrorRecord {
                 measured: parts.outcome.error,
                 lifted_axis: parts.outcome.rank_error,

@@ -12,9 +12,10 @@ use super::scan::{Quartet, scan};
 use knotdock_scoring::engine::CpuEngine;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// What a finer search covered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FineSearched {
     /// Rotations of the finer set that were searched.
     pub rotations: usize,

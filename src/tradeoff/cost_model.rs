@@ -53,7 +53,7 @@ const THINNING: f64 = 0.42;
 /// Share of the poses that are scored for each unit of the tolerance, likewise.
 const DOUBTFUL: f64 = 5.0;
 /// A finer rotation in rotations: it shares the ligand's transform with no other. As measured on the example pair.
-const FINE: f64 = 2.0;
+const FINE: f64 = 2.1;
 /// Knots about which neighbours are counted.
 const PROBED: usize = 64;
 
