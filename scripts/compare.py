@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares benchmark runs with different settings: success, its uncertainty, what each setting gains on the first, and its cost.
 
-    python3 scripts/compare.py shape=runs/shape all=runs/all ... [--ranking poses] [--resamples 10000] [--output FILE]
+    python3 scripts/compare.py shape=runs/shape all=runs/fold0,runs/fold1 ... [--ranking poses] [--resamples 10000] [--output FILE]
 
-Each folder is the --out of a `scripts/benchmark.py` run; pairs and seeds that all of them hold are compared. Success among the first N
+Each folder (or several, with commas between them, which hold a setting's pairs together) is the --out of a `scripts/benchmark.py` run; pairs and seeds that all of them hold are compared. Success among the first N
 is the number of pairs, as the mean over seeds. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
 a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none.
 
@@ -23,7 +23,7 @@ CRITERIA = (("acceptable", "first_acceptable_rank"), ("near-native", "first_near
 
 def main():
     options = parse_arguments()
-    runs = {name: read(folder / f"{options.ranking}.csv") for name, folder in options.runs}
+    runs = {name: read(folders, options.ranking) for name, folders in options.runs}
     shared = set.intersection(*(set(rows) for rows in runs.values()))
     pairs = sorted({pair for pair, _ in shared})
     seeds = sorted({seed for _, seed in shared})
@@ -67,7 +67,7 @@ def main():
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("runs", nargs="+", type=named, metavar="NAME=FOLDER", help="a setting's name and the folder of its runs")
+    parser.add_argument("runs", nargs="+", type=named, metavar="NAME=FOLDER[,FOLDER]", help="a setting's name and the folder or folders of its runs")
     parser.add_argument("--ranking", default="poses", choices=("poses", "clusters"))
     parser.add_argument("--resamples", type=int, default=10000, help="draws of the bootstrap (default: 10000)")
     parser.add_argument("--output", type=Path, help="write the table to a file, too")
@@ -75,19 +75,20 @@ def parse_arguments():
 
 
 def named(text):
-    name, equals, folder = text.partition("=")
-    if not (name and equals and folder):
+    name, equals, folders = text.partition("=")
+    if not (name and equals and folders):
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FOLDER")
-    return name, Path(folder)
+    return name, [Path(folder) for folder in folders.split(",")]
 
 
-def read(path):
+def read(folders, ranking="poses"):
     """Rows by pair and seed; what was not found has an infinite rank."""
     rows = {}
-    with open(path, newline="") as file:
-        for row in csv.DictReader(file):
-            ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
-            rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}
+    for folder in folders:
+        with open(folder / f"{ranking}.csv", newline="") as file:
+            for row in csv.DictReader(file):
+                ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
+                rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}
     return rows
 
 

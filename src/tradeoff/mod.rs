@@ -8,6 +8,7 @@
 pub mod advice;
 mod agreement;
 pub mod calibrate;
+mod change;
 pub mod choice;
 pub mod cost_model;
 pub mod drawing;
@@ -15,6 +16,7 @@ mod front;
 pub mod measured;
 pub mod pair;
 pub mod plot;
+mod raster;
 pub mod settings;
 pub mod sweep;
 
