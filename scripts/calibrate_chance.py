@@ -1,0 +1,302 @@
+#!/usr/bin/env python3
+"""Calibrates the chance, told by `knotdock dock`, that one of a run's first ten clusters is acceptable.
+
+    python3 scripts/calibrate_chance.py DIR RUNS [RUNS ...] --eval RUNS [--plot docs/images/reliability.svg]
+
+DIR is the benchmark folder. RUNS are --out folders of `scripts/benchmark.py` with the default effects: on training pairs without a
+relative in eval (split `fit`), each docked with contact potentials derived without it, and under --eval on eval pairs as the
+program is. A training run whose tables name its pair is refused. All turns of a pair (seeds) stand or fall together, and each pair counts once.
+
+A run is a success if the best pose of one of its first ten clusters has a ligand RMSD <= 10 A or an interface RMSD <= 4 A. Its chance
+is a logistic regression on figures of those clusters (FEATURES), whose slopes, for features of unit variance, have a normal prior of
+unit variance; the intercept has none. CANDIDATES, written down before any was fitted, are compared by log loss with each pair left
+out in turn; the lowest is taken and fitted once more to all pairs. What choosing is worth on a pair that had no say is told by
+choosing anew for each pair on the others. On eval nothing is chosen or fitted.
+
+Printed, as Markdown: each candidate's figures, those on eval, bins of the plot, and the constants for src/search/chance.rs. Intervals
+are the middle 95% over pairs drawn anew (bootstrap); those of shares in bins are Wilson's.
+
+Needs Python 3.9 or later and NumPy.
+"""
+
+import argparse
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+from reliability_plot import draw
+
+DEPTH = 10
+RESAMPLES = 10000
+BINS = 5
+# Tables that the program carries, used where a run names no other.
+CARRIED = {
+    "--contact-potential": "scoring/src/effect/contact_potential.csv",
+    "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
+}
+# Recorded options in which runs may differ.
+FREE = {"contact_potential", "fine_contact_potential", "every_pose", "write_top"}
+# Of the first ten clusters, best pose each, in order; none depends on the unit of the score.
+FEATURES = {
+    # How far the best cluster stands out of the run's poses.
+    "top_z": lambda top, counts: top[0]["z_score"],
+    # How far the ten do.
+    "mean_z": lambda top, counts: sum(row["z_score"] for row in top) / DEPTH,
+    # How far the tenth falls behind the first.
+    "drop": lambda top, counts: 1 - top[-1]["cluster_score"] / top[0]["cluster_score"],
+    # How many poses gathered about the ten.
+    "company": lambda top, counts: math.log(sum(row["cluster_size"] for row in top) / DEPTH),
+    # How many did about any.
+    "crowding": lambda top, counts: math.log(counts["poses"] / counts["clusters"]),
+}
+# The first is the base rate.
+CANDIDATES = (
+    (),
+    ("top_z",),
+    ("mean_z",),
+    ("drop",),
+    ("company",),
+    ("crowding",),
+    ("top_z", "company"),
+    ("top_z", "crowding"),
+    ("drop", "company"),
+    ("drop", "crowding"),
+    ("top_z", "drop", "crowding"),
+)
+
+
+def main():
+    options = parse_arguments()
+    with open(options.folder / "manifest.csv", newline="") as file:
+        manifest = {row["id"]: row for row in csv.DictReader(file)}
+    seen = {}
+    train = Sample(read_runs(folder, manifest, "fit", seen) for folder in options.runs)
+    evaluation = Sample(read_runs(folder, manifest, "eval", seen) for folder in options.eval)
+    left_out = {candidate: predict_left_out(train, candidate, train.pairs) for candidate in CANDIDATES}
+    best = choose(train, left_out, train.pairs)
+    base = left_out[()]
+    print(f"Training: {train.told()}. Each pair left out in turn:\n")
+    table = [(name(candidate), chances) for candidate, chances in left_out.items()]
+    table.append(("chosen anew for each pair", predict_chosen(train)))
+    print_measures(train, table, base)
+    print(f"\nChosen: {name(best)}.\n\nEval: {evaluation.told()}. Fitted to all training pairs:\n")
+    models = [(name(candidate), fit(train, candidate, train.pairs)) for candidate in ((), best)]
+    told = [(label, chance(evaluation, model)) for label, model in models]
+    print_measures(evaluation, told, told[0][1])
+    series = [
+        ("training, each pair left out", bins(train, left_out[best])),
+        ("eval", bins(evaluation, told[-1][1])),
+    ]
+    print("\n| pairs of | chance told | mean | share found | pairs |\n|---|---|---|---|---|")
+    for label, rows in series:
+        for low, high, mean, share, interval, pairs in rows:
+            print(f"| {label} | {low:.0%}-{high:.0%} | {mean:.0%} | {share:.0%} [{interval[0]:.0%}, {interval[1]:.0%}] | {pairs:.1f} |")
+    print("\n" + rust(train, best, models[-1][1]))
+    if options.plot:
+        partial = options.plot.with_suffix(".partial")
+        partial.write_text(draw(series))
+        partial.replace(options.plot)
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
+    parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="output folder of benchmark.py on training pairs")
+    parser.add_argument("--eval", type=Path, nargs="+", required=True, metavar="RUNS", help="the same on eval pairs")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="write the reliability plot (SVG)")
+    return parser.parse_args()
+
+
+def name(candidate):
+    return ", ".join(candidate) or "base rate"
+
+
+def read_runs(folder, manifest, split, seen):
+    """(pair, features, success) of every run in a folder."""
+    for record in sorted(folder.glob("*/seed_*/result.json")):
+        pair = record.parent.parent.name
+        result = json.loads(record.read_text())
+        if "error" in result:
+            print(f"({pair}, {record.parent.name} failed and is left out: {result['error'].splitlines()[0]})\n")
+            continue
+        row = manifest[pair]
+        here = "eval" if row["split"] == "eval" else "train" if row["near_eval"].strip() else "fit"
+        if here != split:
+            raise SystemExit(f"{record} is of split {here}, not {split}")
+        if split == "fit":
+            refuse_leak(pair, result["settings"]["options"])
+        run = json.loads((record.parent / "run/run.json").read_text())
+        for option, value in run["options"].items():
+            if option not in FREE and seen.setdefault(option, value) != value:
+                raise SystemExit(f"{record} was docked with {option} {value}, another run with {seen[option]}")
+        off = [effect["effect"] for effect in run["effects"] if not effect["on"]]
+        if off:
+            print(f"({pair} is left out: {', '.join(off)} off)\n")
+            continue
+        with open(record.parent / "run/poses.csv", newline="") as file:
+            rows = [{key: float(row[key]) for key in ("cluster", "cluster_size", "cluster_score", "z_score")} for row in csv.DictReader(file)]
+        # Rows come best first, so the first of a cluster is its best.
+        clusters = {}
+        for row in rows:
+            clusters.setdefault(row["cluster"], row)
+        top = [clusters[number] for number in range(1, DEPTH + 1)]
+        features = {feature: figure(top, run["results"]) for feature, figure in FEATURES.items()}
+        yield pair, features, (result["clusters"]["acceptable"] or math.inf) <= DEPTH
+
+
+def refuse_leak(pair, given):
+    """Ends where a potential was derived from the pair itself."""
+    for option, carried in CARRIED.items():
+        path = Path(given[given.index(option) + 1]) if option in given else Path(__file__).parent.parent / carried
+        with open(path) as file:
+            if any(pair in line.split() for line in file if line.startswith("#")):
+                raise SystemExit(f"{path}, with which {pair} was docked, was derived from {pair}, too")
+
+
+class Sample:
+    """Runs as arrays: the `pair` (index), `success` and `features` of each, and its `weight`, which adds up to one for a pair."""
+
+    def __init__(self, folders):
+        rows = [row for folder in folders for row in folder]
+        names = sorted({pair for pair, _, _ in rows})
+        self.pairs = np.arange(len(names))
+        self.pair = np.array([names.index(pair) for pair, _, _ in rows])
+        self.success = np.array([success for _, _, success in rows], dtype=float)
+        self.features = {feature: np.array([features[feature] for _, features, _ in rows]) for feature in FEATURES}
+        self.weight = 1 / np.bincount(self.pair)[self.pair]
+
+    def columns(self, candidate):
+        return np.column_stack([np.ones(len(self.pair)), *(self.features[feature] for feature in candidate)])
+
+    def told(self):
+        found = self.weight @ self.success
+        return f"{len(self.pairs)} pairs in {len(self.pair)} runs, of which {found:.1f} pairs ({found / len(self.pairs):.0%}) succeed"
+
+
+def fit(sample, candidate, pairs):
+    """The candidate with its intercept and slopes, by Newton's method on the penalised log likelihood of some pairs."""
+    inside = np.isin(sample.pair, pairs)
+    columns, weight, success = sample.columns(candidate)[inside], sample.weight[inside], sample.success[inside]
+    mean = weight @ columns / weight.sum()
+    scale = np.sqrt(weight @ (columns - mean) ** 2 / weight.sum())
+    mean[0], scale[0] = 0, 1
+    columns = (columns - mean) / scale
+    prior = np.diag([0.0] + [1.0] * len(candidate))
+    slopes = np.zeros(len(prior))
+    for _ in range(50):
+        chances = logistic(columns @ slopes)
+        gradient = columns.T @ (weight * (success - chances)) - prior @ slopes
+        curvature = (columns * (weight * chances * (1 - chances))[:, None]).T @ columns + prior
+        step = np.linalg.solve(curvature, gradient)
+        slopes = slopes + step
+        if np.abs(step).max() < 1e-10:
+            break
+    slopes = slopes / scale
+    slopes[0] -= slopes[1:] @ mean[1:]
+    return candidate, slopes
+
+
+def logistic(logit):
+    return 1 / (1 + np.exp(-logit))
+
+
+def chance(sample, model):
+    candidate, slopes = model
+    return logistic(sample.columns(candidate) @ slopes)
+
+
+def predict_left_out(sample, candidate, pairs):
+    """Chance of each run by a fit to the other pairs of some; of runs of no such pair it is not a number."""
+    chances = np.full(len(sample.pair), np.nan)
+    for pair in pairs:
+        runs = sample.pair == pair
+        chances[runs] = chance(sample, fit(sample, candidate, pairs[pairs != pair]))[runs]
+    return chances
+
+
+def choose(sample, left_out, pairs):
+    inside = np.isin(sample.pair, pairs)
+    losses = {candidate: (sample.weight * log_loss(sample, chances))[inside].sum() for candidate, chances in left_out.items()}
+    return min(losses, key=losses.get)
+
+
+def predict_chosen(sample):
+    """Chance of each run by the candidate that leaving out in turn chooses on the other pairs."""
+    chances = np.empty(len(sample.pair))
+    for pair in sample.pairs:
+        others = sample.pairs[sample.pairs != pair]
+        best = choose(sample, {candidate: predict_left_out(sample, candidate, others) for candidate in CANDIDATES}, others)
+        runs = sample.pair == pair
+        chances[runs] = chance(sample, fit(sample, best, others))[runs]
+    return chances
+
+
+def log_loss(sample, chances):
+    return -np.log(np.where(sample.success > 0, chances, 1 - chances))
+
+
+def print_measures(sample, table, base):
+    draws = np.random.default_rng(1).multinomial(len(sample.pairs), np.full(len(sample.pairs), 1 / len(sample.pairs)), RESAMPLES)
+    print("| chance by | log loss | less than the base rate | Brier score | less than the base rate | AUC |\n|---|---|---|---|---|---|")
+    for label, chances in table:
+        cells = []
+        for measure in (log_loss, lambda sample, chances: (sample.success - chances) ** 2):
+            values, gains = measure(sample, chances), measure(sample, base) - measure(sample, chances)
+            cells += [mean_over_pairs(sample, values, draws), mean_over_pairs(sample, gains, draws, "+") if label != "base rate" else ""]
+        # The base rate ranks nothing; that each pair's is without itself would rank it backwards.
+        cells.append(area(sample, chances, draws) if label != "base rate" else "0.50")
+        print(f"| {label} | {' | '.join(cells)} |")
+
+
+def mean_over_pairs(sample, values, draws, sign=""):
+    """Mean over pairs with its interval."""
+    of_pairs = np.bincount(sample.pair, sample.weight * values)
+    low, high = np.percentile(draws @ of_pairs / len(of_pairs), [2.5, 97.5])
+    return f"{of_pairs.mean():{sign}.3f} [{low:{sign}.3f}, {high:{sign}.3f}]"
+
+
+def area(sample, chances, draws):
+    """Share of (success, failure) in which the success was given the higher chance, with its interval."""
+    found, missed = sample.success > 0, sample.success == 0
+    difference = chances[found][:, None] - chances[missed]
+    wins = (difference > 0) + 0.5 * (difference == 0)
+
+    def share(counts):
+        weights = counts[:, sample.pair] * sample.weight
+        total = weights[:, found].sum(axis=1) * weights[:, missed].sum(axis=1)
+        return ((weights[:, found] @ wins) * weights[:, missed]).sum(axis=1)[total > 0] / total[total > 0]
+
+    low, high = np.percentile(share(draws), [2.5, 97.5])
+    return f"{share(np.ones((1, len(sample.pairs))))[0]:.2f} [{low:.2f}, {high:.2f}]"
+
+
+def bins(sample, chances):
+    """Of each bin of the chance told that holds runs: its ends, mean chance, share of successes with Wilson's interval, and pairs."""
+    place = np.minimum((chances * BINS).astype(int), BINS - 1)
+    rows = []
+    for number in np.unique(place):
+        inside = place == number
+        pairs = sample.weight[inside].sum()
+        mean, share = (sample.weight[inside] @ values[inside] / pairs for values in (chances, sample.success))
+        rows.append((number / BINS, (number + 1) / BINS, mean, share, wilson(share, pairs), pairs))
+    return rows
+
+
+def wilson(share, count, z=1.96):
+    """Wilson's 95% interval (J. Am. Stat. Assoc. 22 (1927) 209-212); a pair counts once, however many turns it has."""
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    return middle - half, middle + half
+
+
+def rust(train, candidate, model):
+    constants = [f"/// Fitted to {len(train.pairs)} pairs in {len(train.pair)} runs.", f"const INTERCEPT: f64 = {model[1][0]:.4f};"]
+    constants += [f"const {feature.upper()}_SLOPE: f64 = {slope:.4f};" for feature, slope in zip(candidate, model[1][1:])]
+    return "\n".join(["```rust", *constants, "```"])
+
+
+if __name__ == "__main__":
+    main()
