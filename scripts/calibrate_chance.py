@@ -9,9 +9,12 @@ program is. A training run whose tables name its pair is refused. All turns of a
 
 A run is a success if the best pose of one of its first ten clusters has a ligand RMSD <= 10 A or an interface RMSD <= 4 A. Its chance
 is a logistic regression on figures of those clusters (FEATURES), whose slopes, for features of unit variance, have a normal prior of
-unit variance; the intercept has none. CANDIDATES, written down before any was fitted, are compared by log loss with each pair left
-out in turn; the lowest is taken and fitted once more to all pairs. What choosing is worth on a pair that had no say is told by
-choosing anew for each pair on the others. On eval nothing is chosen or fitted.
+unit variance; the intercept has none. CANDIDATES, each written down before it was fitted, are compared by log loss with each pair left
+out in turn. Taken is the one with the fewest features whose loss is within a standard error of the lowest (Breiman, Friedman, Olshen
+and Stone, Classification and Regression Trees, 1984, section 3.4.3), fitted once more to all pairs. What choosing is worth on a pair
+that had no say is told by choosing anew for each pair on the others. The AUC on training pairs leaves out both pairs of every
+comparison (Airola et al., Comput. Stat. Data Anal. 55 (2011) 1828-1844): with one left out, a chance that knows nothing falls with
+that pair's success and would rank backwards. On eval nothing is chosen or fitted.
 
 Printed, as Markdown: each candidate's figures, those on eval, bins of the plot, and the constants for src/search/chance.rs. Intervals
 are the middle 95% over pairs drawn anew (bootstrap); those of shares in bins are Wilson's.
@@ -37,6 +40,7 @@ CARRIED = {
     "--contact-potential": "scoring/src/effect/contact_potential.csv",
     "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
 }
+COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact")
 # Recorded options in which runs may differ.
 FREE = {"contact_potential", "fine_contact_potential", "every_pose", "write_top"}
 # Of the first ten clusters, best pose each, in order; none depends on the unit of the score.
@@ -51,8 +55,10 @@ FEATURES = {
     "company": lambda top, counts: math.log(sum(row["cluster_size"] for row in top) / DEPTH),
     # How many did about any.
     "crowding": lambda top, counts: math.log(counts["poses"] / counts["clusters"]),
+    # How much of the ten's scores is contact potential, which was made to tell native contacts from others.
+    "contacts": lambda top, counts: sum((row["contact"] + row["fine_contact"]) / row["rank_score"] for row in top) / DEPTH,
 }
-# The first is the base rate.
+# The first is the base rate. Those with `contacts` joined after a look at the others on 38 of the pairs.
 CANDIDATES = (
     (),
     ("top_z",),
@@ -65,6 +71,8 @@ CANDIDATES = (
     ("drop", "company"),
     ("drop", "crowding"),
     ("top_z", "drop", "crowding"),
+    ("contacts",),
+    ("contacts", "crowding"),
 )
 
 
@@ -79,12 +87,12 @@ def main():
     best = choose(train, left_out, train.pairs)
     base = left_out[()]
     print(f"Training: {train.told()}. Each pair left out in turn:\n")
-    table = [(name(candidate), chances) for candidate, chances in left_out.items()]
-    table.append(("chosen anew for each pair", predict_chosen(train)))
+    table = [(name(candidate), chances, comparisons_left_out(train, candidate)) for candidate, chances in left_out.items()]
+    table.append(("chosen anew for each pair", predict_chosen(train), None))
     print_measures(train, table, base)
     print(f"\nChosen: {name(best)}.\n\nEval: {evaluation.told()}. Fitted to all training pairs:\n")
     models = [(name(candidate), fit(train, candidate, train.pairs)) for candidate in ((), best)]
-    told = [(label, chance(evaluation, model)) for label, model in models]
+    told = [(label, chances, comparisons(evaluation, chances)) for label, model in models for chances in [chance(evaluation, model)]]
     print_measures(evaluation, told, told[0][1])
     series = [
         ("training, each pair left out", bins(train, left_out[best])),
@@ -137,7 +145,7 @@ def read_runs(folder, manifest, split, seen):
             print(f"({pair} is left out: {', '.join(off)} off)\n")
             continue
         with open(record.parent / "run/poses.csv", newline="") as file:
-            rows = [{key: float(row[key]) for key in ("cluster", "cluster_size", "cluster_score", "z_score")} for row in csv.DictReader(file)]
+            rows = [{key: float(row[key]) for key in COLUMNS} for row in csv.DictReader(file)]
         # Rows come best first, so the first of a cluster is its best.
         clusters = {}
         for row in rows:
@@ -219,8 +227,13 @@ def predict_left_out(sample, candidate, pairs):
 
 def choose(sample, left_out, pairs):
     inside = np.isin(sample.pair, pairs)
-    losses = {candidate: (sample.weight * log_loss(sample, chances))[inside].sum() for candidate, chances in left_out.items()}
-    return min(losses, key=losses.get)
+    losses = {
+        candidate: np.bincount(sample.pair[inside], (sample.weight * log_loss(sample, chances))[inside])[pairs]
+        for candidate, chances in left_out.items()
+    }
+    lowest = min(losses.values(), key=np.sum)
+    within = lambda loss: np.mean(loss - lowest) <= np.std(loss - lowest, ddof=1) / math.sqrt(len(pairs))
+    return min((candidate for candidate in losses if within(losses[candidate])), key=lambda candidate: (len(candidate), losses[candidate].sum()))
 
 
 def predict_chosen(sample):
@@ -238,16 +251,31 @@ def log_loss(sample, chances):
     return -np.log(np.where(sample.success > 0, chances, 1 - chances))
 
 
+def comparisons(sample, chances):
+    """Of each two runs, first by second: 1 where the first was given the higher chance, 1/2 where both the same, else 0."""
+    return 0.5 + 0.5 * np.sign(chances[:, None] - chances)
+
+
+def comparisons_left_out(sample, candidate):
+    """The same, each by a fit to all but the two runs' pairs."""
+    wins = np.empty((len(sample.pair), len(sample.pair)))
+    for first in sample.pairs:
+        for second in sample.pairs[: first + 1]:
+            runs = np.isin(sample.pair, (first, second))
+            chances = chance(sample, fit(sample, candidate, np.setdiff1d(sample.pairs, (first, second))))[runs]
+            wins[np.ix_(runs, runs)] = comparisons(sample, chances)
+    return wins
+
+
 def print_measures(sample, table, base):
     draws = np.random.default_rng(1).multinomial(len(sample.pairs), np.full(len(sample.pairs), 1 / len(sample.pairs)), RESAMPLES)
     print("| chance by | log loss | less than the base rate | Brier score | less than the base rate | AUC |\n|---|---|---|---|---|---|")
-    for label, chances in table:
+    for label, chances, wins in table:
         cells = []
         for measure in (log_loss, lambda sample, chances: (sample.success - chances) ** 2):
             values, gains = measure(sample, chances), measure(sample, base) - measure(sample, chances)
             cells += [mean_over_pairs(sample, values, draws), mean_over_pairs(sample, gains, draws, "+") if label != "base rate" else ""]
-        # The base rate ranks nothing; that each pair's is without itself would rank it backwards.
-        cells.append(area(sample, chances, draws) if label != "base rate" else "0.50")
+        cells.append("" if wins is None else area(sample, wins, draws))
         print(f"| {label} | {' | '.join(cells)} |")
 
 
@@ -258,11 +286,10 @@ def mean_over_pairs(sample, values, draws, sign=""):
     return f"{of_pairs.mean():{sign}.3f} [{low:{sign}.3f}, {high:{sign}.3f}]"
 
 
-def area(sample, chances, draws):
+def area(sample, wins, draws):
     """Share of (success, failure) in which the success was given the higher chance, with its interval."""
     found, missed = sample.success > 0, sample.success == 0
-    difference = chances[found][:, None] - chances[missed]
-    wins = (difference > 0) + 0.5 * (difference == 0)
+    wins = wins[np.ix_(found, missed)]
 
     def share(counts):
         weights = counts[:, sample.pair] * sample.weight
