@@ -1,5 +1,6 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
+use super::chance::chance;
 use super::cluster::RigidBody;
 use super::costs::costs;
 use super::options::SearchError;
@@ -190,6 +191,7 @@ fn dock_in_pool(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
+        chance: chance(options, &on, kept, ranking.clusters),
         error,
         rank_error,
         rank: engine.rank(),
