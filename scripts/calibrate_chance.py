@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Calibrates the chance, told by `knotdock dock`, that one of a run's first ten clusters is acceptable.
 
-    python3 scripts/calibrate_chance.py DIR RUNS [RUNS ...] --eval RUNS [--plot docs/images/reliability.svg]
+    python3 scripts/calibrate_chance.py DIR RUNS [RUNS ...] --eval RUNS [--plot docs/images/reliability.svg] [--page docs/ranking.md]
 
 DIR is the benchmark folder. RUNS are --out folders of `scripts/benchmark.py` with the default effects: on training pairs without a
 relative in eval (split `fit`), each docked with contact potentials derived without it, and under --eval on eval pairs as the
@@ -16,8 +16,8 @@ that had no say is told by choosing anew for each pair on the others. The AUC on
 comparison (Airola et al., Comput. Stat. Data Anal. 55 (2011) 1828-1844): with one left out, a chance that knows nothing falls with
 that pair's success and would rank backwards. On eval nothing is chosen or fitted.
 
-Printed, as Markdown: each candidate's figures, those on eval, bins of the plot, and the constants for src/search/chance.rs. Intervals
-are the middle 95% over pairs drawn anew (bootstrap); those of shares in bins are Wilson's.
+Told, as Markdown, on standard output or as what follows "## Figures" on a page: each candidate's figures, those on eval, bins of the
+plot, and the constants for src/search/chance.rs. probability_scores.py says how figures and intervals are taken.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -26,15 +26,15 @@ import argparse
 import csv
 import json
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
 
+from probability_scores import bins, comparisons, log_loss, measures
 from reliability_plot import draw
 
 DEPTH = 10
-RESAMPLES = 10000
-BINS = 5
 # Tables that the program carries, used where a run names no other.
 CARRIED = {
     "--contact-potential": "scoring/src/effect/contact_potential.csv",
@@ -81,32 +81,44 @@ def main():
     with open(options.folder / "manifest.csv", newline="") as file:
         manifest = {row["id"]: row for row in csv.DictReader(file)}
     seen = {}
-    train = Sample(read_runs(folder, manifest, "fit", seen) for folder in options.runs)
-    evaluation = Sample(read_runs(folder, manifest, "eval", seen) for folder in options.eval)
+    train = Sample(read_runs(options.runs, manifest, "fit", seen))
+    evaluation = Sample(read_runs(options.eval, manifest, "eval", seen))
     left_out = {candidate: predict_left_out(train, candidate, train.pairs) for candidate in CANDIDATES}
     best = choose(train, left_out, train.pairs)
     base = left_out[()]
-    print(f"Training: {train.told()}. Each pair left out in turn:\n")
     table = [(name(candidate), chances, comparisons_left_out(train, candidate)) for candidate, chances in left_out.items()]
     table.append(("chosen anew for each pair", predict_chosen(train), None))
-    print_measures(train, table, base)
-    print(f"\nChosen: {name(best)}.\n\nEval: {evaluation.told()}. Fitted to all training pairs:\n")
-    models = [(name(candidate), fit(train, candidate, train.pairs)) for candidate in ((), best)]
-    told = [(label, chances, comparisons(evaluation, chances)) for label, model in models for chances in [chance(evaluation, model)]]
-    print_measures(evaluation, told, told[0][1])
-    series = [
-        ("training, each pair left out", bins(train, left_out[best])),
-        ("eval", bins(evaluation, told[-1][1])),
-    ]
-    print("\n| pairs of | chance told | mean | share found | pairs |\n|---|---|---|---|---|")
+    lines = [f"Training: {train.told()}. Each pair left out in turn:", "", *measures(train, table, base), ""]
+    lines += [f"Chosen: {name(best)}.", "", f"Eval: {evaluation.told()}. Fitted to all training pairs:", ""]
+    models = {name(candidate): fit(train, candidate, train.pairs) for candidate in ((), best)}
+    told = {label: chance(evaluation, model) for label, model in models.items()}
+    lines += measures(evaluation, [(label, chances, comparisons(evaluation, chances)) for label, chances in told.items()], told[name(())])
+    series = [("training, each pair left out", bins(train, left_out[best])), ("eval", bins(evaluation, told[name(best)]))]
+    lines += ["", "| pairs of | chance told | mean | share found | pairs |", "|---|---|---|---|---|"]
     for label, rows in series:
         for low, high, mean, share, interval, pairs in rows:
-            print(f"| {label} | {low:.0%}-{high:.0%} | {mean:.0%} | {share:.0%} [{interval[0]:.0%}, {interval[1]:.0%}] | {pairs:.1f} |")
-    print("\n" + rust(train, best, models[-1][1]))
+            found = f"{share:.0%} [{interval[0]:.0%}, {interval[1]:.0%}]"
+            lines.append(f"| {label} | {low:.0%}-{high:.0%} | {mean:.0%} | {found} | {pairs:.1f} |")
+    lines += ["", *rust(train, models[name(best)]), ""]
+    tell(options, "\n".join(lines), draw(series))
+
+
+def tell(options, text, plot):
     if options.plot:
-        partial = options.plot.with_suffix(".partial")
-        partial.write_text(draw(series))
-        partial.replace(options.plot)
+        write(options.plot, plot)
+    if options.page:
+        head, heading, _ = options.page.read_text().partition("\n## Figures\n")
+        if not heading:
+            raise SystemExit(f'{options.page} has no heading "## Figures"')
+        write(options.page, f"{head}{heading}\n{text}")
+    else:
+        print(text, end="")
+
+
+def write(path, text):
+    partial = path.with_suffix(".partial")
+    partial.write_text(text)
+    partial.replace(path)
 
 
 def parse_arguments():
@@ -115,6 +127,7 @@ def parse_arguments():
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="output folder of benchmark.py on training pairs")
     parser.add_argument("--eval", type=Path, nargs="+", required=True, metavar="RUNS", help="the same on eval pairs")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write the reliability plot (SVG)")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="put the figures on this page")
     return parser.parse_args()
 
 
@@ -122,13 +135,13 @@ def name(candidate):
     return ", ".join(candidate) or "base rate"
 
 
-def read_runs(folder, manifest, split, seen):
-    """(pair, features, success) of every run in a folder."""
-    for record in sorted(folder.glob("*/seed_*/result.json")):
-        pair = record.parent.parent.name
+def read_runs(folders, manifest, split, seen):
+    """(pair, features, success) of every run in some folders; a turn of a pair counts once."""
+    records = {record.parts[-3:]: record for folder in folders for record in folder.glob("*/seed_*/result.json")}
+    for (pair, _, _), record in sorted(records.items()):
         result = json.loads(record.read_text())
         if "error" in result:
-            print(f"({pair}, {record.parent.name} failed and is left out: {result['error'].splitlines()[0]})\n")
+            print(f"{pair}, {record.parent.name} failed and is left out: {result['error']}", file=sys.stderr)
             continue
         row = manifest[pair]
         here = "eval" if row["split"] == "eval" else "train" if row["near_eval"].strip() else "fit"
@@ -142,7 +155,7 @@ def read_runs(folder, manifest, split, seen):
                 raise SystemExit(f"{record} was docked with {option} {value}, another run with {seen[option]}")
         off = [effect["effect"] for effect in run["effects"] if not effect["on"]]
         if off:
-            print(f"({pair} is left out: {', '.join(off)} off)\n")
+            print(f"{pair} is left out: {', '.join(off)} off", file=sys.stderr)
             continue
         with open(record.parent / "run/poses.csv", newline="") as file:
             rows = [{key: float(row[key]) for key in COLUMNS} for row in csv.DictReader(file)]
@@ -167,8 +180,8 @@ def refuse_leak(pair, given):
 class Sample:
     """Runs as arrays: the `pair` (index), `success` and `features` of each, and its `weight`, which adds up to one for a pair."""
 
-    def __init__(self, folders):
-        rows = [row for folder in folders for row in folder]
+    def __init__(self, runs):
+        rows = list(runs)
         names = sorted({pair for pair, _, _ in rows})
         self.pairs = np.arange(len(names))
         self.pair = np.array([names.index(pair) for pair, _, _ in rows])
@@ -247,15 +260,6 @@ def predict_chosen(sample):
     return chances
 
 
-def log_loss(sample, chances):
-    return -np.log(np.where(sample.success > 0, chances, 1 - chances))
-
-
-def comparisons(sample, chances):
-    """Of each two runs, first by second: 1 where the first was given the higher chance, 1/2 where both the same, else 0."""
-    return 0.5 + 0.5 * np.sign(chances[:, None] - chances)
-
-
 def comparisons_left_out(sample, candidate):
     """The same, each by a fit to all but the two runs' pairs."""
     wins = np.empty((len(sample.pair), len(sample.pair)))
@@ -267,62 +271,11 @@ def comparisons_left_out(sample, candidate):
     return wins
 
 
-def print_measures(sample, table, base):
-    draws = np.random.default_rng(1).multinomial(len(sample.pairs), np.full(len(sample.pairs), 1 / len(sample.pairs)), RESAMPLES)
-    print("| chance by | log loss | less than the base rate | Brier score | less than the base rate | AUC |\n|---|---|---|---|---|---|")
-    for label, chances, wins in table:
-        cells = []
-        for measure in (log_loss, lambda sample, chances: (sample.success - chances) ** 2):
-            values, gains = measure(sample, chances), measure(sample, base) - measure(sample, chances)
-            cells += [mean_over_pairs(sample, values, draws), mean_over_pairs(sample, gains, draws, "+") if label != "base rate" else ""]
-        cells.append("" if wins is None else area(sample, wins, draws))
-        print(f"| {label} | {' | '.join(cells)} |")
-
-
-def mean_over_pairs(sample, values, draws, sign=""):
-    """Mean over pairs with its interval."""
-    of_pairs = np.bincount(sample.pair, sample.weight * values)
-    low, high = np.percentile(draws @ of_pairs / len(of_pairs), [2.5, 97.5])
-    return f"{of_pairs.mean():{sign}.3f} [{low:{sign}.3f}, {high:{sign}.3f}]"
-
-
-def area(sample, wins, draws):
-    """Share of (success, failure) in which the success was given the higher chance, with its interval."""
-    found, missed = sample.success > 0, sample.success == 0
-    wins = wins[np.ix_(found, missed)]
-
-    def share(counts):
-        weights = counts[:, sample.pair] * sample.weight
-        total = weights[:, found].sum(axis=1) * weights[:, missed].sum(axis=1)
-        return ((weights[:, found] @ wins) * weights[:, missed]).sum(axis=1)[total > 0] / total[total > 0]
-
-    low, high = np.percentile(share(draws), [2.5, 97.5])
-    return f"{share(np.ones((1, len(sample.pairs))))[0]:.2f} [{low:.2f}, {high:.2f}]"
-
-
-def bins(sample, chances):
-    """Of each bin of the chance told that holds runs: its ends, mean chance, share of successes with Wilson's interval, and pairs."""
-    place = np.minimum((chances * BINS).astype(int), BINS - 1)
-    rows = []
-    for number in np.unique(place):
-        inside = place == number
-        pairs = sample.weight[inside].sum()
-        mean, share = (sample.weight[inside] @ values[inside] / pairs for values in (chances, sample.success))
-        rows.append((number / BINS, (number + 1) / BINS, mean, share, wilson(share, pairs), pairs))
-    return rows
-
-
-def wilson(share, count, z=1.96):
-    """Wilson's 95% interval (J. Am. Stat. Assoc. 22 (1927) 209-212); a pair counts once, however many turns it has."""
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    return middle - half, middle + half
-
-
-def rust(train, candidate, model):
-    constants = [f"/// Fitted to {len(train.pairs)} pairs in {len(train.pair)} runs.", f"const INTERCEPT: f64 = {model[1][0]:.4f};"]
-    constants += [f"const {feature.upper()}_SLOPE: f64 = {slope:.4f};" for feature, slope in zip(candidate, model[1][1:])]
-    return "\n".join(["```rust", *constants, "```"])
+def rust(train, model):
+    candidate, (intercept, *slopes) = model
+    lines = [f"// {len(train.pairs)} pairs in {len(train.pair)} runs.", f"const INTERCEPT: f64 = {intercept:.4f};"]
+    lines += [f"const {feature.upper()}_SLOPE: f64 = {slope:.4f};" for feature, slope in zip(candidate, slopes)]
+    return ["For src/search/chance.rs:", "", "```rust", *lines, "```"]
 
 
 if __name__ == "__main__":
