@@ -94,6 +94,10 @@ def main():
     told = {label: chance(evaluation, model) for label, model in models.items()}
     lines += measures(evaluation, [(label, chances, comparisons(evaluation, chances)) for label, chances in told.items()], told[name(())])
     series = [("training, each pair left out", bins(train, left_out[best])), ("eval", bins(evaluation, told[name(best)]))]
+    if not best:
+        # What it would look like to tell pairs apart all the same.
+        tempting = min(CANDIDATES[1:], key=lambda candidate: losses(train, left_out[candidate], train.pairs).sum())
+        series.append((f"training, by {name(tempting)}: not taken", bins(train, left_out[tempting])))
     lines += ["", "| pairs of | chance told | mean | share found | pairs |", "|---|---|---|---|---|"]
     for label, rows in series:
         for low, high, mean, share, interval, pairs in rows:
@@ -239,14 +243,17 @@ def predict_left_out(sample, candidate, pairs):
 
 
 def choose(sample, left_out, pairs):
-    inside = np.isin(sample.pair, pairs)
-    losses = {
-        candidate: np.bincount(sample.pair[inside], (sample.weight * log_loss(sample, chances))[inside])[pairs]
-        for candidate, chances in left_out.items()
-    }
-    lowest = min(losses.values(), key=np.sum)
+    """The candidate with the fewest features within a standard error of the lowest loss; of several the one with the lowest."""
+    of = {candidate: losses(sample, chances, pairs) for candidate, chances in left_out.items()}
+    lowest = min(of.values(), key=np.sum)
     within = lambda loss: np.mean(loss - lowest) <= np.std(loss - lowest, ddof=1) / math.sqrt(len(pairs))
-    return min((candidate for candidate in losses if within(losses[candidate])), key=lambda candidate: (len(candidate), losses[candidate].sum()))
+    return min((candidate for candidate in of if within(of[candidate])), key=lambda candidate: (len(candidate), of[candidate].sum()))
+
+
+def losses(sample, chances, pairs):
+    """Log loss of each of some pairs."""
+    inside = np.isin(sample.pair, pairs)
+    return np.bincount(sample.pair[inside], (sample.weight * log_loss(sample, chances))[inside])[pairs]
 
 
 def predict_chosen(sample):
@@ -273,8 +280,12 @@ def comparisons_left_out(sample, candidate):
 
 def rust(train, model):
     candidate, (intercept, *slopes) = model
-    lines = [f"// {len(train.pairs)} pairs in {len(train.pair)} runs.", f"const INTERCEPT: f64 = {intercept:.4f};"]
-    lines += [f"const {feature.upper()}_SLOPE: f64 = {slope:.4f};" for feature, slope in zip(candidate, slopes)]
+    lines = [f"// {len(train.pairs)} pairs in {len(train.pair)} runs."]
+    if candidate:
+        lines.append(f"const INTERCEPT: f64 = {intercept:.4f};")
+        lines += [f"const {feature.upper()}_SLOPE: f64 = {slope:.4f};" for feature, slope in zip(candidate, slopes)]
+    else:
+        lines.append(f"pub const SHARE: f64 = {logistic(intercept):.3f};")
     return ["For src/search/chance.rs:", "", "```rust", *lines, "```"]
 
 

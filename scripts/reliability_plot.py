@@ -1,7 +1,7 @@
 """The reliability plot of scripts/calibrate_chance.py as SVG: the chance told against the share that came true."""
 
 LEFT, TOP, SIDE = 76, 44, 380
-COLOURS = ("#0072b2", "#d55e00")
+COLOURS = ("#0072b2", "#d55e00", "#999999")
 TICKS = range(0, 101, 20)
 
 
@@ -23,16 +23,17 @@ def draw(series):
     ]
     key = LEFT + SIDE + 24
     for row, ((label, bins), colour) in enumerate(zip(series, COLOURS)):
-        # Series stand a little apart, so that intervals do not hide each other.
-        shift = 5 * (2 * row - 1)
+        # Series stand a little apart, so that intervals do not hide each other; numbers of the first are on its left.
+        shift, side, anchor = ((-7, -9, "end"), (7, 9, "start"), (0, 9, "start"))[row]
         for _, _, mean, share, (low, high), pairs in bins:
             (x, y), (_, bottom), (_, top) = place(mean, share), place(mean, low), place(mean, high)
             x += shift
             marks += [line((x, bottom), (x, top), colour, ' stroke-width="1.5"'), disc(x, y, colour)]
-            marks.append(text(x + (9 if row else -9), y, f"{pairs:.0f}", "start" if row else "end", fill=colour))
+            halo = ' paint-order="stroke" stroke="white" stroke-width="4"'
+            marks.append(text(x + side, y, f"{pairs:.0f}", anchor, halo, colour))
         marks += [disc(key, TOP + 12 + 24 * row, colour), text(key + 14, TOP + 12 + 24 * row, label, "start")]
     notes = ("numbers: pairs in the bin", "bars: 95%, Wilson", "dashed: as told")
-    marks += [text(key - 5, TOP + 72 + 20 * row, note, "start", fill="#666666") for row, note in enumerate(notes)]
+    marks += [text(key - 5, TOP + 24 * len(series) + 24 + 20 * row, note, "start", fill="#666666") for row, note in enumerate(notes)]
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
         'font-family="Noto Sans Mono, DejaVu Sans Mono, Menlo, Consolas, monospace" font-size="13">\n'

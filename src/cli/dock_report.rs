@@ -50,10 +50,10 @@ pub fn told(outcome: &DockOutcome) -> String {
     lines.join("\n")
 }
 
-/// The chance that a ranking is worth looking into.
+/// The chance that a ranking holds what is looked for, and what it rests on.
 pub fn chance_told(chance: f64) -> String {
     format!(
-        "Chance that one of the first ten clusters is acceptable: {:.0}%",
+        "Chance that one of the first ten clusters is acceptable: {:.0}%, as of known pairs docked like this",
         100.0 * chance
     )
 }

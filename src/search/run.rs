@@ -191,7 +191,7 @@ fn dock_in_pool(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
-        chance: chance(options, &on, kept, ranking.clusters),
+        chance: chance(options, &on, ranking.clusters),
         error,
         rank_error,
         rank: engine.rank(),
