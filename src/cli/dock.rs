@@ -19,7 +19,7 @@ use super::arguments::{above_zero, duration};
 use super::bodies::Bodies;
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{assumed, told};
+use super::dock_report::{assumed, chance_told, told};
 use super::failure::Failure;
 use super::machine_arguments::{MachineArguments, machine};
 use super::memory;
@@ -207,6 +207,7 @@ impl Dock {
                 poses: outcome.poses_kept,
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
+                chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
@@ -230,6 +231,9 @@ impl Dock {
             ));
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
+        if let Some(chance) = outcome.chance {
+            console.say(format!("\n{}", chance_told(chance)));
+        }
         console.say(format!(
             "\n{} rows in {}",
             outcome.poses.len(),

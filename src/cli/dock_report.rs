@@ -56,6 +56,14 @@ pub fn told(outcome: &DockOutcome) -> String {
     lines.join("\n")
 }
 
+/// The chance that a ranking holds what is looked for, and what it rests on.
+pub fn chance_told(chance: f64) -> String {
+    format!(
+        "Chance that one of the first ten clusters is acceptable: {:.0}%, as of known pairs docked like this",
+        100.0 * chance
+    )
+}
+
 /// What was assumed of one side's charges and contact types, where effects use them.
 pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
     let names = |unknown: &BTreeMap<String, usize>| {

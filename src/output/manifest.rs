@@ -72,6 +72,8 @@ pub struct Results {
     pub clusters: usize,
     /// Poses that were kept.
     pub poses: usize,
+    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated.
+    pub chance_acceptable_in_10: Option<f64>,
 }
 
 /// What an effect cost.

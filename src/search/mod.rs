@@ -1,5 +1,6 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
+pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
 mod costs;

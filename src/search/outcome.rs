@@ -110,6 +110,8 @@ pub struct DockOutcome {
     pub poses_kept: usize,
     /// Number of clusters.
     pub clusters: usize,
+    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated, [`super::chance::chance`].
+    pub chance: Option<f64>,
     /// The fast path's error as measured.
     pub error: MeasuredError,
     /// Rank of the compressed functions in use.

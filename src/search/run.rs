@@ -1,5 +1,6 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
+use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
 use super::costs::costs;
@@ -196,6 +197,7 @@ fn dock_in_pool(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
+        chance: chance(options, &on, ranking.clusters),
         error,
         rank_error,
         rank: engine.rank(),

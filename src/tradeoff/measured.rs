@@ -104,7 +104,7 @@ pub struct Refused {
 /// All that a sweep measured.
 #[derive(Clone, Debug)]
 pub struct Tradeoff {
-    /// The settings that ran: the default, the reference, then in the order of [`settings`].
+    /// The settings that ran: the default, the reference, then in the order of [`super::settings::settings`].
     pub measured: Vec<Measured>,
     /// Those that did not.
     pub refused: Vec<Refused>,
