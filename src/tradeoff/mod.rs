@@ -7,7 +7,9 @@
 
 pub mod advice;
 mod agreement;
+mod axis;
 pub mod calibrate;
+pub mod chart;
 pub mod choice;
 pub mod cost_model;
 pub mod drawing;
