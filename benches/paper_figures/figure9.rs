@@ -1,9 +1,9 @@
 //! Figure 9: one configuration from m' dominant modes: value and force at one relative place, its time and the error it makes.
 
-use crate::figure7::Whole;
 use crate::report::{Figure, colour_of_grid, grid_name};
 use crate::table::{Cell, Table};
 use crate::timing::least;
+use crate::whole::Whole;
 use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::configuration::Prepared;
 use knotdock_scoring::transform::truncation::Selection;

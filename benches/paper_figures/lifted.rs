@@ -71,12 +71,12 @@ impl Expansion {
             // Zero first, then by pairs, so that the fewest are a first part of all.
             let order = (0..2 * MOST as i32 + 1).map(in_pairs);
             let candidate = Candidate {
-                radial: order
-                    .map(|k| waves(&task.body.radii, k, period))
-                    .collect(),
+                radial: order.map(|k| waves(&task.body.radii, k, period)).collect(),
                 checked: checked.each(|w| {
                     let all = series_at(task, w, low, high, period, MOST);
-                    (0..all.len()).map(|f| all[centered(in_pairs(f as i32), MOST)]).collect()
+                    (0..all.len())
+                        .map(|f| all[centered(in_pairs(f as i32), MOST)])
+                        .collect()
                 }),
             };
             let needed = candidate.needed(&checked, 2).unwrap_or(2 * MOST + 1);
@@ -127,9 +127,8 @@ impl Expansion {
             .map(|q| {
                 let inverse = 1.0 / decomposed.singular_values[q].max(f64::MIN_POSITIVE);
                 let at = |&radius: &f64| {
-                    let rows = (0..NODES).map(|row| {
-                        u[(row, q)] * task.kernel.of_ball(w_of(row), radius)
-                    });
+                    let rows =
+                        (0..NODES).map(|row| u[(row, q)] * task.kernel.of_ball(w_of(row), radius));
                     Complex64::from(rows.sum::<f64>() * inverse)
                 };
                 task.body.radii.iter().map(at).collect()
@@ -202,14 +201,7 @@ fn waves(radii: &[f64], k: i32, period: f64) -> Vec<Complex64> {
 
 /// Coefficients k = -most..=most of the series in r at one frequency. Between the largest radius and the smallest of the next period the
 /// transform is led over smoothly from one continuation to the other, so that the series falls faster than any power.
-fn series_at(
-    task: &Task,
-    w: f64,
-    low: f64,
-    high: f64,
-    period: f64,
-    most: usize,
-) -> Vec<Complex64> {
+fn series_at(task: &Task, w: f64, low: f64, high: f64, period: f64, most: usize) -> Vec<Complex64> {
     let gap = period - (high - low);
     let samples: Vec<f64> = (0..SAMPLES)
         .map(|index| {
@@ -255,14 +247,20 @@ struct Checked {
 impl Checked {
     fn new(task: &Task) -> Self {
         let places = task.frequencies.sample(CHECKED);
-        let all = || places.iter().map(|&place| task.frequencies.frequency(place));
+        let all = || {
+            places
+                .iter()
+                .map(|&place| task.frequencies.frequency(place))
+        };
         let exact: Vec<Complex64> = all()
             .map(|k| exact(task.body, task.kernel, task.edge, k))
             .collect();
         let centers = &task.body.centers;
         let phases = all()
             .map(|k| {
-                let waves = centers.iter().map(|x| Complex64::cis(phase(x, k, task.edge)));
+                let waves = centers
+                    .iter()
+                    .map(|x| Complex64::cis(phase(x, k, task.edge)));
                 waves.collect()
             })
             .collect();

@@ -1,7 +1,7 @@
 //! Figures 7, 8 and 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny against a keyed peg.
 //!
 //! `cargo bench --bench paper_figures` prints the tables and writes them (Markdown, CSV) and the pictures (SVG, PNG) to
-//! `paper_figures` in the folder of Cargo's temporary files; `-- --out FOLDER` elsewhere, `--images docs/images` the SVGs besides, and
+//! `paper_figures` in the folder of Cargo's temporary files; `-- --out FOLDER` elsewhere, `--images docs/images` the pictures besides, and
 //! `--grids 12,15` takes fewer grid sizes. docs/paper_figures.md says what is measured and shows the results.
 //!
 //! - Figure 7 ([`figure7`]): the gap function by FFT, and what is left of it with m' modes.
@@ -21,18 +21,20 @@ mod figure9;
 mod lifted;
 mod report;
 mod scene;
+mod sections;
 mod spectrum;
 mod table;
 mod timing;
 mod ways;
+mod whole;
 
 use clap::Parser;
-use figure7::Whole;
 use scene::Scene;
 use spectrum::Kernel;
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
+use whole::Whole;
 
 /// The paper's Figures 7, 8 and 9, done again.
 #[derive(Parser)]
@@ -40,7 +42,7 @@ struct Options {
     /// Folder for tables and pictures.
     #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/paper_figures"))]
     out: PathBuf,
-    /// Folder that the SVG pictures are written to besides.
+    /// Folder that the documentation's pictures are written to besides.
     #[arg(long)]
     images: Option<PathBuf>,
     /// Grid sizes m, as powers of two divisible by three.
@@ -63,10 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|power| Scene::new(1 << (power / 3)))
         .collect::<Result<Vec<_>, _>>()?;
-    let kernels = scenes
-        .iter()
-        .map(kernel)
-        .collect::<Result<Vec<_>, _>>()?;
+    let kernels = scenes.iter().map(kernel).collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
         println!(
             "m = {}^3: bunny {} balls ({} nodes inside), peg {} ({}), cube of edge {:.3}",
@@ -87,6 +86,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let images = options.images.as_deref();
     let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
     figure7::figure(&correlations).write(&options.out, images)?;
+    // Of the largest grid but one, whose points can still be told apart.
+    if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
+        let picture = sections::sections(whole)?;
+        for folder in [Some(options.out.as_path()), images].into_iter().flatten() {
+            fs::write(folder.join("fig7_sections.png"), &picture)?;
+        }
+    }
     let wholes: Vec<&Whole> = wholes.iter().collect();
     figure9::figure(&wholes).write(&options.out, images)?;
     let pairs: Vec<(&Scene, &Kernel)> = scenes.iter().zip(&kernels).collect();

@@ -14,7 +14,7 @@ use std::error::Error;
 use std::path::Path;
 
 /// Longest edge of the peg.
-const PEG: f64 = 0.6;
+const PEG: f64 = 0.42;
 
 /// Both solids at one grid size.
 pub struct Scene {

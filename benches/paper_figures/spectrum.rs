@@ -32,9 +32,10 @@ impl Body {
     pub fn extent(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let ends = self.centers.iter().zip(&self.radii);
-            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (x, r)| {
-                (low.min(x[axis] - r), high.max(x[axis] + r))
-            });
+            let (low, high) = ends
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (x, r)| {
+                    (low.min(x[axis] - r), high.max(x[axis] + r))
+                });
             high - low
         })
     }

@@ -38,6 +38,7 @@ impl Cell {
             Self::Count(count) => count.to_string(),
             Self::Number(number) => few_digits(*number),
             Self::Scaled(number) => format!("≈ {}", few_digits(*number)),
+            Self::Share(0.0) => "0".to_owned(),
             Self::Share(share) => format!("{share:.1e}"),
             Self::None => "-".to_owned(),
         }
@@ -77,7 +78,7 @@ impl Table {
         text
     }
 
-    /// As CSV. Figures that were scaled up look like the others; a column of their own says which they are.
+    /// As CSV. Figures that were scaled up look like the others there.
     pub fn csv(&self) -> String {
         let mut text = self.header.join(",") + "\n";
         for row in &self.rows {

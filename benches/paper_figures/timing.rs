@@ -4,9 +4,9 @@ use cpu_time::ThreadTime;
 use std::hint::black_box;
 
 /// Seconds of processor time after which no further run is begun, once there are `LEAST` of them.
-const ENOUGH: f64 = 0.25;
+const ENOUGH: f64 = 0.2;
 const LEAST: usize = 2;
-const MOST: usize = 25;
+const MOST: usize = 300;
 
 /// Processor seconds of one call, and what it gave.
 pub fn timed<R>(task: impl FnOnce() -> R) -> (f64, R) {

@@ -9,7 +9,9 @@
 use crate::lifted::Expansion;
 use crate::spectrum::{Body, FrequencyBox};
 use knotdock_scoring::transform::direct;
-use knotdock_scoring::transform::nonequispaced::{Located, Plan, PlanError, TransformError, Workspace};
+use knotdock_scoring::transform::nonequispaced::{
+    Located, Plan, PlanError, TransformError, Workspace,
+};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -77,11 +79,7 @@ impl<'a> Points<'a> {
 
 /// The nonequispaced sums, direct.
 pub fn direct(points: &Points) -> Vec<Complex64> {
-    let sums = direct::forward(
-        &points.centers,
-        &points.weights,
-        points.frequencies.half(),
-    );
+    let sums = direct::forward(&points.centers, &points.weights, points.frequencies.half());
     let mut output = points.values();
     points
         .expansion

@@ -39,10 +39,12 @@ pub enum Style {
     /// A dashed line and hollow discs.
     Dashed,
     /// A dashed line alone.
+    Thin,
+    /// A dashed line alone, to guide the eye: it may leave the axes' range.
     Guide,
     /// Filled discs alone.
     Discs,
-    /// Hollow discs alone.
+    /// Hollow discs alone, larger than the others, which may lie in them.
     HollowDiscs,
 }
 
@@ -68,7 +70,7 @@ pub struct Panel {
     pub across: Axis,
     /// The axis at the left.
     pub up: Axis,
-    /// The curves, later ones over earlier ones. Lines that only guide the eye may leave the axes' range; all others set it.
+    /// The curves, later ones over earlier ones.
     pub series: Vec<Series>,
 }
 
@@ -145,13 +147,18 @@ impl Series {
     }
 
     fn discs(&self, places: &[[f64; 2]], marks: &mut Vec<Mark>) {
-        if self.style == Style::Guide {
+        if matches!(self.style, Style::Thin | Style::Guide) {
             return;
         }
+        let radius = if self.style == Style::HollowDiscs {
+            6.5
+        } else {
+            3.5
+        };
         for &at in places {
             marks.push(Mark::Disc {
                 at,
-                radius: 3.5,
+                radius,
                 colour: self.colour,
                 filled: matches!(self.style, Style::Line | Style::Discs),
             });
