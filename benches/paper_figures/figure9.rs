@@ -1,18 +1,26 @@
-//! Figure 9: one configuration from m' dominant modes: value and force at one relative place, its time and the error it makes.
+//! Figure 9: one configuration from m' dominant modes: value and force at one relative place, its time and the error it makes; and what a
+//! new rotation costs before that, a new spectrum of the peg's balls.
 
+use crate::lifted::{Expansion, Task};
 use crate::report::{Figure, colour_of_grid, grid_name};
+use crate::scene::Scene;
+use crate::spectrum::{FrequencyBox, Kernel};
 use crate::table::{Cell, Table};
 use crate::timing::least;
+use crate::ways::{Points, fast_3d, plan_3d};
 use crate::whole::Whole;
 use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::configuration::Prepared;
 use knotdock_scoring::transform::truncation::Selection;
 use nalgebra::Vector3;
+use std::error::Error;
 
 /// Configurations whose errors are measured.
 const PLACES: usize = 200;
 /// Configurations that are timed in one go: more where each takes less.
 const WORK: usize = 200_000;
+/// Error of a new rotation's spectrum, as a share of its value at frequency zero.
+const TOLERANCE: f64 = 1e-3;
 /// Modes below which the paper computes a configuration in less than a millisecond.
 const PAPER_MODES: f64 = 4096.0;
 
@@ -21,6 +29,7 @@ struct Row {
     power: u32,
     modes: usize,
     seconds: f64,
+    turning: f64,
     rms: f64,
     worst: f64,
 }
@@ -61,7 +70,29 @@ pub fn places(whole: &Whole, count: usize) -> Vec<(Vector3<f64>, f64)> {
         .collect()
 }
 
-fn row(whole: &Whole, power: u32, selection: &Selection, places: &[(Vector3<f64>, f64)]) -> Row {
+/// Seconds of the peg's spectrum at its m' lowest frequencies, by the fast transform after compressing the radius.
+fn turning(scene: &Scene, kernel: &Kernel, power: u32) -> Result<f64, Box<dyn Error>> {
+    let frequencies = FrequencyBox::of_power(power);
+    let expansion = Expansion::compressed(&Task {
+        body: &scene.peg,
+        kernel,
+        edge: scene.edge,
+        frequencies,
+        tolerance: 0.5 * TOLERANCE,
+    });
+    let points = Points::new(&scene.peg, scene.edge, frequencies, &expansion);
+    let mut fast = plan_3d(&points, 0.5 * TOLERANCE)?;
+    fast_3d(&points, &mut fast)?;
+    Ok(least(|| fast_3d(&points, &mut fast)))
+}
+
+fn row(
+    whole: &Whole,
+    power: u32,
+    selection: &Selection,
+    places: &[(Vector3<f64>, f64)],
+    turning: f64,
+) -> Row {
     let prepared = prepared(whole, selection);
     let mut work = prepared.workspace();
     let errors: Vec<f64> = places
@@ -81,25 +112,32 @@ fn row(whole: &Whole, power: u32, selection: &Selection, places: &[(Vector3<f64>
         power,
         modes: selection.modes(),
         seconds: seconds / together as f64,
+        turning,
         rms: (squares / errors.len() as f64).sqrt(),
         worst: errors.iter().copied().fold(0.0, f64::max),
     }
 }
 
 /// The figure's table and picture, from one correlation a grid size.
-pub fn figure(correlations: &[&Whole]) -> Figure {
+///
+/// # Errors
+/// Where a transform cannot be planned.
+pub fn figure(correlations: &[(&Scene, &Kernel, &Whole)]) -> Result<Figure, Box<dyn Error>> {
     let mut rows = Vec::new();
-    for whole in correlations {
+    for (scene, kernel, whole) in correlations {
         let places = places(whole, PLACES);
-        let selections = whole.selections();
-        rows.extend(selections.map(|(power, [dominant, _])| row(whole, power, &dominant, &places)));
+        for (power, [dominant, _]) in whole.selections() {
+            let turning = turning(scene, kernel, power)?;
+            rows.push(row(whole, power, &dominant, &places, turning));
+        }
     }
-    Figure {
+    let wholes: Vec<&Whole> = correlations.iter().map(|(_, _, whole)| *whole).collect();
+    Ok(Figure {
         name: "fig9",
         tables: vec![("configuration", table(&rows))],
-        panels: panels(correlations, &rows),
+        panels: panels(&wholes, &rows),
         columns: 2,
-    }
+    })
 }
 
 fn table(rows: &[Row]) -> Table {
@@ -112,6 +150,7 @@ fn table(rows: &[Row]) -> Table {
             "ns a mode",
             "rms error",
             "largest error",
+            "new rotation (ms)",
         ],
         rows: rows
             .iter()
@@ -124,6 +163,7 @@ fn table(rows: &[Row]) -> Table {
                     Cell::Number(1e9 * row.seconds / row.modes as f64),
                     Cell::Share(row.rms),
                     Cell::Share(row.worst),
+                    Cell::Number(1e3 * row.turning),
                 ]
             })
             .collect(),
@@ -153,6 +193,13 @@ fn panels(correlations: &[&Whole], rows: &[Row]) -> Vec<Panel> {
         style: Style::Guide,
         points: vec![[1.0, 1.0], [1e9, 1.0]],
     }];
+    times.extend(correlations.iter().map(|whole| Series {
+        name: "a new rotation before it".to_owned(),
+        style: Style::Thin,
+        ..curve(whole.grid().per_axis, &|row| {
+            [2f64.powi(row.power as i32), 1e3 * row.turning]
+        })
+    }));
     times.extend(all(&|row| [row.modes as f64, 1e3 * row.seconds]));
     times.push(Series {
         name: "paper: 1 ms at 2^12 modes".to_owned(),

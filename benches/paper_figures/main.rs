@@ -26,6 +26,7 @@ mod spectrum;
 mod table;
 mod timing;
 mod ways;
+mod ways_measured;
 mod whole;
 
 use clap::Parser;
@@ -93,8 +94,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             fs::write(folder.join("fig7_sections.png"), &picture)?;
         }
     }
-    let wholes: Vec<&Whole> = wholes.iter().collect();
-    figure9::figure(&wholes).write(&options.out, images)?;
+    let correlations: Vec<(&Scene, &Kernel, &Whole)> = scenes
+        .iter()
+        .zip(&kernels)
+        .zip(&wholes)
+        .map(|((scene, kernel), whole)| (scene, kernel, whole))
+        .collect();
+    figure9::figure(&correlations)?.write(&options.out, images)?;
+    drop(wholes);
     let pairs: Vec<(&Scene, &Kernel)> = scenes.iter().zip(&kernels).collect();
     figure8::figure(&pairs)?.write(&options.out, images)?;
     eprintln!("written to {}", options.out.display());
