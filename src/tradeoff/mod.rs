@@ -7,8 +7,10 @@
 
 pub mod advice;
 mod agreement;
+mod axis;
 pub mod calibrate;
 mod change;
+pub mod chart;
 pub mod choice;
 pub mod cost_model;
 pub mod drawing;

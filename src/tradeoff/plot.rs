@@ -1,5 +1,6 @@
 //! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
 
+use super::axis::{Scale, tick_text};
 use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
 use super::measured::{FIRST, Measured, Tradeoff};
 use super::settings::Knob;
@@ -143,65 +144,6 @@ fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f
         x += takes;
     }
     y + LINE + 4.0
-}
-
-/// A logarithmic axis: from and to, in powers of ten.
-#[derive(Clone, Copy)]
-struct Scale {
-    low: f64,
-    high: f64,
-}
-
-impl Scale {
-    /// An axis that holds all values with some room, at least from one to five.
-    fn over(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = values
-            .map(f64::log10)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            });
-        if low > high {
-            return Self {
-                low: 0.0,
-                high: 1.0,
-            };
-        }
-        let room = (0.08 * (high - low)).max(0.5 * (0.7 - (high - low)).max(0.1));
-        Self {
-            low: low - room,
-            high: high + room,
-        }
-    }
-
-    /// Place from 0 to 1.
-    fn place(self, value: f64) -> f64 {
-        (value.log10() - self.low) / (self.high - self.low)
-    }
-
-    /// Where numbers stand: at powers of ten, with twos and fives between where few of these are in view.
-    fn ticks(self) -> Vec<f64> {
-        let digits: &[f64] = if self.high - self.low > 2.5 {
-            &[1.0]
-        } else {
-            &[1.0, 2.0, 5.0]
-        };
-        let powers = self.low.floor() as i32..=self.high.ceil() as i32;
-        powers
-            .flat_map(|power| digits.iter().map(move |digit| digit * 10f64.powi(power)))
-            .filter(|tick| (0.0..=1.0).contains(&self.place(*tick)))
-            .collect()
-    }
-}
-
-/// A tick's number, at most five characters.
-fn tick_text(value: f64) -> String {
-    if (0.01..1e5).contains(&value) {
-        // Powers of ten come with their rounding.
-        let text = format!("{value:.2}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{value:.0e}")
-    }
 }
 
 impl Panel<'_> {
@@ -354,28 +296,5 @@ impl Panel<'_> {
                 marks.push(text(at, anchor, colour, name.as_str()));
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_lie_within_the_axis_and_read_as_people_write() {
-        let narrow = Scale::over([3.0, 40.0].into_iter());
-        assert_eq!(narrow.ticks(), [5.0, 10.0, 20.0]);
-        let wide = Scale::over([1e-6, 1e-1].into_iter());
-        assert!(wide.ticks().len() >= 5);
-        for scale in [
-            narrow,
-            wide,
-            Scale::over([7.0].into_iter()),
-            Scale::over(std::iter::empty()),
-        ] {
-            assert!(scale.low < scale.high && !scale.ticks().is_empty());
-        }
-        let texts = [0.5, 10.0, 1e-6, 0.05].map(tick_text);
-        assert_eq!(texts, ["0.5", "10", "1e-6", "0.05"]);
     }
 }

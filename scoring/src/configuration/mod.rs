@@ -78,6 +78,16 @@ pub struct Workspace {
     gather: gather::GatherTables,
 }
 
+impl Workspace {
+    fn new(layout: &Layout, blocks: usize) -> Self {
+        Self {
+            read: read::ReadTables::new(layout),
+            place: place::PlaceTables::new(layout),
+            gather: gather::GatherTables::new(layout, blocks),
+        }
+    }
+}
+
 impl Configuration {
     /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Fold`] says of what: score, slice or sensitivity).
     pub fn new<T: Real>(
@@ -123,11 +133,7 @@ impl Configuration {
 
     /// Buffers; nothing else is allocated by [`Self::gradient`] and [`Prepared::gradient`].
     pub fn workspace(&self) -> Workspace {
-        Workspace {
-            read: read::ReadTables::new(&self.layout),
-            place: place::PlaceTables::new(&self.layout),
-            gather: gather::GatherTables::new(&self.layout, self.blocks.len()),
-        }
+        Workspace::new(&self.layout, self.blocks.len())
     }
 
     /// Value and gradient at a pose: force per Å, torque per radian about the ligand's centre.

@@ -2,8 +2,11 @@
 
 use super::columns::{Harmonic, Layout};
 use super::{Frame, Workspace};
+use crate::transform::modes::ModeSet;
+use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
 use nalgebra::{UnitQuaternion, Vector3};
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// The spectrum of one rotation.
@@ -28,6 +31,29 @@ impl Prepared {
             rotation,
             values,
         }
+    }
+
+    /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place in the set, and
+    /// must be that of a real function. Both bodies have their centres at the origin and the rotation is none, so that a pose's
+    /// translation is the place in the box at which the correlation is read.
+    pub fn from_spectrum(
+        modes: &ModeSet,
+        selection: &Selection,
+        mode: impl Fn(usize) -> Complex64,
+    ) -> Self {
+        let layout = Layout::new(modes, selection);
+        let values = layout.harmonics_of(1.0, mode);
+        let frame = Frame {
+            receptor_center: Vector3::zeros(),
+            ligand_center: Vector3::zeros(),
+            half: Vector3::from(modes.lengths) * 0.5,
+        };
+        Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
+    }
+
+    /// Buffers for [`Self::gradient`], where no [`super::Configuration`] has made them.
+    pub fn workspace(&self) -> Workspace {
+        Workspace::new(&self.layout, 0)
     }
 
     /// Modes in use, conjugates counted.

@@ -7,6 +7,7 @@
 //!   only kz >= 0 is kept; Nyquist planes are left out.
 //! - Real grids are (nx, ny, nz) row-major, z fastest.
 
+pub mod direct;
 pub mod modes;
 pub mod ndft;
 pub mod nfft;

@@ -1,0 +1,116 @@
+//! Figures 7, 8 and 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny against a keyed peg.
+//!
+//! `cargo bench --bench paper_figures` prints the tables and writes them (Markdown, CSV) and the pictures (SVG, PNG) to
+//! `paper_figures` in the folder of Cargo's temporary files; `-- --out FOLDER` elsewhere, `--images docs/images` the pictures besides, and
+//! `--grids 12,15` takes fewer grid sizes. docs/paper_figures.md says what is measured and shows the results.
+//!
+//! - Figure 7 ([`figure7`]): the gap function by FFT, and what is left of it with m' modes.
+//! - Figure 8 ([`figure8`]): a body's spectrum by rasterising and FFT, or from its balls by direct and fast transforms.
+//! - Figure 9 ([`figure9`]): one configuration from m' modes.
+//!
+//! Everything timed runs on one thread in double precision; times are processor time, the least of several runs.
+
+mod correlation;
+mod crossing;
+#[path = "../../structures/examples/docking_parts/mod.rs"]
+#[allow(dead_code)] // Only the peg is used.
+mod docking_parts;
+mod figure7;
+mod figure8;
+mod figure9;
+mod lifted;
+mod report;
+mod scene;
+mod sections;
+mod spectrum;
+mod table;
+mod timing;
+mod ways;
+mod ways_measured;
+mod whole;
+
+use clap::Parser;
+use scene::Scene;
+use spectrum::Kernel;
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use whole::Whole;
+
+/// The paper's Figures 7, 8 and 9, done again.
+#[derive(Parser)]
+struct Options {
+    /// Folder for tables and pictures.
+    #[arg(long, default_value = concat!(env!("CARGO_TARGET_TMPDIR"), "/paper_figures"))]
+    out: PathBuf,
+    /// Folder that the documentation's pictures are written to besides.
+    #[arg(long)]
+    images: Option<PathBuf>,
+    /// Grid sizes m, as powers of two divisible by three.
+    #[arg(long, value_delimiter = ',', default_value = "12,15,18,21",
+          value_parser = clap::value_parser!(u32).range(9..=24))]
+    grids: Vec<u32>,
+    /// What Cargo passes to every benchmark.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse();
+    if let Some(power) = options.grids.iter().find(|&power| power % 3 != 0) {
+        return Err(format!("2^{power} is no cube of a power of two").into());
+    }
+    fs::create_dir_all(&options.out)?;
+    let scenes = options
+        .grids
+        .iter()
+        .map(|power| Scene::new(1 << (power / 3)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let kernels = scenes.iter().map(kernel).collect::<Result<Vec<_>, _>>()?;
+    for scene in &scenes {
+        println!(
+            "m = {}^3: bunny {} balls ({} nodes inside), peg {} ({}), cube of edge {:.3}",
+            scene.per_axis,
+            scene.bunny.radii.len(),
+            scene.inside[0],
+            scene.peg.radii.len(),
+            scene.inside[1],
+            scene.edge
+        );
+    }
+    println!();
+    let wholes: Vec<Whole> = scenes
+        .iter()
+        .zip(&kernels)
+        .map(|(scene, kernel)| Whole::new(scene, kernel))
+        .collect();
+    let images = options.images.as_deref();
+    let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
+    figure7::figure(&correlations).write(&options.out, images)?;
+    // Of the largest grid but one, whose points can still be told apart.
+    if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
+        let picture = sections::sections(whole)?;
+        for folder in [Some(options.out.as_path()), images].into_iter().flatten() {
+            fs::write(folder.join("fig7_sections.png"), &picture)?;
+        }
+    }
+    let correlations: Vec<(&Scene, &Kernel, &Whole)> = scenes
+        .iter()
+        .zip(&kernels)
+        .zip(&wholes)
+        .map(|((scene, kernel), whole)| (scene, kernel, whole))
+        .collect();
+    figure9::figure(&correlations)?.write(&options.out, images)?;
+    drop(wholes);
+    let pairs: Vec<(&Scene, &Kernel)> = scenes.iter().zip(&kernels).collect();
+    figure8::figure(&pairs)?.write(&options.out, images)?;
+    eprintln!("written to {}", options.out.display());
+    Ok(())
+}
+
+/// A kernel for all radii of a scene, those that the series along the radius continues to included, and all frequencies of its grid.
+fn kernel(scene: &Scene) -> Result<Kernel, Box<dyn Error>> {
+    let largest = scene.bunny.radius_range()[1].max(scene.peg.radius_range()[1]);
+    let frequency = 0.5 * 3f64.sqrt() * scene.per_axis as f64 / scene.edge;
+    Ok(Kernel::new(2.1 * largest * frequency)?)
+}

@@ -1,0 +1,84 @@
+//! The two solids as balls: the Stanford bunny and a keyed peg, sampled with one spacing by B&I's Algorithm 1.
+//!
+//! Lengths are in longest edges of the bunny's bounding box. The paper's second solid is not named; its share of the bunny's
+//! inside nodes is 7 to 12% (Table 1), and the peg, which the docking tests make (`structures/examples/docking_parts`), is given a size
+//! that comes near this. It is turned once, so that none of its faces lies along the grid.
+
+use crate::docking_parts::peg_and_hole;
+use crate::spectrum::Body;
+use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
+use knotdock_structures::sampler::decomposition::DecompositionOptions;
+use knotdock_structures::sampler::{Method, SetName, knots, sample};
+use nalgebra::{UnitQuaternion, Vector3};
+use std::error::Error;
+use std::path::Path;
+
+/// Longest edge of the peg.
+const PEG: f64 = 0.42;
+
+/// Both solids at one grid size.
+pub struct Scene {
+    /// Grid points per axis, the cube root of m.
+    pub per_axis: usize,
+    /// The bunny's balls about the middle of its bounding box.
+    pub bunny: Body,
+    /// The peg's, turned.
+    pub peg: Body,
+    /// Nodes of the sampling grids inside the solids: the balls that uniform sampling would need.
+    pub inside: [usize; 2],
+    /// Edge of the periodic cube in which the two are correlated: their extents together, so that nothing wraps around.
+    pub edge: f64,
+}
+
+impl Scene {
+    /// Samples both with the spacing of `per_axis` nodes along the bunny's longest edge.
+    pub fn new(per_axis: usize) -> Result<Self, Box<dyn Error>> {
+        let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
+        let (bunny, nodes) = sampled(&read(&bunny)?.0, 1.0, per_axis)?;
+        let part = peg_and_hole(0.05).ligand;
+        let (peg, _) = from_triangles(&part.positions, &part.triangles)?;
+        let along_peg = 1 + (PEG * (per_axis - 1) as f64).round() as usize;
+        let (mut peg, peg_nodes) = sampled(&peg, PEG, along_peg)?;
+        let turn = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
+        for center in &mut peg.centers {
+            *center = (turn * Vector3::from(*center)).into();
+        }
+        let edge = edge(&bunny, &peg);
+        Ok(Self {
+            per_axis,
+            bunny,
+            peg,
+            inside: [nodes, peg_nodes],
+            edge,
+        })
+    }
+}
+
+/// The set A3 of a mesh scaled to a longest edge, with the number of nodes inside.
+fn sampled(mesh: &Mesh, edge: f64, per_axis: usize) -> Result<(Body, usize), Box<dyn Error>> {
+    let solid = Solid::new(mesh)?;
+    let method = Method::BehandishIlies(DecompositionOptions::default());
+    let sampling = sample(&solid, per_axis, method)?;
+    let frame = solid.frame();
+    let balls = sampling.sets.iter().find(|set| set.name == SetName::A3);
+    let balls = balls.ok_or("the sampler gave no set A3")?;
+    let knots = knots(frame, &balls.balls, None)?;
+    let scale = edge / mesh.extent();
+    let centers = knots
+        .centers
+        .iter()
+        .map(|center| [0, 1, 2].map(|axis| scale * (center[axis] - frame.origin[axis])));
+    let body = Body {
+        centers: centers.collect(),
+        radii: knots.radii.iter().map(|radius| scale * radius).collect(),
+    };
+    Ok((body, sampling.inside_nodes))
+}
+
+/// Edge of the smallest cube in which the correlation of two bodies does not wrap around.
+pub fn edge(first: &Body, second: &Body) -> f64 {
+    let (first, second) = (first.extent(), second.extent());
+    (0..3)
+        .map(|axis| first[axis] + second[axis])
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,180 @@
+//! A body's spectrum at its m' lowest frequencies: what each way takes, with no larger an error than the grid's.
+
+use crate::correlation::Grid;
+use crate::crossing::crossing;
+use crate::lifted::{Expansion, Task};
+use crate::scene::Scene;
+use crate::spectrum::{FrequencyBox, Kernel, exact};
+use crate::timing::least;
+use crate::ways::{Points, direct, direct_share, fast_3d, fast_4d, plan_3d, plan_4d};
+use num_complex::Complex64;
+use std::error::Error;
+
+/// Bounds of the error that the ways without a grid are allowed, as a share of the value at frequency zero. Between them it is what the
+/// grid itself makes at the same frequencies, so that like is compared with like: half for the expansion, half for the transform.
+const TOLERANCE: [f64; 2] = [1e-6, 1e-2];
+/// Multiplications above which only a share of the direct sums is timed: about a third of a second.
+const SHARE: f64 = 4e8;
+/// Frequencies at which errors are measured.
+const CHECKED: usize = 300;
+
+/// One way at one m'.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured {
+    /// Processor time.
+    pub seconds: f64,
+    /// Largest error at the frequencies checked, as a share of the value at frequency zero; not a number where only a share was done.
+    pub error: f64,
+    /// Whether the time was scaled up from a share of the work.
+    pub scaled: bool,
+}
+
+/// Everything measured at one m'.
+pub struct Row {
+    /// m' as a power of two.
+    pub power: u32,
+    /// Modes of the series along the radius.
+    pub lifted_modes: usize,
+    /// Rank of the compressed radius.
+    pub rank: usize,
+    /// Error of the grid at these frequencies.
+    pub raster_error: f64,
+    /// 4D NDFT, 4D NFFT, NDFT and NFFT with the radius compressed.
+    pub ways: [Measured; 4],
+}
+
+/// Everything measured at one grid size.
+pub struct OfGrid {
+    /// Grid points per axis.
+    pub per_axis: usize,
+    /// The bunny's balls.
+    pub balls: usize,
+    /// Seconds of sampling the body.
+    pub rasterising: f64,
+    /// Seconds of its transform.
+    pub forward: f64,
+    /// By rising m'.
+    pub rows: Vec<Row>,
+}
+
+impl OfGrid {
+    /// Seconds of the grid's way, whatever m'.
+    pub fn raster(&self) -> f64 {
+        self.rasterising + self.forward
+    }
+
+    /// m' up to which a way needs less time than the grid.
+    pub fn crossing(&self, way: usize) -> Option<f64> {
+        crossing(&self.curve(way), self.raster())
+    }
+
+    fn curve(&self, way: usize) -> Vec<[f64; 2]> {
+        let rows = self.rows.iter();
+        rows.map(|row| [2f64.powi(row.power as i32), row.ways[way].seconds])
+            .collect()
+    }
+}
+
+/// Largest error of values at chosen places of a box, as a share of the value at frequency zero, which is the first.
+fn error(reference: &[Complex64], value: impl Fn(usize) -> Complex64) -> f64 {
+    let errors = reference
+        .iter()
+        .enumerate()
+        .map(|(index, exact)| (exact - value(index)).norm());
+    errors.fold(0.0, f64::max) / reference[0].norm()
+}
+
+/// Measures all ways at all m' of one grid size.
+///
+/// # Errors
+/// Where a transform cannot be planned.
+pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>> {
+    let body = &scene.bunny;
+    let grid = Grid::new(scene.per_axis, scene.edge);
+    let mut buffers = grid.buffers();
+    let rasterising = least(|| grid.rasterise(body, kernel, &mut buffers));
+    let forward = least(|| grid.forward(&mut buffers));
+    grid.rasterise(body, kernel, &mut buffers);
+    grid.forward(&mut buffers);
+    let mut rows = Vec::new();
+    for power in 6..=scene.per_axis.pow(3).ilog2() {
+        let frequencies = FrequencyBox::of_power(power);
+        let places = frequencies.sample(CHECKED);
+        let at = |index: usize| frequencies.frequency(places[index]);
+        let reference: Vec<Complex64> = (0..places.len())
+            .map(|index| exact(body, kernel, scene.edge, at(index)))
+            .collect();
+        let raster_error = error(&reference, |index| {
+            grid.transform_at(&buffers.spectrum, at(index))
+        });
+        let tolerance = 0.5 * raster_error.clamp(TOLERANCE[0], TOLERANCE[1]);
+        let task = Task {
+            body,
+            kernel,
+            edge: scene.edge,
+            frequencies,
+            tolerance,
+        };
+        let checked = |seconds: f64, values: &[Complex64]| Measured {
+            seconds,
+            error: error(&reference, |index| values[places[index]]),
+            scaled: false,
+        };
+        // What one way holds is freed before the next begins: the 4D transform of the largest box takes a gigabyte.
+        let series = Expansion::series(&task);
+        let points = Points::new(body, scene.edge, frequencies, &series);
+        let (literal, lifted) = {
+            let mut fast = plan_4d(&points, tolerance)?;
+            let values = fast_4d(&points, &mut fast)?;
+            let seconds = least(|| fast_4d(&points, &mut fast));
+            let lifted = checked(seconds, &values);
+            // The direct sums differ from the fast ones by the transform's tolerance alone; where they take too long a share is timed.
+            (by_direct_sums(&points, &reference, &places), lifted)
+        };
+        let compressed = Expansion::compressed(&task);
+        let points = Points::new(body, scene.edge, frequencies, &compressed);
+        let mut fast = plan_3d(&points, tolerance)?;
+        let values = fast_3d(&points, &mut fast)?;
+        let ours = checked(least(|| fast_3d(&points, &mut fast)), &values);
+        rows.push(Row {
+            power,
+            lifted_modes: series.len(),
+            rank: compressed.len(),
+            raster_error,
+            ways: [
+                literal,
+                lifted,
+                by_direct_sums(&points, &reference, &places),
+                ours,
+            ],
+        });
+    }
+    Ok(OfGrid {
+        per_axis: scene.per_axis,
+        balls: body.radii.len(),
+        rasterising,
+        forward,
+        rows,
+    })
+}
+
+/// The direct sums: all of them, or the time of a share, with no error then.
+fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) -> Measured {
+    let share = SHARE / points.direct_cost();
+    let layers = points.layers();
+    if share >= 1.0 {
+        let values = direct(points);
+        return Measured {
+            seconds: least(|| direct(points)),
+            error: error(reference, |index| values[places[index]]),
+            scaled: false,
+        };
+    }
+    let timed_layers = ((share * layers as f64) as usize).max(1);
+    let seconds = least(|| direct_share(points, timed_layers));
+    Measured {
+        seconds: seconds * layers as f64 / timed_layers as f64,
+        error: f64::NAN,
+        scaled: timed_layers < layers,
+    }
+}
