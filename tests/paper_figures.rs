@@ -242,9 +242,9 @@ fn every_way_gives_the_same_spectrum() {
     assert!(error < 1e-4, "{error}");
 }
 
-/// A layer of kz after the other is the same work, so that a share of them may be timed for all.
+/// Places and frequencies of a box agree, and the sampled ones spread over it from frequency zero on.
 #[test]
-fn a_share_of_the_direct_sums_is_one_of_their_layers() {
+fn a_box_knows_its_frequencies() {
     let frequencies = FrequencyBox::of_power(9);
     assert_eq!(frequencies.half(), [8, 8, 4]);
     let mut seen = 0;

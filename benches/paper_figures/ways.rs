@@ -64,9 +64,9 @@ impl<'a> Points<'a> {
         vec![Complex64::default(); self.frequencies.count() / 2]
     }
 
-    /// Values of kz that are held.
-    pub fn layers(&self) -> usize {
-        self.frequencies.half()[2]
+    /// Values of kx.
+    pub fn planes(&self) -> usize {
+        self.frequencies.half()[0]
     }
 
     /// Multiplications of the direct sums: balls, frequencies held, functions.
@@ -87,15 +87,16 @@ pub fn direct(points: &Points) -> Vec<Complex64> {
     output
 }
 
-/// A share of [`direct`]'s work: the frequencies of `layers` of the c / 2 values of kz, nothing of it kept. The work is the same for every
-/// kz, so that all take c / 2 / `layers` times its time.
-pub fn direct_share(points: &Points, layers: usize) -> f64 {
-    let [a, b, _] = points.frequencies.half();
-    let sums = direct::forward(&points.centers, &points.weights, [a, b, layers]);
+/// A share of [`direct`]'s work: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is the same for every
+/// kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases of x and y are multiplied once for
+/// all of them.)
+pub fn direct_share(points: &Points, planes: usize) -> f64 {
+    let [_, b, c] = points.frequencies.half();
+    let sums = direct::forward(&points.centers, &points.weights, [planes, b, c]);
     let share = FrequencyBox {
-        size: [a, b, 2 * layers],
+        size: [planes, b, 2 * c],
     };
-    let mut output = vec![Complex64::default(); a * b * layers];
+    let mut output = vec![Complex64::default(); planes * b * c];
     points
         .expansion
         .combine(share, &mut output, |place, f| sums[f][place]);

@@ -161,7 +161,7 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
 /// The direct sums: all of them, or the time of a share, with no error then.
 fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) -> Measured {
     let share = SHARE / points.direct_cost();
-    let layers = points.layers();
+    let planes = points.planes();
     if share >= 1.0 {
         let values = direct(points);
         return Measured {
@@ -170,11 +170,11 @@ fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) ->
             scaled: false,
         };
     }
-    let timed_layers = ((share * layers as f64) as usize).max(1);
-    let seconds = least(|| direct_share(points, timed_layers));
+    let timed_planes = ((share * planes as f64) as usize).max(1);
+    let seconds = least(|| direct_share(points, timed_planes));
     Measured {
-        seconds: seconds * layers as f64 / timed_layers as f64,
+        seconds: seconds * planes as f64 / timed_planes as f64,
         error: f64::NAN,
-        scaled: timed_layers < layers,
+        scaled: timed_planes < planes,
     }
 }
