@@ -1,4 +1,4 @@
-//! A drawing of lines, markers and text, written as SVG ([`super::raster`] makes a PNG of it).
+//! A drawing of lines, markers and text, written as SVG or rasterised as PNG (`raster`).
 //!
 //! Both come from one list of marks, so that the two pictures agree. Text is set in a monospaced face whose characters are all
 //! [`CHARACTER`] wide: the space that a label takes is known without asking a font, the SVG needs none but the reader's own, and
