@@ -15,6 +15,9 @@ use knotdock_structures::molecule::LabelReport;
 const LATTICE: f64 = 2.6;
 /// Radii of the two bodies, Å.
 const BODIES: [f64; 2] = [19.0, 9.7];
+/// How many times more knots touch in a pose of two proteins than in one of two balls: the example pair's exact sums against the made-up
+/// one's, on one machine.
+const FLATTER: f64 = 1.4;
 /// Radii of knots, Å, in turn.
 const RADII: [f64; 7] = [1.4, 1.5, 1.6, 1.65, 1.7, 1.8, 1.9];
 
@@ -180,7 +183,11 @@ fn fit(runs: &[Timed]) -> CostModel {
         }
     };
     let checked = |run: &Timed| run.stage("check") / run.outcome.error.poses as f64;
-    let pair = mean(&|run| checked(run) / run.work.pairs, built_in.pair);
+    let pair = FLATTER
+        * mean(
+            &|run| checked(run) / run.work.pairs,
+            built_in.pair / FLATTER,
+        );
     let rotation_set = |run: &Timed| {
         run.rotation_set_seconds / (built_in.covering + built_in.rotation * run.rotations)
     };
