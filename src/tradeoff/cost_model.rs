@@ -254,7 +254,7 @@ pub struct Rung {
 }
 
 /// Cheapest first, the defaults before all: each error the largest measured on the example pair, 1AVX, 1EAW and 7CEI. `cargo bench --bench cost_model` sets
-/// what is made beside what is expected. Larger tolerances are left out, for they cost more: every pose that the larger error leaves in doubt is scored exactly.
+/// what is made beside what is expected. Larger tolerances are left out, for they save next to nothing: every pose that the larger error leaves in doubt is scored exactly.
 /// So are wider spacings, which keep the same modes.
 pub const LADDER: [Rung; 7] = [
     Rung::new(1e-2, 0.5, 1.8e-3),
