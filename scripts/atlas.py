@@ -52,7 +52,8 @@ def settings(split, runs):
             [statistics.fmean(row[COLUMN] <= depth for row in pair) for pair in by_pair] for depth in DEPTHS
         ]
         seconds = statistics.fmean(statistics.fmean(row["cpu_seconds"] for row in pair) for pair in by_pair)
-        points.append(point(split, name, found, seconds, max(len(pair) for pair in by_pair)))
+        turns = sorted({len(pair) for pair in by_pair})
+        points.append(point(split, name, found, seconds, "-".join(str(count) for count in (turns[0], turns[-1])[: len(turns)])))
     return points
 
 
@@ -65,7 +66,7 @@ def megadock(path):
     ranks = [float(row["megadock_first_acceptable_rank"] or math.inf) for row in rows.values()]
     found = [[float(rank <= depth) for rank in ranks] for depth in DEPTHS]
     seconds = statistics.fmean(float(row["megadock_cpu_s"]) for row in rows.values())
-    return [point("MEGADOCK", "MEGADOCK 4.1.3, eval", found, seconds, 1)]
+    return [point("MEGADOCK", "MEGADOCK 4.1.3", found, seconds, 1)]
 
 
 def point(split, name, found, seconds, turns):
@@ -142,7 +143,7 @@ def picture(points):
             )
             if p["set"] == "MEGADOCK":
                 marks.append(f'<path d="M{x - 5:.1f} {y - 5:.1f}l10 10m0 -10l-10 10" stroke="{colour}" stroke-width="2"/>')
-                marks.append(f'<text x="{x + 8:.1f}" y="{y + 4:.1f}">MEGADOCK</text>')
+                marks.append(f'<text x="{x - 9:.1f}" y="{y + 4:.1f}" text-anchor="end">MEGADOCK</text>')
             else:
                 marks.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>')
                 side, anchor = ((-7, "end"), (7, "start"))[p["set"] == "eval"]
