@@ -2,6 +2,7 @@
 
 use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
 use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
+use super::peaks::Peak;
 use super::rotations::{
     BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
 };
@@ -133,7 +134,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
                 + ReceptorField::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
                 + 64 * options.rotations as u64
-                + 64 * options.fine_rotations.unwrap_or(0) as u64
+                + fine_bytes(options)
                 + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
                 + 400 * options.poses as u64
                 + (16 << 20);
@@ -199,6 +200,13 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         set,
         fine_set,
     })
+}
+
+/// Bytes of a finer search: its rotations with their cells, and the peaks of those searched, as found and as sorted.
+fn fine_bytes(options: &DockOptions) -> u64 {
+    let finer = options.fine_rotations.unwrap_or(0);
+    let searched = (options.fine_share * finer as f64).ceil() as u64;
+    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
 }
 
 /// A spacing rounded up to hundredths of an Ångström, or of the power of ten below what plays its part.
