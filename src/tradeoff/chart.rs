@@ -2,16 +2,12 @@
 
 use super::axis::{Scale, tick_text};
 use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use super::frame::{BLACK, Frame, MARGIN, Side, text};
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 340.0];
-/// Room around the axes: left, above, right, below.
-const MARGIN: [f64; 4] = [76.0, 44.0, 20.0, 56.0];
 /// Length of the stroke that stands for a curve in the legend.
 const SAMPLE: f64 = 28.0;
-
-const BLACK: Colour = [0x22, 0x22, 0x22];
-const GREY: Colour = [0xdd, 0xdd, 0xdd];
 
 /// What numbers stand along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,16 +93,6 @@ pub fn draw(panels: &[Panel], columns: usize) -> Drawing {
     }
 }
 
-fn text(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Mark {
-    Mark::Text {
-        at,
-        anchor,
-        colour: BLACK,
-        upward: false,
-        text: text.into(),
-    }
-}
-
 /// One entry a name, on as many lines as it takes; the height below them.
 fn legend(panels: &[Panel], width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 {
     let mut named: Vec<&Series> = Vec::new();
@@ -127,7 +113,8 @@ fn legend(panels: &[Panel], width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 
         marks.push(text(
             [x + SAMPLE + 8.0, y],
             Anchor::Start,
-            series.name.as_str(),
+            BLACK,
+            &series.name,
         ));
         x += takes;
     }
@@ -183,8 +170,8 @@ impl Axis {
         }
     }
 
-    fn ticks(&self, scale: Scale) -> Vec<(f64, String)> {
-        match self.ticks {
+    fn side(&self, scale: Scale) -> Side<'_> {
+        let ticks = match self.ticks {
             Ticks::Ten => scale
                 .ticks()
                 .into_iter()
@@ -195,6 +182,11 @@ impl Axis {
                 .into_iter()
                 .map(|power| (2f64.powi(power), format!("2^{power}")))
                 .collect(),
+        };
+        Side {
+            scale,
+            label: &self.label,
+            ticks,
         }
     }
 }
@@ -212,56 +204,25 @@ impl Panel {
     }
 
     /// Draws the panel with the upper left of its axes at `origin`.
-    fn draw(&self, [left, top]: [f64; 2], marks: &mut Vec<Mark>) {
-        let (right, bottom) = (left + AXES[0], top + AXES[1]);
-        let (across, up) = (self.scale(0), self.scale(1));
-        let line = |through: Vec<[f64; 2]>, colour| Mark::Line {
-            through,
-            colour,
-            width: 1.0,
-            dashed: false,
+    fn draw(&self, origin: [f64; 2], marks: &mut Vec<Mark>) {
+        let frame = Frame {
+            origin,
+            size: AXES,
+            title: &self.title,
+            across: self.across.side(self.scale(0)),
+            up: self.up.side(self.scale(1)),
         };
-        for (tick, name) in self.across.ticks(across) {
-            let x = left + AXES[0] * across.place(tick);
-            marks.push(line(vec![[x, top], [x, bottom]], GREY));
-            marks.push(text([x, bottom + 14.0], Anchor::Middle, name));
-        }
-        for (tick, name) in self.up.ticks(up) {
-            let y = bottom - AXES[1] * up.place(tick);
-            marks.push(line(vec![[left, y], [right, y]], GREY));
-            marks.push(text([left - 8.0, y], Anchor::End, name));
-        }
-        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-        marks.push(line([&corners[..], &corners[..1]].concat(), BLACK));
-        let middle = left + AXES[0] / 2.0;
-        marks.push(text(
-            [middle, top - 18.0],
-            Anchor::Middle,
-            self.title.as_str(),
-        ));
-        marks.push(text(
-            [middle, bottom + 36.0],
-            Anchor::Middle,
-            self.across.label.as_str(),
-        ));
-        marks.push(Mark::Text {
-            at: [left - 60.0, top + AXES[1] / 2.0],
-            anchor: Anchor::Middle,
-            colour: BLACK,
-            upward: true,
-            text: self.up.label.clone(),
-        });
+        frame.draw(marks);
+        let [left, top, right, bottom] = frame.edges();
         for series in &self.series {
             let places: Vec<[f64; 2]> = series
                 .points
                 .iter()
                 .filter(|point| point.iter().all(|value| *value > 0.0 && value.is_finite()))
-                .map(|&[x, y]| {
+                .map(|&point| {
                     // Only lines that guide the eye can leave the frame, and end on it.
-                    [
-                        left + AXES[0] * across.place(x).clamp(0.0, 1.0),
-                        bottom - AXES[1] * up.place(y).clamp(0.0, 1.0),
-                    ]
+                    let [x, y] = frame.place(point);
+                    [x.clamp(left, right), y.clamp(top, bottom)]
                 })
                 .collect();
             series.stroke(places.clone(), marks);

@@ -14,6 +14,7 @@ pub mod chart;
 pub mod choice;
 pub mod cost_model;
 pub mod drawing;
+mod frame;
 mod front;
 pub mod measured;
 pub mod pair;

@@ -2,18 +2,15 @@
 
 use super::axis::{Scale, tick_text};
 use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use super::frame::{BLACK, Frame, MARGIN, Side, text};
 use super::measured::{FIRST, Measured, Tradeoff};
 use super::settings::Knob;
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 380.0];
-/// Room around the axes: left, above, right, below.
-const MARGIN: [f64; 4] = [76.0, 44.0, 20.0, 56.0];
 /// Where nothing of the reference is missed: half a row, which a logarithm can show.
 const NONE_MISSED: f64 = 0.5;
 
-const BLACK: Colour = [0x22, 0x22, 0x22];
-const GREY: Colour = [0xdd, 0xdd, 0xdd];
 const FRONT: Colour = [0x88, 0x88, 0x88];
 
 /// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
@@ -106,16 +103,6 @@ pub fn plot(tradeoff: &Tradeoff) -> Drawing {
     }
 }
 
-fn text(at: [f64; 2], anchor: Anchor, colour: Colour, text: impl Into<String>) -> Mark {
-    Mark::Text {
-        at,
-        anchor,
-        colour,
-        upward: false,
-        text: text.into(),
-    }
-}
-
 /// One colour a knob, and what filled discs mean, on as many lines as it takes; the height below them.
 fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 {
     let mut knobs: Vec<Knob> = Vec::new();
@@ -149,80 +136,39 @@ fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f
 impl Panel<'_> {
     /// Draws the panel with the upper left of its axes at `origin`.
     fn draw(&self, origin: [f64; 2], marks: &mut Vec<Mark>) {
-        let [left, top] = origin;
-        let (right, bottom) = (left + AXES[0], top + AXES[1]);
         let across = Scale::over(self.points.iter().map(|point| point.run.cost()));
         let up = Scale::over(self.points.iter().map(|point| point.value));
-        let line = |through: Vec<[f64; 2]>, colour| Mark::Line {
-            through,
-            colour,
-            width: 1.0,
-            dashed: false,
+        let numbered = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, tick_text(tick)));
+        let mut up_ticks: Vec<(f64, String)> = numbered(up.ticks()).collect();
+        if let Some((value, name)) = self.named {
+            up_ticks.retain(|(tick, _)| *tick > 1.5 * value);
+            if self.points.iter().any(|point| point.value <= value) {
+                up_ticks.push((value, name.to_owned()));
+            }
+        }
+        let told = |point: &Point| point.run.cpu_seconds().is_some();
+        let frame = Frame {
+            origin,
+            size: AXES,
+            title: self.title,
+            across: Side {
+                scale: across,
+                // What settings are compared by.
+                label: if self.points.iter().all(told) {
+                    "processor time, s"
+                } else {
+                    "time on the clock, s"
+                },
+                ticks: numbered(across.ticks()).collect(),
+            },
+            up: Side {
+                scale: up,
+                label: self.label,
+                ticks: up_ticks,
+            },
         };
-        for tick in across.ticks() {
-            let x = left + AXES[0] * across.place(tick);
-            marks.push(line(vec![[x, top], [x, bottom]], GREY));
-            marks.push(text(
-                [x, bottom + 14.0],
-                Anchor::Middle,
-                BLACK,
-                tick_text(tick),
-            ));
-        }
-        let mut ticks = up.ticks();
-        if let Some((value, _)) = self.named {
-            ticks.retain(|tick| *tick > 1.5 * value);
-            ticks.extend(
-                self.points
-                    .iter()
-                    .any(|point| point.value <= value)
-                    .then_some(value),
-            );
-        }
-        for tick in ticks {
-            let y = bottom - AXES[1] * up.place(tick);
-            let name = match self.named {
-                Some((value, name)) if value == tick => name.to_owned(),
-                _ => tick_text(tick),
-            };
-            marks.push(line(vec![[left, y], [right, y]], GREY));
-            marks.push(text([left - 8.0, y], Anchor::End, BLACK, name));
-        }
-        let corners = [
-            [left, top],
-            [right, top],
-            [right, bottom],
-            [left, bottom],
-            [left, top],
-        ];
-        marks.push(line(corners.to_vec(), BLACK));
-        let middle = left + AXES[0] / 2.0;
-        marks.push(text(
-            [middle, top - 18.0],
-            Anchor::Middle,
-            BLACK,
-            self.title,
-        ));
-        marks.push(text(
-            [middle, bottom + 36.0],
-            Anchor::Middle,
-            BLACK,
-            "processor time, s",
-        ));
-        marks.push(Mark::Text {
-            at: [left - 60.0, top + AXES[1] / 2.0],
-            anchor: Anchor::Middle,
-            colour: BLACK,
-            upward: true,
-            text: self.label.to_owned(),
-        });
-
-        let place = |point: &Point| {
-            [
-                left + AXES[0] * across.place(point.run.cost()),
-                bottom - AXES[1] * up.place(point.value),
-            ]
-        };
+        frame.draw(marks);
+        let place = |point: &Point| frame.place([point.run.cost(), point.value]);
         let mut front: Vec<[f64; 2]> = self.points.iter().filter(|p| p.front).map(place).collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
         marks.push(Mark::Line {
@@ -240,7 +186,7 @@ impl Panel<'_> {
             });
         }
         let places: Vec<[f64; 2]> = self.points.iter().map(place).collect();
-        self.name_points(&places, [left, top, right, bottom], marks);
+        self.name_points(&places, frame.edges(), marks);
     }
 
     /// Writes the names of settings beside their points, where they cover neither points nor each other: those of the front, the default and
@@ -293,7 +239,7 @@ impl Panel<'_> {
             if let Some((at, anchor, area)) = free {
                 taken.push(area);
                 let colour = colour(point.run.setting.knob);
-                marks.push(text(at, anchor, colour, name.as_str()));
+                marks.push(text(at, anchor, colour, name));
             }
         }
     }
