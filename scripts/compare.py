@@ -30,8 +30,7 @@ def main():
     complete = [pair for pair in pairs if all((pair, seed) in shared for seed in seeds)]
     if not complete:
         raise SystemExit("no pair with all its seeds is in every run")
-    source = random.Random(1)
-    draws = [[source.randrange(len(complete)) for _ in complete] for _ in range(options.resamples)]
+    draws = draw_pairs(len(complete), options.resamples)
     lines = [
         f"{len(complete)} pairs, seeds {', '.join(seeds)}, ranking of {options.ranking}; in brackets 95% by bootstrap over pairs.",
         "",
@@ -59,9 +58,7 @@ def main():
             lines.append("| gain | " + " | ".join(gains) + " | |")
     text = "\n".join(lines) + "\n"
     if options.output:
-        partial = options.output.with_suffix(".partial")
-        partial.write_text(text)
-        partial.replace(options.output)
+        write(options.output, text)
     print(text, end="")
 
 
@@ -92,12 +89,30 @@ def read(folders, ranking="poses"):
     return rows
 
 
+def draw_pairs(count, resamples):
+    """Pairs drawn anew with replacement, the same ones every time."""
+    source = random.Random(1)
+    return [[source.randrange(count) for _ in range(count)] for _ in range(resamples)]
+
+
+def interval(values, draws):
+    """The middle 95% of the sum over pairs."""
+    sums = sorted(sum(values[index] for index in draw) for draw in draws)
+    return tuple(sums[int(share * (len(sums) - 1))] for share in (0.025, 0.975))
+
+
 def cell(values, draws, signed=False):
     """Sum over pairs with its interval."""
-    sums = sorted(sum(values[index] for index in draw) for draw in draws)
-    low, high = (sums[int(share * (len(sums) - 1))] for share in (0.025, 0.975))
+    low, high = interval(values, draws)
     sign = "+" if signed else ""
     return f"{sum(values):{sign}.1f} [{low:{sign}.1f}, {high:{sign}.1f}]"
+
+
+def write(path, text):
+    """Beside the file first, so that an interrupted run leaves the older one whole."""
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(text)
+    partial.replace(path)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 """The reliability plot of scripts/calibrate_chance.py as SVG: the chance told against the share that came true."""
 
+from marks import FAINT, disc, frame, line, sheet, text
+
 LEFT, TOP, SIDE = 76, 44, 380
 COLOURS = ("#0072b2", "#d55e00", "#999999")
 TICKS = range(0, 101, 20)
@@ -12,9 +14,9 @@ def draw(series):
     marks = []
     for tick in TICKS:
         x, y = place(tick / 100, tick / 100)
-        marks += [line((x, TOP), (x, TOP + SIDE), "#dddddd"), line((LEFT, y), (LEFT + SIDE, y), "#dddddd")]
+        marks += [line((x, TOP), (x, TOP + SIDE), FAINT), line((LEFT, y), (LEFT + SIDE, y), FAINT)]
         marks += [text(x, TOP + SIDE + 14, f"{tick}%", "middle"), text(LEFT - 8, y, f"{tick}%", "end")]
-    marks.append(f'<rect x="{LEFT}" y="{TOP}" width="{SIDE}" height="{SIDE}" fill="none" stroke="#222222"/>')
+    marks.append(frame(LEFT, TOP, SIDE, SIDE))
     marks.append(line(place(0, 0), place(1, 1), "#888888", ' stroke-dasharray="6 4"'))
     marks += [
         text(LEFT + SIDE / 2, TOP - 18, "One of the first ten clusters is acceptable", "middle"),
@@ -34,28 +36,9 @@ def draw(series):
         marks += [disc(key, TOP + 12 + 24 * row, colour), text(key + 14, TOP + 12 + 24 * row, label, "start")]
     notes = ("numbers: pairs in the bin", "bars: 95%, Wilson", "dashed: as told")
     marks += [text(key - 5, TOP + 24 * len(series) + 24 + 20 * row, note, "start", fill="#666666") for row, note in enumerate(notes)]
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
-        'font-family="Noto Sans Mono, DejaVu Sans Mono, Menlo, Consolas, monospace" font-size="13">\n'
-        '<rect width="100%" height="100%" fill="white"/>\n'
-    )
-    return head + "\n".join(marks) + "\n</svg>\n"
+    return sheet(width, height, marks)
 
 
 def place(chance, share):
     return LEFT + SIDE * chance, TOP + SIDE * (1 - share)
 
-
-def line(start, end, colour, more=""):
-    (x1, y1), (x2, y2) = start, end
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}"{more}/>'
-
-
-def disc(x, y, colour):
-    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}"/>'
-
-
-def text(x, y, words, anchor, more="", fill="#222222"):
-    where = f'x="{x:.1f}" y="{y:.1f}" dominant-baseline="central" text-anchor="{anchor}"'
-    # Characters are set eight pixels wide whatever the face, as in the pictures that the program draws.
-    return f'<text {where} textLength="{8 * len(words)}" fill="{fill}"{more}>{words}</text>'

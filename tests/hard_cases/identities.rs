@@ -1,6 +1,6 @@
 //! Identities of the score, of the fast path over whole grids and of the pair sum against closed forms.
 //!
-//! That a run's table adds up, shape = -lambda^2 slice_0 + 2 lambda slice_r0 - slice_2r0, is asserted of its CSV in dock_run.rs; what
+//! That a run's table adds up, shape = -lambda^2 slice_0 + 2 lambda slice_r0 - slice_2r0, is asserted of its CSV in tests/dock_run; what
 //! holds for the pair sum alone (r0 = 0, a split knot, doubled lengths) in scoring/tests/identities.rs.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_options, some_rotation};

@@ -1,0 +1,175 @@
+//! What goes in and what comes out of it: chains, radii, sizes, formats, complexes.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+
+use crate::run::*;
+
+#[test]
+fn the_same_chain_on_both_sides_docks() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb:A receptor.pdb:A --rotations 20 --write-top 1 -o run --quiet",
+    );
+    let text = fs::read_to_string(folder.path().join("run/top/rank_0001.pdb")).unwrap();
+    let chains: BTreeSet<&str> = text
+        .lines()
+        .filter(|line| line.starts_with("ATOM"))
+        .map(|line| &line[21..22])
+        .collect();
+    assert_eq!(
+        chains.len(),
+        2,
+        "receptor and ligand need names of their own"
+    );
+}
+
+#[test]
+fn a_zero_radius_is_refused_by_the_search() {
+    use knotdock::search::{DockOptions, plan};
+    use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
+    let folder = place();
+    let receptor = folder.path().join("receptor.pdb");
+    let mut molecule = read(&InputSpec::whole(receptor), &ReadOptions::default()).unwrap();
+    let whole = molecule.clone();
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        molecule.atoms[3].radius = radius;
+        for (receptor, ligand) in [(&molecule, &whole), (&whole, &molecule)] {
+            let error = plan(receptor, ligand, &DockOptions::default())
+                .err()
+                .unwrap();
+            assert!(error.to_string().contains("radius"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 2 -o run --quiet",
+    );
+    let run_folder = folder.path().join("run");
+    run(folder.path(), "complex run --rank 2,4-5 -o more --quiet");
+    assert_eq!(
+        fs::read(folder.path().join("more/rank_0002.pdb")).unwrap(),
+        fs::read(run_folder.join("top/rank_0002.pdb")).unwrap(),
+        "the same complex whoever writes it"
+    );
+    let row = &rows(&run_folder)[3];
+    let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(row, part));
+    let translation = ["tx", "ty", "tz"].map(|part| number(row, part));
+    let pose = knotdock_scoring::se3::Pose::from_parts(quaternion, translation);
+    let complex = positions(&fs::read_to_string(folder.path().join("more/rank_0004.pdb")).unwrap());
+    let receptor = positions(&crate::molecules::receptor());
+    let ligand = positions(&crate::molecules::ligand());
+    assert_eq!(complex.len(), receptor.len() + ligand.len());
+    assert_eq!(complex[..receptor.len()], receptor);
+    for (placed, original) in complex[receptor.len()..].iter().zip(&ligand) {
+        let expected = pose.apply(*original);
+        for axis in 0..3 {
+            assert!(
+                (placed[axis] - expected[axis]).abs() < 6e-4,
+                "PDB keeps three decimals"
+            );
+        }
+    }
+    let failed = cargo_bin_cmd!("knotdock")
+        .current_dir(folder.path())
+        .args(["complex", "run", "--rank", "99999"])
+        .assert()
+        .code(2);
+    let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+    assert!(told.contains("no rank 99999"), "{told}");
+}
+
+fn positions(pdb: &str) -> Vec<[f64; 3]> {
+    pdb.lines()
+        .filter(|line| line.starts_with("ATOM"))
+        .map(|line| [30, 38, 46].map(|start| line[start..start + 8].trim().parse().unwrap()))
+        .collect()
+}
+
+#[test]
+fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
+    let folder = place();
+    let attempt = |memory: &str, spacing: &str| {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["dock", "receptor.pdb", "ligand.pdb", "--rotations", "20"])
+            .args([
+                "--write-top",
+                "0",
+                "-o",
+                "run",
+                "--json",
+                "--memory",
+                memory,
+            ])
+            .args(spacing.split_whitespace())
+            .output()
+            .unwrap();
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (output.status.code(), object)
+    };
+    let (code, told) = attempt("1M", "");
+    assert_eq!(code, Some(2));
+    assert!(!folder.path().join("run").exists());
+    let message = told["error"]["message"].as_str().unwrap();
+    let needed: u64 = message
+        .split(|c: char| !c.is_ascii_digit())
+        .find_map(|word| word.parse().ok())
+        .unwrap();
+    let (code, told) = attempt(&(needed * 19 / 20).to_string(), "");
+    assert_eq!(code, Some(2), "{told}");
+    let remedy = told["error"]["remedy"].as_str().unwrap();
+    let spacing = remedy.split(&[' ', ','][..]).nth(2).unwrap();
+    let (code, told) = attempt(
+        &(needed * 19 / 20).to_string(),
+        &format!("--spacing {spacing}"),
+    );
+    assert_eq!(code, Some(0), "{told}");
+}
+
+#[test]
+fn mmcif_and_gzip_go_in_and_mmcif_comes_out() {
+    use knotdock_structures::molecule::{Format, InputSpec, ReadOptions, read, write_molecule};
+    use std::io::Write;
+    let folder = place();
+    let of = |name: &str| {
+        let input = InputSpec::whole(folder.path().join(name));
+        read(&input, &ReadOptions::default()).unwrap()
+    };
+    let mut text = Vec::new();
+    write_molecule(&mut text, Format::Mmcif, &of("ligand.pdb"), &[]).unwrap();
+    let file = fs::File::create(folder.path().join("ligand.cif.gz")).unwrap();
+    let mut packed = flate2::write::GzEncoder::new(file, flate2::Compression::fast());
+    packed.write_all(&text).unwrap();
+    packed.finish().unwrap();
+    let dock = "--rotations 20 --write-top 1 --quiet -o";
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb {dock} pdb"),
+    );
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.cif.gz {dock} cif"),
+    );
+    assert_eq!(
+        fs::read(folder.path().join("pdb/poses.csv")).unwrap(),
+        fs::read(folder.path().join("cif/poses.csv")).unwrap(),
+        "the format of a file is no part of the answer"
+    );
+    assert!(!folder.path().join("cif/top/rank_0001.pdb").exists());
+    let complex = of("cif/top/rank_0001.cif");
+    let same = of("pdb/top/rank_0001.pdb");
+    assert_eq!(complex.atoms.len(), same.atoms.len());
+    for (a, b) in complex.atoms.iter().zip(&same.atoms) {
+        assert_eq!((&a.name, a.residue_number), (&b.name, b.residue_number));
+    }
+}

@@ -1,0 +1,9 @@
+//! A run and what it leaves: the table, the complexes, the record, and the same bytes again.
+
+#[path = "../molecules/mod.rs"]
+mod molecules;
+mod run;
+
+mod bodies;
+mod record;
+mod table;

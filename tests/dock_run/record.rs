@@ -1,0 +1,168 @@
+//! The directory of a run and its record: repeated, replaced, moved, interrupted.
+
+use std::fs;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+
+use crate::run::*;
+
+#[test]
+fn a_recorded_run_repeats_to_the_byte() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb:A ligand.pdb --rotations 47 --lambda 9.3 --offset 1.7 --poses 50 --refine 7 \
+         --cluster-radius 4.1 --no-cluster --write-top 2 --native-receptor receptor.pdb:A --native-ligand ligand.pdb \
+         -o first --quiet",
+    );
+    run(folder.path(), "dock --from first/run.json -o again --quiet");
+    assert_eq!(
+        comparable(&folder.path().join("first")),
+        comparable(&folder.path().join("again"))
+    );
+    // What is recorded cannot be asked for otherwise at the same time.
+    for option in [
+        "--rotations=60",
+        "--no-cluster",
+        "--write-top=10",
+        "--native=ligand.pdb",
+    ] {
+        cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["dock", "--from", "first/run.json", "-o", "third", option])
+            .assert()
+            .code(2);
+    }
+    // An input that has changed is not the one that was docked.
+    fs::write(
+        folder.path().join("ligand.pdb"),
+        crate::molecules::receptor(),
+    )
+    .unwrap();
+    let failed = cargo_bin_cmd!("knotdock")
+        .current_dir(folder.path())
+        .args(["dock", "--from", "first/run.json", "-o", "third"])
+        .assert()
+        .code(2);
+    let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+    assert!(told.contains("has changed"), "{told}");
+    assert!(!folder.path().join("third").exists());
+}
+
+#[test]
+fn an_older_run_goes_only_when_told_and_when_the_new_one_is_done() {
+    let folder = place();
+    let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";
+    run(folder.path(), dock);
+    let directory = folder.path().join("knotdock_receptor_ligand");
+    fs::write(directory.join("notes.txt"), "mine").unwrap();
+    let before = files(&directory);
+    let attempt = |arguments: &str| {
+        cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(arguments.split_whitespace())
+            .assert()
+            .code(2)
+    };
+    let refused = attempt(dock);
+    let told = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(
+        told.contains("already holds a run") && told.contains("--force"),
+        "{told}"
+    );
+    attempt("dock receptor.pdb:Z ligand.pdb -o knotdock_receptor_ligand --force");
+    assert_eq!(files(&directory), before);
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 25 --force --write-top 1",
+    );
+    let after = files(&directory);
+    assert_ne!(after["poses.csv"], before["poses.csv"]);
+    assert_eq!(after["notes.txt"], b"mine");
+    assert_eq!(
+        after.keys().map(String::as_str).collect::<Vec<_>>(),
+        ["notes.txt", "poses.csv", "run.json", "top/rank_0001.pdb"]
+    );
+}
+
+#[test]
+fn a_run_moved_with_its_inputs_still_finds_them() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 -o run --quiet",
+    );
+    let other = tempfile::tempdir().unwrap();
+    let moved = other.path().join("moved");
+    fs::create_dir(&moved).unwrap();
+    for entry in ["run", "receptor.pdb", "ligand.pdb"] {
+        fs::rename(folder.path().join(entry), moved.join(entry)).unwrap();
+    }
+    run(&moved, "complex run --rank 1 --quiet");
+    assert!(moved.join("run/top/rank_0001.pdb").exists());
+}
+
+#[cfg(target_os = "linux")] // elsewhere such names cannot be made
+#[test]
+fn a_folder_whose_name_is_not_unicode_is_no_hindrance() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = place();
+    // JSON cannot hold the inputs' absolute paths; the run must not fail on that when all is done.
+    let inner = folder.path().join(std::ffi::OsStr::from_bytes(b"runs\xff"));
+    fs::create_dir(&inner).unwrap();
+    for file in ["receptor.pdb", "ligand.pdb"] {
+        fs::rename(folder.path().join(file), inner.join(file)).unwrap();
+    }
+    run(
+        &inner,
+        "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 -o run --json",
+    );
+    // Not under its recorded name, but beside the run.
+    run(&inner, "complex run --rank 1 --quiet");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_run_leaves_nothing_that_looks_whole() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::time::{Duration, Instant};
+    let folder = place();
+    let dock = "dock receptor.pdb ligand.pdb --quiet --write-top 1 -o run";
+    run(folder.path(), &format!("{dock} --rotations 20"));
+    let run_folder = folder.path().join("run");
+    let before = files(&run_folder);
+    // A shell starts background jobs with SIGINT ignored, and children inherit that: when CI itself ran as such a job, the
+    // signal was lost and the search ran on. GNU env gives the child the signal's default back.
+    let mut child = std::process::Command::new("env")
+        .arg("--default-signal=INT")
+        .arg(assert_cmd::cargo::cargo_bin!("knotdock"))
+        .current_dir(folder.path())
+        .args(dock.split_whitespace())
+        .args(["--force", "--rotations", "40000"])
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !run_folder.join(".partial").exists() {
+        assert!(start.elapsed() < Duration::from_secs(120) && child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    std::thread::sleep(Duration::from_millis(100)); // into the search
+    std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    let asked = Instant::now();
+    let status = child.wait().unwrap();
+    assert!(
+        asked.elapsed() < Duration::from_secs(2),
+        "Ctrl-C ends at once"
+    );
+    assert_eq!(status.signal(), Some(2));
+    let mut after = files(&run_folder);
+    after.retain(|name, _| !name.starts_with(".partial"));
+    assert_eq!(after, before, "the older run stays as it was");
+    // The next run clears what is left.
+    run(folder.path(), &format!("{dock} --force --rotations 21"));
+    assert!(!run_folder.join(".partial").exists());
+    assert_eq!(files(&run_folder).len(), before.len());
+}

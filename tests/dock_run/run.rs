@@ -1,0 +1,75 @@
+//! Runs of the made-up pair, and reading what they leave.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+
+/// A folder with the made-up receptor and ligand.
+pub fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("receptor.pdb"),
+        crate::molecules::receptor(),
+    )
+    .unwrap();
+    fs::write(folder.path().join("ligand.pdb"), crate::molecules::ligand()).unwrap();
+    folder
+}
+
+/// Runs the program in a folder; it must succeed. Returns standard output.
+pub fn run(folder: &Path, arguments: &str) -> String {
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{arguments}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// All files below a folder, by their path in it.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        if entry.path().is_dir() {
+            for (inner, bytes) in files(&entry.path()) {
+                found.insert(format!("{name}/{inner}"), bytes);
+            }
+        } else {
+            found.insert(name, fs::read(entry.path()).unwrap());
+        }
+    }
+    found
+}
+
+/// The files of a run with the parts of run.json taken out that may differ.
+pub fn comparable(run: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = files(run);
+    let mut record: Value = serde_json::from_slice(&found["run.json"]).unwrap();
+    for part in ["timing", "machine"] {
+        assert!(record.as_object_mut().unwrap().remove(part).is_some());
+    }
+    found.insert("run.json".to_owned(), record.to_string().into_bytes());
+    found
+}
+
+pub fn rows(run: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(run.join("poses.csv")).unwrap();
+    reader
+        .deserialize()
+        .map(|row| row.unwrap())
+        .collect::<Vec<_>>()
+}
+
+pub fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}

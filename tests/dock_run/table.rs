@@ -1,0 +1,137 @@
+//! What stands in the table, for any number of threads and with a finer search.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use serde_json::Value;
+
+use crate::run::*;
+
+const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,rank_score,z_score";
+
+#[test]
+fn the_table_says_what_its_columns_promise() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --rotations 60 --no-cluster -o run --quiet",
+    );
+    let run = folder.path().join("run");
+    let text = fs::read_to_string(run.join("poses.csv")).unwrap();
+    assert_eq!(text.lines().next(), Some(HEADER));
+    assert!(!text.contains('\r') && !text.contains("NaN"));
+    let rows = rows(&run);
+    assert!(!rows.is_empty());
+    let (lambda, best) = (9.0, number(&rows[0], "score").abs());
+    let mut last = f64::INFINITY;
+    for (index, row) in rows.iter().enumerate() {
+        assert_eq!(row["rank"], (index + 1).to_string());
+        let score = number(row, "score");
+        let ranked = number(row, "rank_score");
+        assert!(ranked <= last, "ranks must follow rank scores");
+        last = ranked;
+        let length: f64 = ["qw", "qx", "qy", "qz"]
+            .map(|part| number(row, part).powi(2))
+            .iter()
+            .sum();
+        assert!((length - 1.0).abs() < 1e-12 && number(row, "qw") >= 0.0);
+        // Behandish & Ilies' score with its sign: the slices alone give the shape term.
+        let shape = -lambda * lambda * number(row, "slice_0")
+            + 2.0 * lambda * number(row, "slice_r0")
+            - number(row, "slice_2r0");
+        assert!((shape - number(row, "shape")).abs() <= 1e-9 * best);
+        let terms = number(row, "shape") + number(row, "electrostatics") + number(row, "contact");
+        assert!((score - terms).abs() <= 1e-9 * best);
+        let ranked_by = number(row, "rank_score") - number(row, "fine_contact");
+        assert!((score - ranked_by).abs() <= 1e-9 * best);
+        // Shortest digits: printing what was read gives the field back.
+        for column in ["score", "qx", "tx", "score_grid", "slice_0"] {
+            assert_eq!(number(row, column).to_string(), row[column]);
+        }
+    }
+}
+
+#[test]
+fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
+    let folder = place();
+    let dock = "dock receptor.pdb ligand.pdb --rotations 60 --quiet --write-top 0";
+    run(folder.path(), &format!("{dock} --no-cluster -o all"));
+    run(folder.path(), &format!("{dock} -o clusters"));
+    let mut seen = std::collections::HashSet::new();
+    let mut firsts = rows(&folder.path().join("all"));
+    firsts.retain(|row| seen.insert(row["cluster"].clone()));
+    firsts.sort_by_key(|row| row["cluster"].parse::<usize>().unwrap());
+    for row in &firsts {
+        let excess = number(row, "cluster_score") - number(row, "rank_score");
+        assert_eq!(excess > 1e-9, row["cluster_size"] != "1", "company counts");
+    }
+    let clusters = rows(&folder.path().join("clusters"));
+    assert!(clusters.len() > 1 && clusters.len() < rows(&folder.path().join("all")).len());
+    for (index, row) in clusters.iter().enumerate() {
+        assert_eq!(
+            row["cluster"],
+            (index + 1).to_string(),
+            "best cluster first"
+        );
+    }
+    for row in firsts.iter_mut() {
+        row.insert("rank".to_owned(), row["cluster"].clone());
+    }
+    assert_eq!(firsts, clusters);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let folder = place();
+    let dock = "dock receptor.pdb ligand.pdb --rotations 60 --quiet --write-top 3";
+    run(folder.path(), &format!("{dock} --threads 1 -o one"));
+    run(folder.path(), &format!("{dock} --threads 2 -o two"));
+    run(
+        folder.path(),
+        &format!("{dock} --threads 5 --memory 1G -o five"),
+    );
+    let one = comparable(&folder.path().join("one"));
+    assert_eq!(one.len(), 5, "{:?}", one.keys());
+    assert_eq!(one, comparable(&folder.path().join("two")));
+    assert_eq!(one, comparable(&folder.path().join("five")));
+}
+
+/// A finer search can only find better peaks in the cells that it searches, keeps the number of poses, and says where each came from.
+#[test]
+fn a_finer_search_about_the_best_rotations() {
+    let folder = place();
+    let dock = |more: &str| {
+        let arguments =
+            "dock receptor.pdb ligand.pdb --rotations 60 --poses 60 --no-cluster --quiet";
+        run(folder.path(), &format!("{arguments} {more}"));
+    };
+    dock("-o coarse");
+    dock("-o fine --fine-rotations 480 --fine-share 0.2 --threads 1");
+    dock("-o again --fine-rotations 480 --fine-share 0.2 --threads 2");
+    let [coarse, fine, again] =
+        ["coarse", "fine", "again"].map(|name| comparable(&folder.path().join(name)));
+    assert_eq!(fine, again);
+    let [coarse_rows, fine_rows] = ["coarse", "fine"].map(|name| rows(&folder.path().join(name)));
+    assert_eq!(coarse_rows.len(), fine_rows.len());
+    let best = |rows: &[BTreeMap<String, String>]| {
+        let scores = rows.iter().map(|row| number(row, "score_grid"));
+        scores.fold(f64::NEG_INFINITY, f64::max)
+    };
+    assert!(best(&fine_rows) > best(&coarse_rows));
+    let finer = |row: &&BTreeMap<String, String>| number(row, "rotation") >= 60.0;
+    assert!(fine_rows.iter().any(|row| finer(&row)) && !fine_rows.iter().all(|row| finer(&row)));
+    assert!(coarse_rows.iter().all(|row| !finer(&row)));
+    // Grid poses of finer rotations score what the fast path said, to its tolerance.
+    let scale = best(&fine_rows);
+    for row in fine_rows.iter().filter(finer).take(20) {
+        let apart = number(row, "score_grid") - number(row, "score");
+        assert!(apart.abs() < 0.02 * scale, "{row:?}");
+    }
+    let record = |files: &BTreeMap<String, Vec<u8>>| -> Value {
+        serde_json::from_slice(&files["run.json"]).unwrap()
+    };
+    let searched = &record(&fine)["finer_search"];
+    assert!((96..160).contains(&searched["rotations"].as_u64().unwrap()));
+    assert!(record(&coarse)["finer_search"].is_null());
+}
