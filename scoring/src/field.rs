@@ -53,7 +53,7 @@ impl ReceptorField {
     }
 
     /// Samples the potentials from the folded spectra.
-    pub fn new(plan: &Plan, folded: &Folded<f32>, ligand: &Knots) -> Self {
+    pub fn new<T: Real>(plan: &Plan, folded: &Folded<T>, ligand: &Knots) -> Self {
         let modes = &plan.modes;
         let size = fine_size(plan);
         let [mx, my, mz] = size;
@@ -91,7 +91,9 @@ impl ReceptorField {
                         let at =
                             (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
                         let source = functions.iter().fold(zero, |sum, &(function, weight)| {
-                            sum + folded.spectra()[function][column.start + i].scale(weight)
+                            let value = folded.spectra()[function][column.start + i];
+                            let single = |part: T| f32::of(part.wide());
+                            sum + Complex::new(single(value.re), single(value.im)).scale(weight)
                         });
                         spectrum[at] = source.scale(factor);
                     }
@@ -241,7 +243,7 @@ struct Fields {
 
 /// Knots of one radius and one class see one potential: the functions that tell classes apart are added up beforehand, so that a knot
 /// reads one grid for all of them. Charges, of which there are many, keep a grid of their own.
-fn fields(folded: &Folded<f32>, count: usize) -> Fields {
+fn fields<T: Real>(folded: &Folded<T>, count: usize) -> Fields {
     let (charges, classes): (Vec<usize>, Vec<usize>) = (0..folded.full_rank())
         .partition(|&function| folded.effect(function) == Effect::Electrostatics);
     let mut keys: BTreeMap<Vec<(usize, u64)>, usize> = BTreeMap::new();

@@ -10,6 +10,7 @@ use knotdock::output::quality;
 use knotdock::output::report::{BEST, best_clusters, firsts};
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
+use knotdock::search::options::Precision;
 use knotdock::search::{self, DockOutcome};
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
 use knotdock::tradeoff::pair::{Prepared, Preparer};
@@ -70,7 +71,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 40] = [
+const RECORDED: [&str; 41] = [
     "receptor",
     "ligand",
     "waters",
@@ -93,6 +94,7 @@ const RECORDED: [&str; 40] = [
     "sample_grid",
     "sample_weights",
     "tolerance",
+    "precision",
     "effects",
     "electrostatics_weight",
     "contact_weight",
@@ -277,9 +279,13 @@ fn plan_within(
         .predicted_error
         .map(|error| format!(" and an error of {error:.0e} of the best score"));
     console.say(format!(
-        "\nChosen: --rotations {} --tolerance {} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
+        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
         options.rotations,
         options.tolerance,
+        match options.precision {
+            Precision::Single => "",
+            Precision::Double => " --precision double",
+        },
         prepared.plan.spacing,
         if source == "built-in" { "built-in" } else { "calibrated" },
         chosen.predicted_seconds,

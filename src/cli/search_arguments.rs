@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
-use knotdock::search::options::{PASS_RATIO, REFINED_BY_SHAPE};
+use knotdock::search::options::{PASS_RATIO, Precision, REFINED_BY_SHAPE};
 use knotdock::search::{DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::FinePotential;
@@ -82,6 +82,10 @@ pub struct KernelArguments {
     /// Error of the fast path that is allowed, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
+    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is reported is in double precision
+    /// either way.
+    #[arg(long, value_name = "single|double", value_parser = precision, default_value = "single", help_heading = TRADE_OFFS)]
+    precision: Precision,
     /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics and contact, with commas
     /// between them (shape is always on).
     #[arg(long, value_name = "NAMES", default_value = "auto", help_heading = SCORE)]
@@ -178,6 +182,7 @@ impl KernelArguments {
             alpha: self.alpha,
             core_weight: self.core_weight,
             tolerance: self.tolerance,
+            precision: self.precision,
             effects: self.effects.clone(),
             electrostatics_weight: self.electrostatics_weight,
             contact_weight: self.contact_weight,
@@ -220,6 +225,15 @@ impl SearchArguments {
             resolution: self.kernel.resolution.is_some(),
             cluster_radius: self.cluster_radius.is_some(),
         }
+    }
+}
+
+/// Precision by its name.
+fn precision(text: &str) -> Result<Precision, String> {
+    match text {
+        "single" => Ok(Precision::Single),
+        "double" => Ok(Precision::Double),
+        _ => Err("single or double is needed".to_owned()),
     }
 }
 

@@ -41,7 +41,7 @@ pub struct TradeoffCommand {
     /// Replace the sweep in the directory, once the new one is done.
     #[arg(long)]
     force: bool,
-    /// Knobs to move: any of tolerance, spacing, resolution, rotations, coarse-to-fine, per-rotation, refine, sample-grid (of meshes) and combination, with
+    /// Knobs to move: any of tolerance, precision, spacing, resolution, rotations, coarse-to-fine, per-rotation, refine, sample-grid (of meshes) and combination, with
     /// commas between them [default: all].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     knobs: Option<Vec<Knob>>,

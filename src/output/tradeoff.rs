@@ -36,6 +36,7 @@ pub fn columns(run: &Measured) -> Vec<(String, Value)> {
         ("resolution", real(options.resolution)),
         ("spacing", real(run.spacing)),
         ("tolerance", real(options.tolerance)),
+        ("precision", options.precision.name().into()),
         ("rotations", options.rotations.into()),
         (
             "fine_rotations",

@@ -10,6 +10,7 @@ use super::plan::DockPlan;
 use super::run::Progress;
 use super::scan::{Quartet, scan};
 use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -24,9 +25,9 @@ pub struct FineSearched {
 }
 
 /// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both, best first, and what was searched.
-pub(super) fn search_finer(
+pub(super) fn search_finer<T: Real>(
     plan: &DockPlan,
-    engine: &CpuEngine<f32>,
+    engine: &CpuEngine<T>,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> (Vec<Peak>, FineSearched) {
@@ -156,7 +157,7 @@ mod tests {
     #[test]
     fn peaks_of_a_cell_keep_their_distance() {
         let peak = |voxel: u32| Peak {
-            score: 100.0 - voxel as f32,
+            score: 100.0 - f64::from(voxel),
             rotation: 0,
             voxel,
         };

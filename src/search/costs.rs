@@ -7,6 +7,7 @@ use super::scan::{Chosen, choose_rank};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Folded};
 use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::transform::Real;
 use std::time::Instant;
 
 /// Rotations that are timed, in fours that share the ligand's transform.
@@ -15,10 +16,10 @@ const TIMED: usize = 3;
 /// Costs by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
 ///
 /// An effect may share fields with others, so the parts need not add up to the whole.
-pub(super) fn costs(
+pub(super) fn costs<T: Real>(
     plan: &DockPlan,
-    folded: &Folded<f32>,
-    engine: &CpuEngine<f32>,
+    folded: &Folded<T>,
+    engine: &CpuEngine<T>,
 ) -> Vec<EffectCost> {
     let on = |decision: &&Decision| decision.on;
     let active: Vec<Effect> = plan.decisions.iter().filter(on).map(|d| d.effect).collect();
@@ -27,7 +28,7 @@ pub(super) fn costs(
         .iter()
         .filter(|effect| **effect != Effect::Shape)
         .fold(folded.clone(), |folded, &effect| folded.without(effect));
-    let cost_of = |folded: &Folded<f32>| {
+    let cost_of = |folded: &Folded<T>| {
         let Chosen { engine, .. } = choose_rank(plan, folded);
         (engine.rank(), milliseconds(plan, &engine))
     };
@@ -55,7 +56,7 @@ pub(super) fn costs(
 }
 
 /// Least milliseconds of a rotation on one thread, over a few.
-fn milliseconds(plan: &DockPlan, engine: &CpuEngine<f32>) -> f64 {
+fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     let mut work = engine.workspace();
     let times = (0..TIMED).map(|index| {
         let rotation = &plan.set[(4 * index) % plan.set.len()];

@@ -36,6 +36,9 @@ pub struct DockOptions {
     pub core_weight: f64,
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
+    /// Floating-point type of the fast path.
+    #[serde(default)]
+    pub precision: Precision,
     /// Nodes along each edge of the grids that meshes are sampled on; `None` for molecules.
     pub sample_grid: Option<usize>,
     /// Weights of a mesh's balls; `None` for molecules.
@@ -70,6 +73,35 @@ pub struct DockOptions {
     pub memory: Option<u64>,
 }
 
+/// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision whatever it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// 32 bits: tolerances down to 1e-4.
+    #[default]
+    Single,
+    /// 64 bits: tolerances down to 1e-6.
+    Double,
+}
+
+impl Precision {
+    /// Name as on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "single",
+            Self::Double => "double",
+        }
+    }
+
+    /// Finest tolerance that it can be asked.
+    pub fn finest_tolerance(self) -> f64 {
+        match self {
+            Self::Single => 1e-4,
+            Self::Double => 1e-6,
+        }
+    }
+}
+
 /// Poses refined by default when shape is all there is: on training pairs that gained ranks, and beside other effects it cost some.
 pub const REFINED_BY_SHAPE: usize = 300;
 
@@ -97,6 +129,7 @@ impl Default for DockOptions {
             alpha: 2.0,
             core_weight: 1.0,
             tolerance: 1e-2,
+            precision: Precision::Single,
             sample_grid: None,
             sample_weights: None,
             effects: EffectChoice::Auto,
@@ -109,7 +142,7 @@ impl Default for DockOptions {
             per_rotation: 3,
             poses: 2000,
             refine: None,
-            cluster_radius: 5.0,
+            cluster_radius: 7.0,
             every_pose: false,
             threads: 0,
             memory: None,
@@ -195,11 +228,17 @@ impl DockOptions {
                 bound: "0 or more".to_owned(),
             });
         }
-        if self.tolerance < 1e-4 {
+        if self.tolerance < self.precision.finest_tolerance() {
             return Err(SearchError::Option {
                 name: "tolerance",
                 value: self.tolerance.to_string(),
-                bound: "1e-4 or more: the search runs in single precision".to_owned(),
+                bound: match self.precision {
+                    Precision::Single => {
+                        "1e-4 or more in single precision (1e-6 with --precision double)"
+                    }
+                    Precision::Double => "1e-6 or more",
+                }
+                .to_owned(),
             });
         }
         Ok(())

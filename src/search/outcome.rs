@@ -60,7 +60,7 @@ impl MeasuredError {
         let best = best.max(f64::MIN_POSITIVE);
         let (mut squares, mut worst, mut removed) = (0.0, 0.0f64, 0.0);
         for (peak, exact) in peaks.iter().zip(exact) {
-            let error = (f64::from(peak.score) - exact.score).abs() / best;
+            let error = (peak.score - exact.score).abs() / best;
             squares += error * error;
             worst = worst.max(error);
             removed += (exact.terms[Effect::Shape as usize] - exact.unfiltered).abs() / best;

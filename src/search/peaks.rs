@@ -1,10 +1,12 @@
 //! The best voxels of one rotation, kept apart from one another.
 
+use knotdock_scoring::transform::Real;
+
 /// A grid pose: rotation and voxel, with the fast path's score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
     /// Score on the grid.
-    pub score: f32,
+    pub score: f64,
     /// Index in the rotation set.
     pub rotation: u32,
     /// Voxel, row-major.
@@ -27,10 +29,10 @@ pub(super) const NEIGHBOURS: usize = 2;
 
 /// Appends the `count` best voxels of a periodic grid (nx, ny, nz), each at least `NEIGHBOURS` + 1 voxels from the others along some
 /// axis, to `found`. `row_best` holds each row's largest value; grid and row bests are overwritten around peaks.
-pub fn find_peaks(
+pub fn find_peaks<T: Real>(
     size: [usize; 3],
-    grid: &mut [f32],
-    row_best: &mut [f32],
+    grid: &mut [T],
+    row_best: &mut [T],
     rotation: u32,
     count: usize,
     found: &mut Vec<Peak>,
@@ -45,7 +47,7 @@ pub fn find_peaks(
             return;
         };
         found.push(Peak {
-            score,
+            score: score.wide(),
             rotation,
             voxel: (row * nz + z) as u32,
         });
@@ -57,26 +59,26 @@ pub fn find_peaks(
                 let row = wrap(x, dx, nx) * ny + wrap(y, dy, ny);
                 let values = &mut grid[row * nz..(row + 1) * nz];
                 for dz in -side(nz)..=side(nz) {
-                    values[wrap(z, dz, nz)] = f32::NEG_INFINITY;
+                    values[wrap(z, dz, nz)] = T::neg_infinity();
                 }
-                row_best[row] = values.iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+                row_best[row] = values.iter().fold(T::neg_infinity(), |a, &b| a.max(b));
             }
         }
     }
 }
 
 /// First of the largest finite values, with its index.
-fn best(values: &[f32]) -> Option<(usize, f32)> {
-    let mut largest = f32::NEG_INFINITY;
+fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
+    let mut largest = T::neg_infinity();
     for chunk in values.chunks(64) {
         let top = chunk
             .iter()
-            .fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+            .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a });
         if top > largest {
             largest = top;
         }
     }
-    if largest == f32::NEG_INFINITY {
+    if largest == T::neg_infinity() {
         return None;
     }
     values

@@ -1,7 +1,7 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
-use super::options::{DockOptions, REFINED_BY_SHAPE, SearchError};
+use super::options::{DockOptions, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
 use super::rotations::{
     BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
@@ -125,19 +125,25 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         threads => threads,
     };
+    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) = match options.precision
+    {
+        Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
+        Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
+    };
     let needs = |engine: &Plan| {
         let functions = engine.functions();
-        let per_rotation =
-            CpuEngine::<f32>::workspace_estimate(engine, functions.min(EXPECTED_RANK)) as u64;
-        let fixed =
-            8 * engine.modes.count as u64 * (functions + functions.min(EXPECTED_RANK) + 1) as u64
-                + ReceptorField::bytes(engine) as u64
-                + 200 * (receptor.len() + ligand.len()) as u64
-                + 64 * options.rotations as u64
-                + fine_bytes(options)
-                + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
-                + 400 * options.poses as u64
-                + (16 << 20);
+        let per_rotation = workspace_estimate(engine, functions.min(EXPECTED_RANK)) as u64;
+        let fixed = 2
+            * real_bytes
+            * engine.modes.count as u64
+            * (functions + functions.min(EXPECTED_RANK) + 1) as u64
+            + ReceptorField::bytes(engine) as u64
+            + 200 * (receptor.len() + ligand.len()) as u64
+            + 64 * options.rotations as u64
+            + fine_bytes(options)
+            + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
+            + 400 * options.poses as u64
+            + (16 << 20);
         (fixed, per_rotation)
     };
     let (fixed, per_rotation) = needs(&engine);
@@ -302,6 +308,9 @@ impl std::fmt::Display for DockPlan {
             digits = digits,
             finer = finer,
         )?;
+        if self.options.precision == Precision::Double {
+            write!(f, "; in double precision")?;
+        }
         if let Some(finer) = self.options.fine_rotations {
             write!(
                 f,

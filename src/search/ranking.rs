@@ -73,7 +73,7 @@ pub(super) fn candidates(
         .zip(grid_poses)
         .enumerate()
         .map(|(index, (peak, grid_pose))| {
-            let score_grid = f64::from(peak.score);
+            let score_grid = peak.score;
             let candidate = Candidate {
                 pose: *grid_pose,
                 score: score_grid,
@@ -323,7 +323,7 @@ mod tests {
             let peaks: Vec<Peak> = scores
                 .iter()
                 .map(|&score| Peak {
-                    score: score as f32,
+                    score,
                     rotation: 0,
                     voxel: 0,
                 })
@@ -345,12 +345,12 @@ mod tests {
         assert!(exact(touching) > exact(overlapping));
         let climbed = |from: f64, to: f64| {
             let peak = Peak {
-                score: exact(from) as f32,
+                score: exact(from),
                 rotation: 0,
                 voxel: 0,
             };
             // The fast path claims a gain of one.
-            let refined = [(at(to), f64::from(peak.score) + 1.0)];
+            let refined = [(at(to), peak.score + 1.0)];
             let candidates = candidates(&[peak], &[at(from)], &refined, &[], None);
             let judge = Judge {
                 scorer: &scorer,

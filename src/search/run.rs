@@ -4,7 +4,7 @@ use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
 use super::costs::costs;
-use super::options::SearchError;
+use super::options::{Precision, SearchError};
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::plan::DockPlan;
 use super::ranking::{Judge, candidates, clusters_of, merge, printed, report};
@@ -17,6 +17,7 @@ use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -83,10 +84,22 @@ fn dock_in_pool(
     points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
+    match plan.options.precision {
+        Precision::Single => dock_in::<f32>(plan, points, progress),
+        Precision::Double => dock_in::<f64>(plan, points, progress),
+    }
+}
+
+/// The run with the fast path in a floating-point type.
+fn dock_in<T: Real>(
+    plan: &DockPlan,
+    points: &[[f64; 3]],
+    progress: &dyn Progress,
+) -> Result<DockOutcome, SearchError> {
     let options = &plan.options;
     let mut clock = Clock::start();
     progress.stage("prepare", 1);
-    let folded = Folded::<f32>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
+    let folded = Folded::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
     let Chosen {
         engine,
         error: rank_error,
@@ -174,7 +187,7 @@ fn dock_in_pool(
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
     clock.lap("cluster");
 
-    let best_peak = peaks.first().map_or(0.0, |peak| f64::from(peak.score));
+    let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
     let judge = Judge {
         scorer: &scorer,
         rescorer: rescorer.as_ref(),

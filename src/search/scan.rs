@@ -6,40 +6,42 @@ use super::run::Progress;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The values that a rank is judged by: the best of a few probe rotations at full rank.
-pub(super) struct Probes {
+pub(super) struct Probes<T> {
     /// Index of the rotation, and its best voxels with their values.
-    samples: Vec<(usize, Vec<(usize, f32)>)>,
+    samples: Vec<(usize, Vec<(usize, T)>)>,
     /// The best of all.
-    best: f32,
+    best: T,
 }
 
 /// An engine of the lowest rank that serves, with its error at the probes, relative to the best score there.
-pub(super) struct Chosen {
-    pub engine: CpuEngine<f32>,
+pub(super) struct Chosen<T: Real> {
+    pub engine: CpuEngine<T>,
     pub error: f64,
 }
 
-impl Probes {
+impl<T: Real> Probes<T> {
     /// Correlates the probe rotations at full rank.
-    pub fn new(plan: &DockPlan, full: &CpuEngine<f32>) -> Self {
+    pub fn new(plan: &DockPlan, full: &CpuEngine<T>) -> Self {
         const PROBES: usize = 3;
         const BEST: usize = 50;
         let mut work = full.workspace();
-        let mut samples: Vec<(usize, Vec<(usize, f32)>)> = Vec::new();
-        let mut best = f32::MIN_POSITIVE;
+        let mut samples: Vec<(usize, Vec<(usize, T)>)> = Vec::new();
+        let mut best = T::min_positive_value();
         for probe in 0..PROBES {
             let index = (2 * probe + 1) * plan.set.len() / (2 * PROBES);
             full.correlate(&plan.set[index], &mut work);
             let mut order: Vec<usize> = (0..work.grid.len()).collect();
             let count = BEST.min(order.len() - 1);
             order.select_nth_unstable_by(count, |&a, &b| {
-                work.grid[b].total_cmp(&work.grid[a]).then(a.cmp(&b))
+                let (first, second) = (work.grid[a].wide(), work.grid[b].wide());
+                second.total_cmp(&first).then(a.cmp(&b))
             });
-            let values: Vec<(usize, f32)> =
+            let values: Vec<(usize, T)> =
                 order[..count].iter().map(|&v| (v, work.grid[v])).collect();
             best = values.iter().fold(best, |best, value| best.max(value.1));
             samples.push((index, values));
@@ -48,27 +50,28 @@ impl Probes {
     }
 
     /// Largest error of an engine at the probes' best voxels, as a share of the best.
-    fn error(&self, plan: &DockPlan, engine: &CpuEngine<f32>) -> f64 {
+    fn error(&self, plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
         let mut work = engine.workspace();
-        let mut error = 0.0f32;
+        let mut error = T::zero();
         for (index, values) in &self.samples {
             engine.correlate(&plan.set[*index], &mut work);
             for &(voxel, exact) in values {
                 error = error.max((work.grid[voxel] - exact).abs() / self.best);
             }
         }
-        f64::from(error)
+        error.wide()
     }
 }
 
 /// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance.
-pub(super) fn choose_rank(plan: &DockPlan, folded: &Folded<f32>) -> Chosen {
+pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &Folded<T>) -> Chosen<T> {
     let factors = folded.factor(&plan.engine.modes);
     let build =
         |rank| CpuEngine::with_factors(plan.engine.clone(), folded, &factors, &plan.ligand, rank);
-    // What lies below the rounding of single precision is no rank.
+    // What lies below rounding is no rank.
+    let rounding = T::epsilon().wide();
     let largest = factors.singular.first().copied().unwrap_or(0.0);
-    let numerical = factors.singular.iter().filter(|s| **s > 1e-7 * largest);
+    let numerical = factors.singular.iter().filter(|s| **s > rounding * largest);
     let full_rank = numerical.count().max(1);
     let full = build(full_rank);
     if full_rank == 1 {
@@ -112,9 +115,9 @@ pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
 }
 
 /// The best `most` peaks over the rotations given, best first.
-pub(super) fn scan(
+pub(super) fn scan<T: Real>(
     plan: &DockPlan,
-    engine: &CpuEngine<f32>,
+    engine: &CpuEngine<T>,
     quartets: &[Quartet],
     most: usize,
     progress: &dyn Progress,

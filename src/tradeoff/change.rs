@@ -1,11 +1,13 @@
 //! Changes of single options: what settings of a sweep are made of.
 
 use crate::search::DockOptions;
+use crate::search::options::Precision;
 
 /// A change of one option.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Change {
     Tolerance(f64),
+    Double,
     Spacing(f64),
     Resolution(f64),
     Rotations(usize),
@@ -20,6 +22,7 @@ impl Change {
     pub fn apply(self, options: &mut DockOptions) {
         match self {
             Self::Tolerance(value) => options.tolerance = value,
+            Self::Double => options.precision = Precision::Double,
             Self::Spacing(value) => options.spacing = Some(value),
             Self::Resolution(value) => {
                 // A pass length that was given goes along with the resolution, as the default one does.
@@ -44,6 +47,7 @@ impl Change {
     pub fn argument(&self) -> String {
         match self {
             Self::Tolerance(value) => format!("--tolerance {value}"),
+            Self::Double => "--precision double".to_owned(),
             Self::Spacing(value) => format!("--spacing {value}"),
             Self::Resolution(value) => format!("--resolution {value}"),
             Self::Rotations(value) => format!("--rotations {value}"),

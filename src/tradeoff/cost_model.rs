@@ -6,6 +6,7 @@
 //!
 //! - a rotation: N log2 N (`inverse` + `field` q), N points of the grid, q fields of the compressed functions;
 //! - preparing: `prepare` for each mode and effect, on one thread;
+//! - in double precision these two times [`DOUBLE`];
 //! - an exact sum: `pair` for each pair of knots that can feel each other;
 //! - rescoring a pose, climbing a peak: `rescore`, `climb` for each knot of the ligand;
 //! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
@@ -20,6 +21,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::search::options::Precision;
 use crate::search::{DockOptions, DockPlan, Effect};
 
 /// Coefficients of the time, in seconds.
@@ -54,6 +56,8 @@ const CROWDING: f64 = 0.7;
 const TOUCHING: f64 = 15.0;
 /// Share of the poses that are scored for each unit of the tolerance, likewise.
 const DOUBTFUL: f64 = 5.0;
+/// A rotation, or preparing, in double precision against single. As measured on the example pair (1.4 to 2.1 over tolerances).
+pub const DOUBLE: f64 = 1.75;
 /// A finer rotation in rotations: it shares the ligand's transform with no other. As measured on the example pair.
 const FINE: f64 = 2.1;
 /// Knots about which neighbours are counted.
@@ -93,13 +97,13 @@ impl CostModel {
 
     /// Seconds of one thread for a rotation.
     pub fn rotation_seconds(&self, work: &Workload) -> f64 {
-        work.grid * (self.inverse + self.field * work.rank)
+        work.precision * work.grid * (self.inverse + self.field * work.rank)
     }
 
     /// Seconds on the clock, all cores to itself, for so many rotations on so many threads.
     pub fn seconds(&self, work: &Workload, rotations: usize, threads: usize) -> f64 {
         let count = rotations as f64;
-        let alone = self.prepare * work.modes * work.effects
+        let alone = work.precision * self.prepare * work.modes * work.effects
             + self.covering
             + self.rotation * count / threads as f64;
         let exact = self.pair * work.pairs * (CHECKED + work.reported(count));
@@ -141,6 +145,8 @@ pub struct Workload {
     pub grid: f64,
     /// Fields of the compressed functions, as far as they can be foreseen.
     pub rank: f64,
+    /// What the precision multiplies times of the fast path by: 1 in single precision.
+    pub precision: f64,
     /// Finer rotations searched about the best.
     pub fine: f64,
     /// Modes kept.
@@ -186,6 +192,10 @@ impl Workload {
         Self {
             grid: points * points.log2(),
             rank: expected_rank(plan),
+            precision: match options.precision {
+                Precision::Single => 1.0,
+                Precision::Double => DOUBLE,
+            },
             fine: options
                 .fine_rotations
                 .map_or(0.0, |finer| options.fine_share * finer as f64),
@@ -249,6 +259,8 @@ pub struct Rung {
     pub tolerance: f64,
     /// Spacing as a share of the resolution.
     pub spacing: f64,
+    /// Precision that it needs.
+    pub precision: Precision,
     /// Root mean square of the error over the best grid poses, as a share of the best score.
     pub error: f64,
 }
@@ -256,14 +268,15 @@ pub struct Rung {
 /// Cheapest first, the defaults before all: each error the largest measured on the example pair, 1AVX, 1EAW and 7CEI. `cargo bench --bench cost_model` sets
 /// what is made beside what is expected. Larger tolerances are left out, for they save next to nothing: every pose that the larger error leaves in doubt is scored exactly.
 /// So are wider spacings, which keep the same modes.
-pub const LADDER: [Rung; 7] = [
+pub const LADDER: [Rung; 8] = [
     Rung::new(1e-2, 0.5, 1.8e-3),
     Rung::new(3e-3, 0.5, 1.2e-3),
     Rung::new(3e-3, 0.445, 4.8e-4),
     Rung::new(1e-3, 0.445, 2.8e-4),
     Rung::new(1e-3, 0.4, 1.2e-4),
     Rung::new(1e-3, 0.355, 6.5e-5),
-    Rung::new(1e-4, 0.23, 1.2e-6),
+    Rung::new(1e-4, 0.23, 1.4e-6),
+    Rung::new(1e-6, 0.23, 4.5e-8).in_double(),
 ];
 
 impl Rung {
@@ -271,11 +284,19 @@ impl Rung {
         Self {
             tolerance,
             spacing,
+            precision: Precision::Single,
             error,
         }
     }
 
-    /// The cheapest setting whose error is at most `accuracy`; `None` below what single precision reaches.
+    const fn in_double(self) -> Self {
+        Self {
+            precision: Precision::Double,
+            ..self
+        }
+    }
+
+    /// The cheapest setting whose error is at most `accuracy`; `None` below what is known of any.
     pub fn within(accuracy: f64) -> Option<Self> {
         LADDER.into_iter().find(|rung| rung.error <= accuracy)
     }
@@ -284,6 +305,9 @@ impl Rung {
     pub fn apply(self, options: &mut DockOptions) {
         options.tolerance = self.tolerance;
         options.spacing = Some(self.spacing * options.resolution);
+        if self.precision == Precision::Double {
+            options.precision = Precision::Double;
+        }
     }
 }
 
@@ -295,6 +319,7 @@ mod tests {
         Workload {
             grid: 1.85e6,
             rank: 7.0,
+            precision: 1.0,
             fine: 0.0,
             modes: 29_772.0,
             effects: 3.0,

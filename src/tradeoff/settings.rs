@@ -15,6 +15,8 @@ pub enum Knob {
     Reference,
     /// Error allowed to the fast path, from which the rank of the lifted axis, the spreading width, the kernel's window and the spacing follow.
     Tolerance,
+    /// Precision of the fast path.
+    Precision,
     /// Spacing of the translation grid, and so the modes kept.
     Spacing,
     /// Resolution of the score, and with it the spacing: another score rather than a better or worse one.
@@ -35,8 +37,9 @@ pub enum Knob {
 
 impl Knob {
     /// The knobs that a sweep can be limited to.
-    pub const SWEPT: [Self; 9] = [
+    pub const SWEPT: [Self; 10] = [
         Self::Tolerance,
+        Self::Precision,
         Self::Spacing,
         Self::Resolution,
         Self::Rotations,
@@ -53,6 +56,7 @@ impl Knob {
             Self::Default => "default",
             Self::Reference => "reference",
             Self::Tolerance => "tolerance",
+            Self::Precision => "precision",
             Self::Spacing => "spacing",
             Self::Resolution => "resolution",
             Self::Rotations => "rotations",
@@ -92,9 +96,6 @@ pub struct Setting {
 
 /// Rotations of the reference, as a multiple of the default's.
 const REFERENCE_ROTATIONS: usize = 4;
-
-/// Finest tolerance of a search in single precision.
-pub const FINEST_TOLERANCE: f64 = 1e-4;
 
 /// What a default comes to where its options leave it open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,6 +150,7 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
                     add(knob, None, &[Change::Tolerance(tolerance)]);
                 }
             }
+            Knob::Precision => add(knob, None, &[Change::Double]),
             Knob::Spacing => {
                 for factor in [1.15, 0.85, 0.7] {
                     add(knob, None, &[spacing(factor)]);

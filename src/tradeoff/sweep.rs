@@ -8,9 +8,10 @@ use super::agreement::{agreement, compare};
 use super::front::front;
 use super::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
 use super::pair::{Pair, PairError, Prepared, Preparer};
-use super::settings::{FINEST_TOLERANCE, Knob, Planned, Setting, settings};
+use super::settings::{Knob, Planned, Setting, settings};
 use crate::evaluate::{Capri, Evaluator};
 use crate::search::cluster::RigidBody;
+use crate::search::options::Precision;
 use crate::search::{DockOptions, DockOutcome, DockPlan, Progress, SearchError, dock};
 
 /// Who is told how far a sweep has come.
@@ -62,7 +63,7 @@ pub fn sweep(
         }
     }
     let exact = preparer.prepare(&DockOptions {
-        tolerance: default.tolerance.min(FINEST_TOLERANCE),
+        tolerance: default.tolerance.min(Precision::Single.finest_tolerance()),
         ..default.clone()
     })?;
     let mut reference: Option<Reference> = None;

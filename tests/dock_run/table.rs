@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
+use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 use crate::run::*;
@@ -79,6 +80,52 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
         row.insert("rank".to_owned(), row["cluster"].clone());
     }
     assert_eq!(firsts, clusters);
+}
+
+/// In double precision the fast path meets tolerances that single precision is refused, and what it ranks is the same.
+#[test]
+fn double_precision_goes_where_single_cannot() {
+    let folder = place();
+    let dock = |options: &str, name: &str| {
+        run(
+            folder.path(),
+            &format!(
+                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster {options} -o {name} --quiet"
+            ),
+        );
+        let record = fs::read(folder.path().join(name).join("run.json")).unwrap();
+        let record: Value = serde_json::from_slice(&record).unwrap();
+        let worst = record["error"]["worst"].as_f64().unwrap();
+        (rows(&folder.path().join(name)), worst)
+    };
+    let (single, worst) = dock("--tolerance 1e-4", "single");
+    assert!(worst <= 1e-4, "{worst:e}");
+    let (double, worst) = dock("--tolerance 1e-4 --precision double", "double");
+    assert!(worst <= 1e-4, "{worst:e}");
+    let best = number(&single[0], "score_grid").abs();
+    assert_eq!(single.len(), double.len());
+    let mut exact_digits = 0;
+    for (one, other) in single.iter().zip(&double) {
+        let [one, other] = [one, other].map(|row| number(row, "score_grid"));
+        assert!((one - other).abs() < 1e-5 * best);
+        // Widened single precision has few digits.
+        exact_digits += usize::from(f64::from(other as f32) == other);
+    }
+    assert!(exact_digits < double.len() / 2, "double in name only");
+    let (_, worst) = dock("--tolerance 1e-6 --precision double", "finest");
+    assert!(worst <= 1e-6, "{worst:e}");
+    let refused = |options: &str| {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args("dock receptor.pdb ligand.pdb -o refused".split(' '))
+            .args(options.split(' '))
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("--tolerance 1e-5").contains("--precision double"));
+    assert!(refused("--tolerance 1e-7 --precision double").contains("1e-6 or more"));
 }
 
 #[test]
