@@ -142,7 +142,7 @@ impl Default for DockOptions {
             per_rotation: 3,
             poses: 2000,
             refine: None,
-            cluster_radius: 7.0,
+            cluster_radius: 5.0,
             every_pose: false,
             threads: 0,
             memory: None,
