@@ -56,8 +56,8 @@ const CROWDING: f64 = 0.7;
 const TOUCHING: f64 = 15.0;
 /// Share of the poses that are scored for each unit of the tolerance, likewise.
 const DOUBTFUL: f64 = 5.0;
-/// A rotation, or preparing, in double precision against single. As measured on the example pair (1.4 to 2.1 over tolerances).
-pub const DOUBLE: f64 = 1.75;
+/// A rotation, or preparing, in double precision against single. As measured on the example pair.
+pub const DOUBLE: f64 = 2.1;
 /// A finer rotation in rotations: it shares the ligand's transform with no other. As measured on the example pair.
 const FINE: f64 = 2.1;
 /// Knots about which neighbours are counted.
