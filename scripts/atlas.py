@@ -18,8 +18,9 @@ import math
 import statistics
 from pathlib import Path
 
-from compare import DEPTHS, draw_pairs, interval, named, read, write
+from compare import DEPTHS, draw_pairs, interval, named, read
 from marks import cross, disc, frame, line, sheet, text
+from whole_file import write
 
 RESAMPLES = 10000
 COLUMN = "first_acceptable_rank"

@@ -36,6 +36,8 @@ import threading
 import time
 from pathlib import Path
 
+from whole_file import write
+
 ACCEPTABLE_LIGAND_RMSD = 10.0  # A
 ACCEPTABLE_INTERFACE_RMSD = 4.0  # A
 NEAR_NATIVE_INTERFACE_RMSD = 2.5  # A
@@ -173,9 +175,7 @@ def run_one(options, program, pair, seed):
     result["settings"] = settings
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        whole = folder / "result.json.partial"
-        whole.write_text(json.dumps(result, indent=1))
-        whole.replace(record)
+        write(record, json.dumps(result, indent=1))
     except OSError as error:
         result.setdefault("error", str(error))
     return result

@@ -33,6 +33,7 @@ import numpy as np
 
 from probability_scores import bins, comparisons, log_loss, measures
 from reliability_plot import draw
+from whole_file import write
 
 DEPTH = 10
 # Tables that the program carries, used where a run names no other.
@@ -117,12 +118,6 @@ def tell(options, text, plot):
         write(options.page, f"{head}{heading}\n{text}")
     else:
         print(text, end="")
-
-
-def write(path, text):
-    partial = path.with_suffix(".partial")
-    partial.write_text(text)
-    partial.replace(path)
 
 
 def parse_arguments():

@@ -17,6 +17,8 @@ import random
 import statistics
 from pathlib import Path
 
+from whole_file import write
+
 DEPTHS = (1, 10, 100, 1000)
 CRITERIA = (("acceptable", "first_acceptable_rank"), ("near-native", "first_near_native_rank"))
 
@@ -106,13 +108,6 @@ def cell(values, draws, signed=False):
     low, high = interval(values, draws)
     sign = "+" if signed else ""
     return f"{sum(values):{sign}.1f} [{low:{sign}.1f}, {high:{sign}.1f}]"
-
-
-def write(path, text):
-    """Beside the file first, so that an interrupted run leaves the older one whole."""
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(text)
-    partial.replace(path)
 
 
 if __name__ == "__main__":

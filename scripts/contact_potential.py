@@ -34,6 +34,8 @@ from pathlib import Path
 
 import numpy as np
 
+from whole_file import write
+
 ROOT = Path(__file__).resolve().parent.parent
 TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
@@ -75,7 +77,7 @@ def main():
     energies -= (energies * reference).sum(axis=(-2, -1), keepdims=True)
     if not options.fine:
         energies = low_rank(energies, reference.sum(axis=0), options.rank)
-    write(options, used, energies)
+    write_table(options, used, energies)
 
 
 def shares(counts):
@@ -264,7 +266,7 @@ def low_rank(energies, shares, rank):
     return 0.5 * (nearest + nearest.T)
 
 
-def write(options, used, energies):
+def write_table(options, used, energies):
     reference = f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
     detail = "full rank" if options.fine else f"rank {options.rank}"
     lines = [
@@ -276,9 +278,7 @@ def write(options, used, energies):
     tables = [(f"{name},", table) for name, table in zip(RANGES, energies)] if options.fine else [("", energies)]
     for prefix, table in tables:
         lines += [f"{prefix}{name}," + ",".join(f"{value:.6f}" for value in row) for name, row in zip(TYPES, table)]
-    partial = options.output.with_suffix(".partial")
-    partial.write_text("\n".join(lines) + "\n")
-    partial.replace(options.output)
+    write(options.output, "\n".join(lines) + "\n")
     print(f"{len(used)} complexes; table in {options.output}", file=sys.stderr)
 
 

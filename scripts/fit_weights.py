@@ -27,6 +27,8 @@ from pathlib import Path
 
 import numpy as np
 
+from whole_file import write
+
 DEPTHS = (1, 10, 100, 1000)
 NOT_FOUND = 5000
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
@@ -77,9 +79,7 @@ def load(options, folder, pair):
         answer = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
         near = lambda value, limit: value is not None and value <= limit
         found = {pose["rank"]: near(pose["lrmsd"], 10.0) or near(pose["irmsd"], 4.0) for pose in answer["poses"]}
-        partial = quality.with_suffix(".partial")
-        partial.write_text(json.dumps(found))
-        partial.replace(quality)
+        write(quality, json.dumps(found))
     found = json.loads(quality.read_text())
     weights = json.loads((folder / "run/run.json").read_text())["options"]
     rows = []

@@ -55,7 +55,8 @@ pub struct Dock {
     reading: ReadingArguments,
     #[command(flatten)]
     search: SearchArguments,
-    /// Take the cheapest tolerance and spacing whose error is expected to be within X: rms over the best grid poses, as a share of the best score.
+    /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to be within X: rms over the best
+    /// grid poses, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], help_heading = TRADE_OFFS)]
     accuracy: Option<f64>,
     /// Take as many rotations as are expected to fit into a time, such as 5s or 2min; `knotdock calibrate` tells how fast this machine is.
@@ -277,7 +278,7 @@ fn plan_within(
         .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
     let error = chosen
         .predicted_error
-        .map(|error| format!(" and an error of {error:.0e} of the best score"));
+        .map(|error| format!(" and an error of {error:.1e} of the best score"));
     console.say(format!(
         "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
         options.rotations,

@@ -82,10 +82,6 @@ pub struct KernelArguments {
     /// Error of the fast path that is allowed, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
-    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is reported is in double precision
-    /// either way.
-    #[arg(long, value_name = "single|double", value_parser = precision, default_value = "single", help_heading = TRADE_OFFS)]
-    precision: Precision,
     /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics and contact, with commas
     /// between them (shape is always on).
     #[arg(long, value_name = "NAMES", default_value = "auto", help_heading = SCORE)]
@@ -130,6 +126,10 @@ pub struct SearchArguments {
     fine_share: f64,
     #[command(flatten)]
     kernel: KernelArguments,
+    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is reported is in double precision
+    /// either way.
+    #[arg(long, value_name = "single|double", default_value = DockOptions::default().precision.name(), help_heading = TRADE_OFFS)]
+    precision: Precision,
     /// Peaks kept of each rotation.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation, help_heading = TRADE_OFFS)]
     per_rotation: usize,
@@ -182,7 +182,6 @@ impl KernelArguments {
             alpha: self.alpha,
             core_weight: self.core_weight,
             tolerance: self.tolerance,
-            precision: self.precision,
             effects: self.effects.clone(),
             electrostatics_weight: self.electrostatics_weight,
             contact_weight: self.contact_weight,
@@ -203,6 +202,7 @@ impl SearchArguments {
             rotations: self.angle.unwrap_or(self.rotations),
             fine_rotations: self.fine_angle.or(self.fine_rotations),
             fine_share: self.fine_share,
+            precision: self.precision,
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,
@@ -225,15 +225,6 @@ impl SearchArguments {
             resolution: self.kernel.resolution.is_some(),
             cluster_radius: self.cluster_radius.is_some(),
         }
-    }
-}
-
-/// Precision by its name.
-fn precision(text: &str) -> Result<Precision, String> {
-    match text {
-        "single" => Ok(Precision::Single),
-        "double" => Ok(Precision::Double),
-        _ => Err("single or double is needed".to_owned()),
     }
 }
 

@@ -85,6 +85,9 @@ pub enum Precision {
 }
 
 impl Precision {
+    /// Both, the coarser first.
+    pub const ALL: [Self; 2] = [Self::Single, Self::Double];
+
     /// Name as on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -99,6 +102,15 @@ impl Precision {
             Self::Single => 1e-4,
             Self::Double => 1e-6,
         }
+    }
+}
+
+impl std::str::FromStr for Precision {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|known| known.name() == text);
+        known.ok_or_else(|| format!("{} is needed", Self::ALL.map(Self::name).join(" or ")))
     }
 }
 

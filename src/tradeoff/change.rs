@@ -7,7 +7,7 @@ use crate::search::options::Precision;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Change {
     Tolerance(f64),
-    Double,
+    Precision(Precision),
     Spacing(f64),
     Resolution(f64),
     Rotations(usize),
@@ -22,7 +22,7 @@ impl Change {
     pub fn apply(self, options: &mut DockOptions) {
         match self {
             Self::Tolerance(value) => options.tolerance = value,
-            Self::Double => options.precision = Precision::Double,
+            Self::Precision(value) => options.precision = value,
             Self::Spacing(value) => options.spacing = Some(value),
             Self::Resolution(value) => {
                 // A pass length that was given goes along with the resolution, as the default one does.
@@ -47,7 +47,7 @@ impl Change {
     pub fn argument(&self) -> String {
         match self {
             Self::Tolerance(value) => format!("--tolerance {value}"),
-            Self::Double => "--precision double".to_owned(),
+            Self::Precision(value) => format!("--precision {}", value.name()),
             Self::Spacing(value) => format!("--spacing {value}"),
             Self::Resolution(value) => format!("--resolution {value}"),
             Self::Rotations(value) => format!("--rotations {value}"),

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::change::{Change, rounded_to_fours, three_digits};
 use crate::search::DockOptions;
+use crate::search::options::Precision;
 
 /// What a setting changes of the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -150,7 +151,11 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
                     add(knob, None, &[Change::Tolerance(tolerance)]);
                 }
             }
-            Knob::Precision => add(knob, None, &[Change::Double]),
+            Knob::Precision => {
+                for precision in Precision::ALL {
+                    add(knob, None, &[Change::Precision(precision)]);
+                }
+            }
             Knob::Spacing => {
                 for factor in [1.15, 0.85, 0.7] {
                     add(knob, None, &[spacing(factor)]);
@@ -238,6 +243,20 @@ mod tests {
         assert_eq!(named("rotations 600").unwrap().options.rotations, 600);
         assert!(named("tolerance 0.01").is_none(), "that is the default");
         assert!(settings.iter().all(|s| s.knob != Knob::SampleGrid));
+    }
+
+    /// Precision moves to the one that the default does not have.
+    #[test]
+    fn precision_moves_either_way() {
+        for (default, other) in [("single", "double"), ("double", "single")] {
+            let settings = swept(&DockOptions {
+                precision: default.parse().unwrap(),
+                ..DockOptions::default()
+            });
+            let moved = settings.iter().filter(|s| s.knob == Knob::Precision);
+            let moved: Vec<&str> = moved.map(|s| s.arguments.as_str()).collect();
+            assert_eq!(moved, [format!("--precision {other}")]);
+        }
     }
 
     #[test]
