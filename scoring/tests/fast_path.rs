@@ -167,6 +167,38 @@ fn grid_equals_the_4d_direct_transform() {
     }
 }
 
+/// A lower rank cut out of a full engine is the engine built at that rank, to the bit, and its error falls as the rank rises.
+#[test]
+fn a_truncated_engine_is_the_one_of_lower_rank() {
+    let (a, b) = (cloud(60, 8.0, &RADII, 15), cloud(30, 5.0, &RADII, 16));
+    let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
+    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let full = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let turned = Pose::from_parts([0.1, 0.6, -0.5, 0.2], [0.0; 3]).rotation;
+    let grid = |engine: &CpuEngine<f64>| {
+        let mut work = engine.workspace();
+        engine.correlate(&turned, &mut work);
+        work.grid
+    };
+    let exact = grid(&full);
+    assert!(full.rank() > 2);
+    let errors: Vec<f64> = (1..full.rank())
+        .map(|rank| {
+            let cut = full.truncated(rank);
+            assert_eq!(cut.rank(), rank);
+            let values = grid(&cut);
+            assert_eq!(
+                values,
+                grid(&CpuEngine::new(Arc::clone(&plan), &folded, &b, rank))
+            );
+            let apart = values.iter().zip(&exact).map(|(x, y)| (x - y).abs());
+            apart.fold(0.0, f64::max)
+        })
+        .collect();
+    assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
+    assert_eq!(grid(&full.truncated(full.rank() + 1)), exact);
+}
+
 /// Turning or moving an input must leave the fast score at the carried pose within the tolerance: the grid falls elsewhere on
 /// the molecules, so any dependence on it would show.
 #[test]

@@ -8,10 +8,12 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Folded};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
+use rayon::prelude::*;
 use std::time::Instant;
 
-/// Rotations that are timed, in fours that share the ligand's transform.
+/// Most rotations that are timed, in fours that share the ligand's transform, and milliseconds after which no further four are.
 const TIMED: usize = 3;
+const ENOUGH: u128 = 100;
 
 /// Costs by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
 ///
@@ -28,19 +30,32 @@ pub(super) fn costs<T: Real>(
         .iter()
         .filter(|effect| **effect != Effect::Shape)
         .fold(folded.clone(), |folded, &effect| folded.without(effect));
-    let cost_of = |folded: &Folded<T>| {
-        let Chosen { engine, .. } = choose_rank(plan, folded);
-        (engine.rank(), milliseconds(plan, &engine))
+    // Made all at once, and timed one by one.
+    let parts: Vec<(Effect, CpuEngine<T>)> = active
+        .par_iter()
+        .filter(|_| active.len() > 1)
+        .map(|&effect| {
+            let Chosen { engine, .. } = match effect {
+                Effect::Shape => choose_rank(plan, &alone),
+                effect => choose_rank(plan, &folded.without(effect)),
+            };
+            (effect, engine)
+        })
+        .collect();
+    let cost_of = |effect: Effect| {
+        let part = parts.iter().find(|(of, _)| *of == effect);
+        part.map_or(whole, |(_, engine)| {
+            (engine.rank(), milliseconds(plan, engine))
+        })
     };
     plan.decisions
         .iter()
         .map(|decision| {
             let (rank, milliseconds) = match decision.effect {
                 _ if !decision.on => (0, 0.0),
-                Effect::Shape if active.len() == 1 => whole,
-                Effect::Shape => cost_of(&alone),
+                Effect::Shape => cost_of(Effect::Shape),
                 effect => {
-                    let (rank, milliseconds) = cost_of(&folded.without(effect));
+                    let (rank, milliseconds) = cost_of(effect);
                     (whole.0.saturating_sub(rank), whole.1 - milliseconds)
                 }
             };
@@ -58,14 +73,17 @@ pub(super) fn costs<T: Real>(
 /// Least milliseconds of a rotation on one thread, over a few.
 fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     let mut work = engine.workspace();
-    let times = (0..TIMED).map(|index| {
-        let rotation = &plan.set[(4 * index) % plan.set.len()];
-        let start = Instant::now();
-        engine.turn(rotation, &mut work);
-        for half_turn in HalfTurn::ALL {
-            engine.correlate_turned(half_turn, &mut work);
-        }
-        250.0 * start.elapsed().as_secs_f64()
-    });
+    let begun = Instant::now();
+    let times = (0..TIMED)
+        .take_while(|&index| index == 0 || begun.elapsed().as_millis() < ENOUGH)
+        .map(|index| {
+            let rotation = &plan.set[(4 * index) % plan.set.len()];
+            let start = Instant::now();
+            engine.turn(rotation, &mut work);
+            for half_turn in HalfTurn::ALL {
+                engine.correlate_turned(half_turn, &mut work);
+            }
+            250.0 * start.elapsed().as_secs_f64()
+        });
     times.fold(f64::INFINITY, f64::min)
 }

@@ -63,36 +63,41 @@ impl<T: Real> Probes<T> {
     }
 }
 
-/// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance.
+/// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance, found by halving, for the
+/// error falls with the rank.
 pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &Folded<T>) -> Chosen<T> {
     let factors = folded.factor(&plan.engine.modes);
-    let build =
-        |rank| CpuEngine::with_factors(plan.engine.clone(), folded, &factors, &plan.ligand, rank);
     // What lies below rounding is no rank.
     let rounding = T::epsilon().wide();
     let largest = factors.singular.first().copied().unwrap_or(0.0);
     let numerical = factors.singular.iter().filter(|s| **s > rounding * largest);
     let full_rank = numerical.count().max(1);
-    let full = build(full_rank);
+    let engine = CpuEngine::with_factors(
+        plan.engine.clone(),
+        folded,
+        &factors,
+        &plan.ligand,
+        full_rank,
+    );
+    let mut chosen = Chosen { engine, error: 0.0 };
     if full_rank == 1 {
-        return Chosen {
-            engine: full,
-            error: 0.0,
-        };
+        return chosen;
     }
-    let probes = Probes::new(plan, &full);
+    let probes = Probes::new(plan, &chosen.engine);
     let limit = plan.options.tolerance / 3.0;
-    (1..full_rank)
-        .map(|rank| {
-            let engine = build(rank);
-            let error = probes.error(plan, &engine);
-            Chosen { engine, error }
-        })
-        .find(|chosen| chosen.error <= limit)
-        .unwrap_or(Chosen {
-            engine: full,
-            error: 0.0,
-        })
+    // `chosen` serves, and no rank below `least` does.
+    let mut least = 1;
+    while least < chosen.engine.rank() {
+        let middle = least.midpoint(chosen.engine.rank());
+        let engine = chosen.engine.truncated(middle);
+        let error = probes.error(plan, &engine);
+        if error <= limit {
+            chosen = Chosen { engine, error };
+        } else {
+            least = middle + 1;
+        }
+    }
+    chosen
 }
 
 /// Four rotations of a set that differ by half-turns and so share the ligand's transform.

@@ -6,8 +6,8 @@ use knotdock_structures::knots::KnotsError;
 
 use super::cost_model::{CostModel, Workload};
 use crate::search::{
-    Decision, DockOptions, DockOutcome, DockPlan, LengthUnit, Progress, Scene, SearchError, dock,
-    plan_scene,
+    Decision, DockOptions, DockOutcome, DockPlan, LengthUnit, Progress, Scene, SearchError,
+    StageTime, dock, plan_scene,
 };
 use knotdock_structures::molecule::LabelReport;
 
@@ -68,18 +68,21 @@ struct Timed {
 impl Timed {
     /// Processor seconds of a stage; where the system does not tell, those on the clock times the threads.
     fn stage(&self, name: &str) -> f64 {
-        let stages = self
-            .outcome
-            .timing
-            .iter()
-            .filter(|stage| stage.name == name);
-        stages
-            .map(|stage| {
-                stage
-                    .cpu_seconds
-                    .unwrap_or(self.in_flight * stage.wall_seconds)
-            })
-            .sum()
+        self.sum(name, |stage| {
+            stage
+                .cpu_seconds
+                .unwrap_or(self.in_flight * stage.wall_seconds)
+        })
+    }
+
+    /// Seconds on the clock of a stage that threads share in part.
+    fn clock(&self, name: &str) -> f64 {
+        self.sum(name, |stage| stage.wall_seconds)
+    }
+
+    fn sum(&self, name: &str, seconds: impl Fn(&StageTime) -> f64) -> f64 {
+        let stages = self.outcome.timing.iter();
+        stages.filter(|s| s.name == name).map(seconds).sum()
     }
 }
 
@@ -196,7 +199,7 @@ fn fit(runs: &[Timed]) -> CostModel {
         inverse,
         field,
         prepare: mean(
-            &|run| run.stage("prepare") / (run.work.modes * run.work.effects),
+            &|run| run.clock("prepare") / (run.work.modes * run.work.effects),
             built_in.prepare,
         ),
         pair,

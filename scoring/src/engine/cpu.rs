@@ -144,6 +144,35 @@ impl<T: Real> CpuEngine<T> {
         }
     }
 
+    /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first fields are these.
+    #[must_use]
+    pub fn truncated(&self, rank: usize) -> Self {
+        let full = self.rank();
+        let rank = rank.clamp(1, full);
+        let columns = &self.plan.modes.columns;
+        let spectra = columns.iter().flat_map(|column| {
+            let start = full * column.start;
+            &self.spectra[start..start + rank * column.len()]
+        });
+        let weights = self.weights.chunks_exact(full);
+        Self {
+            plan: Arc::clone(&self.plan),
+            forward: ligand_forward::<T>(&self.plan, rank),
+            spectra: spectra.copied().collect(),
+            weights: weights
+                .flat_map(|fields| &fields[..rank])
+                .copied()
+                .collect(),
+            ligand: self.ligand.clone(),
+            mirrors: self.mirrors.clone(),
+            inverse_x: Arc::clone(&self.inverse_x),
+            inverse_y: Arc::clone(&self.inverse_y),
+            inverse_z: Arc::clone(&self.inverse_z),
+            singular: self.singular.clone(),
+            ..*self
+        }
+    }
+
     /// The plan.
     pub fn plan(&self) -> &Plan {
         &self.plan

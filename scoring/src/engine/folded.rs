@@ -10,6 +10,7 @@ use crate::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 use num_complex::Complex;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The receptor's side, uncompressed: `H[function][mode]`, and the values of the functions at the ligand's knots.
@@ -17,7 +18,8 @@ use std::sync::Arc;
 /// The first functions are those of the lifted axis; each further effect adds one for every class that the ligand has.
 #[derive(Clone)]
 pub struct Folded<T> {
-    pub(super) spectra: Vec<Vec<Complex<T>>>,
+    /// Shared with copies that leave an effect out.
+    pub(super) spectra: Vec<Arc<Vec<Complex<T>>>>,
     /// d_j v_b(s_j): (knots, functions).
     pub(super) ligand: DMatrix<f64>,
     pub(super) center: [f64; 3],
@@ -93,39 +95,49 @@ impl<T: Real> Folded<T> {
         for ActiveTerm { term, kernel } in terms {
             let table = kernel.spectrum_table(modes.cut);
             let classes = term.matrix.first().map_or(0, Vec::len);
-            for class in 0..classes {
-                let column: Vec<f64> = term
-                    .ligand
-                    .iter()
-                    .map(|label| {
-                        if label.class == class {
-                            label.value
-                        } else {
-                            0.0
+            let functions: Vec<(Vec<Complex<T>>, Vec<f64>)> = (0..classes)
+                .into_par_iter()
+                .map_init(
+                    || forward.workspace(),
+                    |work, class| {
+                        let column: Vec<f64> = term
+                            .ligand
+                            .iter()
+                            .map(|label| {
+                                if label.class == class {
+                                    label.value
+                                } else {
+                                    0.0
+                                }
+                            })
+                            .collect();
+                        // What the receptor's knots weigh for a ligand knot of this class.
+                        let seen = |label: &Label| {
+                            let row = term.matrix.get(label.class);
+                            label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
+                        };
+                        let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = points
+                            .iter()
+                            .zip(&term.receptor)
+                            .map(|(point, label)| (*point, seen(label)))
+                            .filter(|(_, weight)| *weight != 0.0)
+                            .map(|(point, weight)| (point, T::of(weight)))
+                            .unzip();
+                        if inside.is_empty() || column.iter().all(|value| *value == 0.0) {
+                            return None;
                         }
-                    })
-                    .collect();
-                // What the receptor's knots weigh for a ligand knot of this class.
-                let seen = |label: &Label| {
-                    let row = term.matrix.get(label.class);
-                    label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
-                };
-                let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = points
-                    .iter()
-                    .zip(&term.receptor)
-                    .map(|(point, label)| (*point, seen(label)))
-                    .filter(|(_, weight)| *weight != 0.0)
-                    .map(|(point, weight)| (point, T::of(weight)))
-                    .unzip();
-                if inside.is_empty() || column.iter().all(|value| *value == 0.0) {
-                    continue;
-                }
-                forward.transform(&inside, &weights, &mut work, &mut field);
-                let mut spectrum = field.clone();
-                modes.for_each(|mode, w, _| {
-                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-                    spectrum[mode] = spectrum[mode].scale(T::of(table.value(length)[0]));
-                });
+                        let mut spectrum = vec![zero; modes.count];
+                        forward.transform(&inside, &weights, work, &mut spectrum);
+                        modes.for_each(|mode, w, _| {
+                            let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+                            spectrum[mode] = spectrum[mode].scale(T::of(table.value(length)[0]));
+                        });
+                        Some((spectrum, column))
+                    },
+                )
+                .flatten()
+                .collect();
+            for (spectrum, column) in functions {
                 spectra.push(spectrum);
                 columns.push(column);
                 effects.push(term.effect);
@@ -135,7 +147,7 @@ impl<T: Real> Folded<T> {
         let scale = forward.cells_per_length();
         let center = forward.center();
         Self {
-            spectra,
+            spectra: spectra.into_iter().map(Arc::new).collect(),
             ligand,
             center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
             effects,
@@ -149,7 +161,7 @@ impl<T: Real> Folded<T> {
             .filter(|&b| self.effects[b] != effect)
             .collect();
         Self {
-            spectra: kept.iter().map(|&b| self.spectra[b].clone()).collect(),
+            spectra: kept.iter().map(|&b| Arc::clone(&self.spectra[b])).collect(),
             ligand: self.ligand.select_columns(&kept),
             center: self.center,
             effects: kept.iter().map(|&b| self.effects[b]).collect(),
@@ -162,14 +174,14 @@ impl<T: Real> Folded<T> {
     }
 
     /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
-    pub fn spectra(&self) -> &[Vec<Complex<T>>] {
+    pub fn spectra(&self) -> &[Arc<Vec<Complex<T>>>] {
         &self.spectra
     }
 
     /// Leaves out all modes but those of a selection, for the whole correlation.
     pub fn keep(&mut self, selection: &Selection) {
         for spectrum in &mut self.spectra {
-            for (place, value) in spectrum.iter_mut().enumerate() {
+            for (place, value) in Arc::make_mut(spectrum).iter_mut().enumerate() {
                 if !selection.keeps(place) {
                     *value = Complex::new(T::zero(), T::zero());
                 }
@@ -201,17 +213,21 @@ impl<T: Real> Folded<T> {
         let mut gram = DMatrix::<f64>::zeros(size, size);
         let mut multiplicities = Vec::with_capacity(modes.count);
         modes.for_each(|_, _, multiplicity| multiplicities.push(multiplicity));
-        for a in 0..size {
-            for b in 0..=a {
-                let sum: f64 = self.spectra[a]
-                    .iter()
-                    .zip(&self.spectra[b])
-                    .zip(&multiplicities)
-                    .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
-                    .sum();
-                gram[(a, b)] = sum;
-                gram[(b, a)] = sum;
-            }
+        let lower: Vec<(usize, usize)> = (0..size)
+            .flat_map(|a| (0..=a).map(move |b| (a, b)))
+            .collect();
+        let products = lower.into_par_iter().map(|(a, b)| {
+            let sum: f64 = self.spectra[a]
+                .iter()
+                .zip(self.spectra[b].iter())
+                .zip(&multiplicities)
+                .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
+                .sum();
+            (a, b, sum)
+        });
+        for (a, b, sum) in products.collect::<Vec<_>>() {
+            gram[(a, b)] = sum;
+            gram[(b, a)] = sum;
         }
         let ligand = SymmetricEigen::new(self.ligand.transpose() * &self.ligand);
         let largest = ligand.eigenvalues.max();
