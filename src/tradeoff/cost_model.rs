@@ -5,7 +5,7 @@
 //! A run's processor time is taken as a sum of stages, each a coefficient times what the stage works on:
 //!
 //! - a rotation: N log2 N (`inverse` + `field` q), N points of the grid, q fields of the compressed functions;
-//! - preparing: `prepare` for each mode and effect, on one thread;
+//! - preparing: `prepare` for each mode and effect, on the clock: threads share it in part;
 //! - in double precision these two times [`DOUBLE`];
 //! - an exact sum: `pair` for each pair of knots that can feel each other;
 //! - rescoring a pose, climbing a peak: `rescore`, `climb` for each knot of the ligand;
