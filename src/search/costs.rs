@@ -11,8 +11,9 @@ use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Most rotations that are timed, in fours that share the ligand's transform, and milliseconds after which no further four are.
+/// Most fours of rotations that are timed, each sharing a transform of the ligand.
 const TIMED: usize = 3;
+/// Milliseconds after which no further four are timed.
 const ENOUGH: u128 = 100;
 
 /// Costs by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
@@ -30,10 +31,14 @@ pub(super) fn costs<T: Real>(
         .iter()
         .filter(|effect| **effect != Effect::Shape)
         .fold(folded.clone(), |folded, &effect| folded.without(effect));
-    // Made all at once, and timed one by one.
-    let parts: Vec<(Effect, CpuEngine<T>)> = active
+    // Made all at once, and timed one by one. Where one effect is on, it is the whole.
+    let others = if active.len() > 1 {
+        active.as_slice()
+    } else {
+        &[]
+    };
+    let parts: Vec<(Effect, CpuEngine<T>)> = others
         .par_iter()
-        .filter(|_| active.len() > 1)
         .map(|&effect| {
             let Chosen { engine, .. } = match effect {
                 Effect::Shape => choose_rank(plan, &alone),
@@ -42,7 +47,7 @@ pub(super) fn costs<T: Real>(
             (effect, engine)
         })
         .collect();
-    let cost_of = |effect: Effect| {
+    let part = |effect: Effect| {
         let part = parts.iter().find(|(of, _)| *of == effect);
         part.map_or(whole, |(_, engine)| {
             (engine.rank(), milliseconds(plan, engine))
@@ -51,13 +56,13 @@ pub(super) fn costs<T: Real>(
     plan.decisions
         .iter()
         .map(|decision| {
-            let (rank, milliseconds) = match decision.effect {
-                _ if !decision.on => (0, 0.0),
-                Effect::Shape => cost_of(Effect::Shape),
-                effect => {
-                    let (rank, milliseconds) = cost_of(effect);
-                    (whole.0.saturating_sub(rank), whole.1 - milliseconds)
-                }
+            let (rank, milliseconds) = if !decision.on {
+                (0, 0.0)
+            } else if decision.effect == Effect::Shape {
+                part(Effect::Shape)
+            } else {
+                let (rank, milliseconds) = part(decision.effect);
+                (whole.0.saturating_sub(rank), whole.1 - milliseconds)
             };
             EffectCost {
                 effect: decision.effect,

@@ -1,11 +1,12 @@
 //! The receptor's side of a correlation: its transform with the lifted kernel folded in, and the compression of the lifted axis.
 
 use super::plan::Plan;
-use crate::effect::{ActiveTerm, Effect, Label};
+use crate::effect::{ActiveTerm, Effect, Label, Term};
+use crate::kernel::table::Table;
 use crate::lifted_axis::Fold;
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
-use crate::transform::nfft::Forward;
+use crate::transform::nfft::{Forward, ForwardWorkspace};
 use crate::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
@@ -46,13 +47,16 @@ impl<T: Real> Folded<T> {
         let fine = plan.fine;
         let extent = [0, 1, 2]
             .map(|axis| plan.receptor_extent[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5);
-        let forward = Forward::<T>::new(Arc::clone(modes), fine, plan.width, extent, 1);
-        let mut work = forward.workspace();
-        let points: Vec<[f64; 3]> = receptor
-            .centers
-            .iter()
-            .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
-            .collect();
+        let knots = Receptor {
+            forward: Forward::<T>::new(Arc::clone(modes), fine, plan.width, extent, 1),
+            points: receptor
+                .centers
+                .iter()
+                .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
+                .collect(),
+            modes: Arc::clone(modes),
+        };
+        let mut work = knots.forward.workspace();
         let zero = Complex::new(T::zero(), T::zero());
         let mut spectra = vec![vec![zero; modes.count]; ligand_size];
         let mut field = vec![zero; modes.count];
@@ -63,11 +67,13 @@ impl<T: Real> Folded<T> {
                 let value =
                     plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i].re;
                 if value != 0.0 {
-                    inside.push(points[i]);
+                    inside.push(knots.points[i]);
                     weights.push(T::of(value));
                 }
             }
-            forward.transform(&inside, &weights, &mut work, &mut field);
+            knots
+                .forward
+                .transform(&inside, &weights, &mut work, &mut field);
             for (b, spectrum) in spectra.iter_mut().enumerate() {
                 let Some(table) = plan.coupling(fold, (a, b)) else {
                     continue;
@@ -95,57 +101,23 @@ impl<T: Real> Folded<T> {
         for ActiveTerm { term, kernel } in terms {
             let table = kernel.spectrum_table(modes.cut);
             let classes = term.matrix.first().map_or(0, Vec::len);
-            let functions: Vec<(Vec<Complex<T>>, Vec<f64>)> = (0..classes)
+            let functions: Vec<ClassFunction<T>> = (0..classes)
                 .into_par_iter()
                 .map_init(
-                    || forward.workspace(),
-                    |work, class| {
-                        let column: Vec<f64> = term
-                            .ligand
-                            .iter()
-                            .map(|label| {
-                                if label.class == class {
-                                    label.value
-                                } else {
-                                    0.0
-                                }
-                            })
-                            .collect();
-                        // What the receptor's knots weigh for a ligand knot of this class.
-                        let seen = |label: &Label| {
-                            let row = term.matrix.get(label.class);
-                            label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
-                        };
-                        let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = points
-                            .iter()
-                            .zip(&term.receptor)
-                            .map(|(point, label)| (*point, seen(label)))
-                            .filter(|(_, weight)| *weight != 0.0)
-                            .map(|(point, weight)| (point, T::of(weight)))
-                            .unzip();
-                        if inside.is_empty() || column.iter().all(|value| *value == 0.0) {
-                            return None;
-                        }
-                        let mut spectrum = vec![zero; modes.count];
-                        forward.transform(&inside, &weights, work, &mut spectrum);
-                        modes.for_each(|mode, w, _| {
-                            let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-                            spectrum[mode] = spectrum[mode].scale(T::of(table.value(length)[0]));
-                        });
-                        Some((spectrum, column))
-                    },
+                    || knots.forward.workspace(),
+                    |work, class| knots.class_function(term, &table, class, work),
                 )
                 .flatten()
                 .collect();
-            for (spectrum, column) in functions {
+            for ClassFunction { spectrum, column } in functions {
                 spectra.push(spectrum);
                 columns.push(column);
                 effects.push(term.effect);
             }
         }
         let ligand = DMatrix::from_fn(ligand.len(), columns.len(), |j, b| columns[b][j]);
-        let scale = forward.cells_per_length();
-        let center = forward.center();
+        let scale = knots.forward.cells_per_length();
+        let center = knots.forward.center();
         Self {
             spectra: spectra.into_iter().map(Arc::new).collect(),
             ligand,
@@ -256,5 +228,66 @@ impl<T: Real> Folded<T> {
             coefficients: &self.ligand * inverse_root * &vectors,
             singular,
         }
+    }
+}
+
+/// What a term is to the ligand's knots of one class.
+struct ClassFunction<T> {
+    /// The receptor's transform as the class feels it, through the term's kernel.
+    spectrum: Vec<Complex<T>>,
+    /// Values at the ligand's knots: 0 for other classes.
+    column: Vec<f64>,
+}
+
+/// The receptor's knots and their transform.
+struct Receptor<T: Real> {
+    modes: Arc<ModeSet>,
+    forward: Forward<T>,
+    /// Relative to the receptor's centre, Å.
+    points: Vec<[f64; 3]>,
+}
+
+impl<T: Real> Receptor<T> {
+    /// The function of one class; `table` is the term's kernel by wave number. `None` where no knot of the ligand is of the class, or none of
+    /// the receptor means anything to it.
+    fn class_function(
+        &self,
+        term: &Term,
+        table: &Table<1>,
+        class: usize,
+        work: &mut ForwardWorkspace<T>,
+    ) -> Option<ClassFunction<T>> {
+        let of_class = |label: &Label| {
+            if label.class == class {
+                label.value
+            } else {
+                0.0
+            }
+        };
+        let column: Vec<f64> = term.ligand.iter().map(of_class).collect();
+        // What the receptor's knots weigh for a ligand knot of this class.
+        let seen = |label: &Label| {
+            let row = term.matrix.get(label.class);
+            label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
+        };
+        let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = self
+            .points
+            .iter()
+            .zip(&term.receptor)
+            .map(|(point, label)| (*point, seen(label)))
+            .filter(|(_, weight)| *weight != 0.0)
+            .map(|(point, weight)| (point, T::of(weight)))
+            .unzip();
+        if inside.is_empty() || column.iter().all(|value| *value == 0.0) {
+            return None;
+        }
+        let mut spectrum = vec![Complex::new(T::zero(), T::zero()); self.modes.count];
+        self.forward
+            .transform(&inside, &weights, work, &mut spectrum);
+        self.modes.for_each(|mode, w, _| {
+            let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+            spectrum[mode] = spectrum[mode].scale(T::of(table.value(length)[0]));
+        });
+        Some(ClassFunction { spectrum, column })
     }
 }

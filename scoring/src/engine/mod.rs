@@ -6,6 +6,7 @@ mod columns;
 pub mod cpu;
 pub mod folded;
 pub mod plan;
+mod preparation;
 mod resolved;
 pub mod uniform_grid;
 
