@@ -40,10 +40,12 @@ DEPTH = 10
 CARRIED = {
     "--contact-potential": "scoring/src/effect/contact_potential.csv",
     "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
+    "--atom-pair-potential": "scoring/src/rescoring/atom_pair_potential.csv",
 }
-COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact")
+COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair")
+POTENTIALS = ("contact", "fine_contact", "atom_pair")
 # Recorded options in which runs may differ.
-FREE = {"contact_potential", "fine_contact_potential", "every_pose", "write_top"}
+FREE = {"contact_potential", "fine_contact_potential", "atom_pair_potential", "every_pose", "write_top"}
 # Of the first ten clusters, best pose each, in order; none depends on the unit of the score.
 FEATURES = {
     # How far the best cluster stands out of the run's poses.
@@ -57,7 +59,7 @@ FEATURES = {
     # How many did about any.
     "crowding": lambda top, counts: math.log(counts["poses"] / counts["clusters"]),
     # How much of the ten's scores is contact potential, which was made to tell native contacts from others.
-    "contacts": lambda top, counts: sum((row["contact"] + row["fine_contact"]) / row["rank_score"] for row in top) / DEPTH,
+    "contacts": lambda top, counts: sum(sum(row[term] for term in POTENTIALS) / row["rank_score"] for row in top) / DEPTH,
 }
 # The first is the base rate. Those with `contacts` joined after a look at the others on 38 of the pairs.
 CANDIDATES = (

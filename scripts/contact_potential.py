@@ -134,12 +134,15 @@ def part(folder, name):
     return next(path for ending in (".pdb", ".pdb.gz") if (path := folder / (name + ending)).exists())
 
 
+def open_text(path):
+    data = path.read_bytes()
+    return (gzip.decompress(data) if path.suffix == ".gz" else data).decode("latin-1")
+
+
 def read_atoms(path, kinds):
     """Positions, types (-1: none) and radii of the heavy atoms of the first model."""
-    data = path.read_bytes()
-    text = (gzip.decompress(data) if path.suffix == ".gz" else data).decode("latin-1")
     positions, types, radii = [], [], []
-    for line in text.split("\nENDMDL")[0].splitlines():
+    for line in open_text(path).split("\nENDMDL")[0].splitlines():
         if not line.startswith(("ATOM  ", "HETATM")) or line[16] not in " A1":
             continue
         name, residue = line[12:16].strip(), line[17:20].strip()

@@ -2,11 +2,11 @@
 """Ranks the poses of benchmark runs again with other weights, and chooses weights by cross-validation over pairs.
 
     python3 scripts/fit_weights.py DIR RUNS [RUNS ...] [--knotdock PROGRAM] [--lambdas 8,9,10] [--electrostatics 0,16,24,32] [--contact 0,1,2,3]
-                                   [--fine 0,1,2,3]
+                                   [--fine 0,1,2,3] [--pairs 0,1,2,3]
 
 DIR is the benchmark folder; each RUNS is the --out folder of a `scripts/benchmark.py` run on training pairs, best without refinement
-(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so is the fine contact
-potential that it is rescored with, so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
+(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so are the fine contact
+and atom pair potentials that it is rescored with, so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
 beside its run (`quality.json`).
 
 Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
@@ -61,13 +61,14 @@ def parse_arguments():
     parser.add_argument("--electrostatics", type=numbers, default=[0.0, 8.0, 16.0, 24.0, 32.0])
     parser.add_argument("--contact", type=numbers, default=[0.0, 0.8, 1.5, 2.0, 2.5, 3.0])
     parser.add_argument("--fine", type=numbers, default=[0.0, 1.0, 2.0, 3.0])
+    parser.add_argument("--pairs", type=numbers, default=[0.0, 1.0, 2.0, 3.0])
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--clusters", action="store_true", help="compare temperatures of clusters")
     return parser.parse_args()
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted electrostatics, contact and fine contact, acceptable (0 or 1), rank score, cluster."""
+    """Rows of slices, unweighted electrostatics, contact, fine contact and atom pairs, acceptable (0 or 1), rank score, cluster."""
     quality = folder / "quality.json"
     table = folder / "run/poses.csv"
     if not quality.exists() or quality.stat().st_mtime < table.stat().st_mtime:
@@ -87,7 +88,7 @@ def load(options, folder, pair):
         for row in csv.DictReader(file):
             terms = [
                 float(row.get(name) or 0) / (weights.get(f"{name}_weight") or 1.0)
-                for name in ("electrostatics", "contact", "fine_contact")
+                for name in ("electrostatics", "contact", "fine_contact", "atom_pair")
             ]
             score = float(row.get("rank_score") or row["score"])
             rows.append([*(float(row[name]) for name in FEATURES), *terms, found[row["rank"]], score, float(row["cluster"])])
@@ -107,18 +108,18 @@ def summary(decoys, ranks):
 
 
 def compare_weights(options, decoys, pairs):
-    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine))
+    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine, options.pairs))
     ranks = {}
     for weights in grid:
         strength, *terms = weights
         factors = np.array([-strength * strength, 2 * strength, -1.0, *terms])
-        ranks[weights] = {key: first_rank(rows[:, :6] @ factors, rows[:, 6]) for key, rows in decoys.items()}
+        ranks[weights] = {key: first_rank(rows[:, :7] @ factors, rows[:, 7]) for key, rows in decoys.items()}
     log = lambda weights, key: np.log(min(ranks[weights][key], NOT_FOUND))
     mean = lambda weights, keys: np.mean([log(weights, key) for key in keys])
     order = sorted(grid, key=lambda weights: mean(weights, decoys))
-    print("lambda  electrostatics  contact     fine   mean log rank, top 1, 10, 100, 1000")
+    print("lambda  electrostatics  contact     fine    pairs   mean log rank, top 1, 10, 100, 1000")
     for weights in order:
-        print(f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}   {summary(decoys, ranks[weights])}")
+        print(f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}   {summary(decoys, ranks[weights])}")
     chosen = {}
     for fold in range(options.folds):
         inside = {pair for index, pair in enumerate(pairs) if index % options.folds == fold}
@@ -126,7 +127,7 @@ def compare_weights(options, decoys, pairs):
         best = min(grid, key=lambda weights: mean(weights, others))
         chosen.update({key: ranks[best][key] for key in decoys if key[0] in inside})
         print(f"fold {fold}: {best} chosen on the others")
-    print(f"cross-validated                            {summary(decoys, chosen)}")
+    print(f"cross-validated                                     {summary(decoys, chosen)}")
     if len(order) > 1:
         source = np.random.default_rng(1)
         gains = np.array(
@@ -142,7 +143,7 @@ def compare_temperatures(decoys):
     for share in TEMPERATURES:
         ranks = {}
         for key, rows in decoys.items():
-            scores, clusters = rows[:, 7], rows[:, 8]
+            scores, clusters = rows[:, 8], rows[:, 9]
             temperature = share * scores.max()
             values, acceptable = [], []
             for cluster in np.unique(clusters):
@@ -152,7 +153,7 @@ def compare_temperatures(decoys):
                 if temperature > 0:
                     value += temperature * np.log(np.exp((scores[members] - value) / temperature).sum())
                 values.append(value)
-                acceptable.append(rows[best, 6])
+                acceptable.append(rows[best, 7])
             ranks[key] = first_rank(np.array(values), np.array(acceptable))
         print(f"{share:8g}   {summary(decoys, ranks)}")
 

@@ -103,12 +103,12 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {
             assert!((number(&again["terms"][name]) - term).abs() < 1e-6 * score.abs());
         }
-        for name in ["fine_contact", "rank_score"] {
+        for name in ["fine_contact", "atom_pair", "rank_score"] {
             assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
         }
         assert_eq!(
             number(&row["rank_score"]),
-            score + number(&row["fine_contact"])
+            score + (number(&row["fine_contact"]) + number(&row["atom_pair"]))
         );
     }
 }
@@ -132,15 +132,17 @@ fn rescoring_orders_poses_and_changes_no_score() {
         row[name].parse().unwrap()
     };
     let (plain, once, twice) = (
-        table(&["--fine-contact-weight", "0"]),
-        table(&["--fine-contact-weight", "1"]),
-        table(&["--fine-contact-weight", "2"]),
+        table(&["--fine-contact-weight", "0", "--atom-pair-weight", "0"]),
+        table(&["--fine-contact-weight", "1", "--atom-pair-weight", "1"]),
+        table(&["--fine-contact-weight", "2", "--atom-pair-weight", "2"]),
     );
     for row in plain.iter().chain(&table(&["--effects", "shape"])) {
-        assert_eq!(
-            (row["fine_contact"].as_str(), &row["rank_score"]),
-            ("", &row["score"])
-        );
+        for term in ["fine_contact", "atom_pair"] {
+            assert_eq!(
+                (row[term].as_str(), &row["rank_score"]),
+                ("", &row["score"])
+            );
+        }
     }
     let mut moved = 0;
     for row in &twice {
@@ -155,9 +157,13 @@ fn rescoring_orders_poses_and_changes_no_score() {
         );
         assert_eq!(before["score"], row["score"]);
         moved += usize::from(before["rank"] != row["rank"]);
-        let (one, two) = (number(half, "fine_contact"), number(row, "fine_contact"));
-        assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
-        assert_eq!(number(row, "rank_score"), number(row, "score") + two);
+        let mut both = 0.0;
+        for term in ["fine_contact", "atom_pair"] {
+            let (one, two) = (number(half, term), number(row, term));
+            assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
+            both += two;
+        }
+        assert_eq!(number(row, "rank_score"), number(row, "score") + both);
     }
     assert!(moved > 0, "rescoring must matter");
     assert!(

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use knotdock::search::{self, DockOptions, Effect, Progress, Scene};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
+use knotdock_scoring::rescoring::Rescored;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
@@ -28,7 +29,7 @@ const SEARCHED: usize = 5;
 /// Cases that are searched: those without ties.
 const SEARCHES: [&str; 3] = ["helices", "charged_helices", "nucleic"];
 
-const COLUMNS: [&str; 9] = [
+const COLUMNS: [&str; 10] = [
     "score",
     "shape",
     "electrostatics",
@@ -38,6 +39,7 @@ const COLUMNS: [&str; 9] = [
     "slice_2r0",
     "unfiltered",
     "fine_contact",
+    "atom_pair",
 ];
 
 fn folder() -> PathBuf {
@@ -75,15 +77,16 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
     cases
 }
 
-/// Which effects were on, the exact score of each pose, and its fine contacts where poses are rescored.
-fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec<Option<f64>>) {
+/// Which effects were on, the exact score of each pose, and what rescoring adds.
+fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec<Rescored>) {
     let options = DockOptions::default();
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
-    let contacts = scene.fine_contacts(&options);
-    let fine = poses
+    let rescorer = scene.rescorer(&options);
+    let rescored = |pose| rescorer.as_ref().map(|terms| terms.score(pose));
+    let rescored = poses
         .iter()
-        .map(|(_, pose)| contacts.as_ref().map(|contacts| contacts.score(pose)))
+        .map(|(_, pose)| rescored(pose).unwrap_or_default())
         .collect();
     let Scene {
         receptor,
@@ -98,7 +101,7 @@ fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec
         ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
     let on = Effect::ALL.map(|effect| decisions.iter().any(|d| d.effect == effect && d.on));
     let scores = poses.iter().map(|(_, pose)| scorer.score(pose)).collect();
-    (on, scores, fine)
+    (on, scores, rescored)
 }
 
 /// A table: case and number, then values by column; an empty field is what does not exist.
@@ -224,14 +227,14 @@ fn table_columns() -> Vec<&'static str> {
 fn scores_terms_slices_and_ranks_of_poses() {
     let mut found = Table::new();
     for (case, poses) in poses() {
-        let (on, scores, fine) = scored(&case, &poses);
+        let (on, scores, rescored) = scored(&case, &poses);
         let ranked: Vec<f64> = scores
             .iter()
-            .zip(&fine)
-            .map(|(exact, fine)| exact.score + fine.unwrap_or(0.0))
+            .zip(&rescored)
+            .map(|(exact, rescored)| exact.score + rescored.sum())
             .collect();
-        for (((number, _), exact), (fine, by)) in
-            poses.iter().zip(&scores).zip(fine.iter().zip(&ranked))
+        for (((number, _), exact), (rescored, by)) in
+            poses.iter().zip(&scores).zip(rescored.iter().zip(&ranked))
         {
             let better = ranked.iter().filter(|other| *other > by);
             let term = |effect: Effect| on[effect as usize].then_some(exact.terms[effect as usize]);
@@ -244,7 +247,7 @@ fn scores_terms_slices_and_ranks_of_poses() {
             ];
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
-            values.push(*fine);
+            values.extend([rescored.fine_contact, rescored.atom_pair]);
             found.insert((case.clone(), *number), values);
         }
     }

@@ -72,7 +72,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 41] = [
+const RECORDED: [&str; 43] = [
     "receptor",
     "ligand",
     "waters",
@@ -102,6 +102,8 @@ const RECORDED: [&str; 41] = [
     "contact_potential",
     "fine_contact_weight",
     "fine_contact_potential",
+    "atom_pair_weight",
+    "atom_pair_potential",
     "ph",
     "per_rotation",
     "poses",

@@ -32,11 +32,19 @@ pub fn told(outcome: &DockOutcome) -> String {
             fine.rotations, fine.cells
         ));
     }
-    let rescored = outcome.poses.iter().any(|row| row.fine_contact.is_some());
+    let row = outcome.poses.first();
+    let terms = [
+        ("fine contact", row.and_then(|row| row.fine_contact)),
+        ("atom pair", row.and_then(|row| row.atom_pair)),
+    ];
+    let terms = terms.iter().filter(|(_, value)| value.is_some());
+    let names: Vec<&str> = terms.map(|(name, _)| *name).collect();
     let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
-    if let (true, Some(stage)) = (rescored, stage) {
+    if let (false, Some(stage)) = (names.is_empty(), stage) {
         lines.push(format!(
-            "Rescored by the fine contact potential in {:.2} s",
+            "Rescored by the {} potential{} in {:.2} s",
+            names.join(" and the "),
+            if names.len() > 1 { "s" } else { "" },
             stage.wall_seconds
         ));
     }

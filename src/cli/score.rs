@@ -79,14 +79,21 @@ impl Score {
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
-        let fine_contact = scene
-            .fine_contacts(&dock)
-            .map(|contacts| contacts.score(&pose));
-        let rank_score = scored.exact + fine_contact.unwrap_or(0.0);
+        let rescorer = scene.rescorer(&dock);
+        let rescored = rescorer.map(|rescorer| rescorer.score(&pose));
+        let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
-        if let Some(fine_contact) = fine_contact {
+        if let Some(rescored) = rescored {
+            let terms = [
+                ("Fine contacts", rescored.fine_contact),
+                ("atom pairs", rescored.atom_pair),
+            ];
+            let told = terms
+                .iter()
+                .filter_map(|(name, value)| Some(format!("{name} {:.3}", (*value)?)));
             console.say(format!(
-                "Fine contacts {fine_contact:.3}: `dock` ranks this pose by {rank_score:.3}"
+                "{}: `dock` ranks this pose by {rank_score:.3}",
+                told.collect::<Vec<_>>().join(", ")
             ));
         }
         console.say(told_geometry(&geometry));
@@ -105,7 +112,13 @@ impl Score {
                 "pose".to_owned(),
                 serde_json::json!([qw, qx, qy, qz, tx, ty, tz]),
             );
-            object.insert("fine_contact".to_owned(), serde_json::json!(fine_contact));
+            let rescored = rescored.unwrap_or_default();
+            for (name, value) in [
+                ("fine_contact", rescored.fine_contact),
+                ("atom_pair", rescored.atom_pair),
+            ] {
+                object.insert(name.to_owned(), serde_json::json!(value));
+            }
             object.insert("rank_score".to_owned(), serde_json::json!(rank_score));
         }
         console.result(&object);

@@ -7,7 +7,7 @@ use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleW
 use knotdock::search::options::{PASS_RATIO, Precision, REFINED_BY_SHAPE};
 use knotdock::search::{DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
-use knotdock_scoring::rescoring::FinePotential;
+use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 
 use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
@@ -101,6 +101,12 @@ pub struct KernelArguments {
     /// Fine contact potential to use in place of the program's own, as scripts/contact_potential.py --fine writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     fine_contact_potential: Option<PathBuf>,
+    /// Weight of the atom pair potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().atom_pair_weight, help_heading = SCORE)]
+    atom_pair_weight: f64,
+    /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
+    #[arg(long, value_name = "CSV", help_heading = SCORE)]
+    atom_pair_potential: Option<PathBuf>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -169,9 +175,19 @@ impl KernelArguments {
             )?),
             None => None,
         };
+        let atom_pair_potential = match &self.atom_pair_potential {
+            Some(path) => Some(read_potential(
+                path,
+                "atom-pair-potential",
+                AtomPairPotential::parse,
+            )?),
+            None => None,
+        };
         let default = DockOptions::default();
         Ok(DockOptions {
             contact_potential,
+            atom_pair_weight: self.atom_pair_weight,
+            atom_pair_potential,
             fine_contact_weight: self.fine_contact_weight,
             fine_contact_potential,
             resolution: self.resolution.unwrap_or(default.resolution),

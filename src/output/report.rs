@@ -105,6 +105,7 @@ mod tests {
             terms: [Some(score), None, None],
             slices: [0.0; 3],
             fine_contact: None,
+            atom_pair: None,
             rank_score: score,
             z_score: None,
         }

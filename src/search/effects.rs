@@ -3,9 +3,9 @@
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
-use knotdock_scoring::rescoring::FineContacts;
+use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Rescorer};
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{LabelReport, Molecule};
+use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::{Deserialize, Serialize};
 
 /// Effects as asked for: `auto`, or names with commas between them.
@@ -164,29 +164,22 @@ impl Scene {
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
         // A label that no effect reads is left off.
-        let label = |knots: Knots, charges, types| {
+        let label = |knots: Knots, labels: Labels| -> Result<(Knots, LabelReport), SearchError> {
             let charges = if on(Effect::Electrostatics) {
-                charges
+                labels.charges
             } else {
                 Vec::new()
             };
-            let types = if on(Effect::Contact) {
-                types
+            let (types, kinds) = if on(Effect::Contact) {
+                (labels.contact_types, labels.atom_kinds)
             } else {
-                Vec::new()
+                (Vec::new(), Vec::new())
             };
-            knots.with_labels(charges, types)
+            let knots = knots.with_labels(charges, types)?.with_atom_kinds(kinds)?;
+            Ok((knots, labels.report))
         };
-        let receptor = label(
-            receptor.knots()?,
-            receptor_labels.charges,
-            receptor_labels.contact_types,
-        )?;
-        let ligand = label(
-            ligand.knots()?,
-            ligand_labels.charges,
-            ligand_labels.contact_types,
-        )?;
+        let (receptor, receptor_report) = label(receptor.knots()?, receptor_labels)?;
+        let (ligand, ligand_report) = label(ligand.knots()?, ligand_labels)?;
         let mut terms = Vec::new();
         if on(Effect::Electrostatics) {
             let weight = options.electrostatics_weight;
@@ -217,7 +210,7 @@ impl Scene {
             ligand,
             terms,
             decisions,
-            labels: [receptor_labels.report, ligand_labels.report],
+            labels: [receptor_report, ligand_report],
         })
     }
 
@@ -256,24 +249,31 @@ impl Scene {
         })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or its fine weight is 0.
-    pub fn fine_contacts(&self, options: &DockOptions) -> Option<FineContacts> {
-        fine_contacts(&self.decisions, &self.receptor, &self.ligand, options)
+    /// What poses are rescored with; `None` where the contact effect is off or both weights are 0.
+    pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
+        rescorer(&self.decisions, &self.receptor, &self.ligand, options)
     }
 }
 
-/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or the weight is 0.
-pub(super) fn fine_contacts(
+/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or both weights are 0.
+pub(super) fn rescorer(
     decisions: &[Decision],
     receptor: &Knots,
     ligand: &Knots,
     options: &DockOptions,
-) -> Option<FineContacts> {
-    let weight = options.fine_contact_weight;
+) -> Option<Rescorer> {
     let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
-    (decisions.iter().any(contact) && weight > 0.0).then(|| {
-        let potential = options.fine_contact_potential.clone().unwrap_or_default();
-        FineContacts::new(receptor, ligand, &potential, weight)
+    let (fine, pairs) = (options.fine_contact_weight, options.atom_pair_weight);
+    let asked = decisions.iter().any(contact) && (fine > 0.0 || pairs > 0.0);
+    asked.then(|| Rescorer {
+        fine_contacts: (fine > 0.0).then(|| {
+            let potential = options.fine_contact_potential.clone().unwrap_or_default();
+            FineContacts::new(receptor, ligand, &potential, fine)
+        }),
+        atom_pairs: (pairs > 0.0).then(|| {
+            let potential = options.atom_pair_potential.clone().unwrap_or_default();
+            AtomPairs::new(receptor, ligand, &potential, pairs)
+        }),
     })
 }
 
@@ -322,7 +322,8 @@ fn lacking(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_structures::molecule::CONTACT_TYPES;
+    use knotdock_scoring::rescoring;
+    use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 
     #[test]
     fn choices_are_read_and_written_alike() {
@@ -346,5 +347,6 @@ mod tests {
     #[test]
     fn the_types_of_molecules_are_those_of_the_potential() {
         assert_eq!(CONTACT_TYPES, contact::TYPES);
+        assert_eq!(atom_kinds(), rescoring::atom_kinds());
     }
 }

@@ -6,7 +6,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
-use knotdock_scoring::rescoring::FinePotential;
+use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 use knotdock_structures::knots::KnotsError;
 use serde::{Deserialize, Serialize};
 
@@ -51,10 +51,16 @@ pub struct DockOptions {
     pub contact_weight: f64,
     /// The contact potential; `None`: the one that the program carries.
     pub contact_potential: Option<Potential>,
-    /// Weight of the fine contact potential, by which poses are rescored where the contact effect is on: score per RT; 0: no rescoring.
+    /// Weight of the fine contact potential, by which poses are rescored where the contact effect is on: score per RT; 0: without it.
     pub fine_contact_weight: f64,
     /// The fine contact potential; `None`: the one that the program carries.
     pub fine_contact_potential: Option<FinePotential>,
+    /// Weight of the atom pair potential, by which poses are rescored likewise: score per RT; 0: without it, as were runs before there was one.
+    #[serde(default)]
+    pub atom_pair_weight: f64,
+    /// The atom pair potential; `None`: the one that the program carries.
+    #[serde(default)]
+    pub atom_pair_potential: Option<AtomPairPotential>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -150,6 +156,8 @@ impl Default for DockOptions {
             contact_potential: None,
             fine_contact_weight: 2.0,
             fine_contact_potential: None,
+            atom_pair_weight: 2.0,
+            atom_pair_potential: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -187,6 +195,7 @@ impl DockOptions {
             ("electrostatics-weight", self.electrostatics_weight, 1e6),
             ("contact-weight", self.contact_weight, 1e6),
             ("fine-contact-weight", self.fine_contact_weight, 1e6),
+            ("atom-pair-weight", self.atom_pair_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

@@ -34,7 +34,9 @@ pub struct RankedPose {
     pub slices: [f64; 3],
     /// Weighted fine contact potential at `pose`, [`knotdock_scoring::rescoring`]; `None` where poses are not rescored.
     pub fine_contact: Option<f64>,
-    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact` besides.
+    /// Weighted atom pair potential there; `None` likewise.
+    pub atom_pair: Option<f64>,
+    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact` and `atom_pair` besides.
     pub rank_score: f64,
     /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,

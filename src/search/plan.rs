@@ -1,6 +1,6 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::effects::{Decision, LengthUnit, Scene, fine_contacts};
+use super::effects::{Decision, LengthUnit, Scene, rescorer};
 use super::options::{DockOptions, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
 use super::rotations::{
@@ -10,7 +10,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::field::ReceptorField;
-use knotdock_scoring::rescoring::FineContacts;
+use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
@@ -264,9 +264,9 @@ impl DockPlan {
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or the weight is 0.
-    pub(super) fn fine_contacts(&self) -> Option<FineContacts> {
-        fine_contacts(&self.decisions, &self.receptor, &self.ligand, &self.options)
+    /// What poses are rescored with; `None` where the contact effect is off or both weights are 0.
+    pub(super) fn rescorer(&self) -> Option<Rescorer> {
+        rescorer(&self.decisions, &self.receptor, &self.ligand, &self.options)
     }
 
     /// Whether an effect is on.

@@ -4,7 +4,7 @@
 //! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
 //! pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the score and the fine contact potential together: the rank score.
+//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the rank score.
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
@@ -16,7 +16,7 @@ use super::peaks::Peak;
 use super::run::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::FineContacts;
+use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
@@ -24,7 +24,7 @@ use rayon::prelude::*;
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pose: Pose,
-    /// The fast path's score at `pose`, and the fine contacts' there.
+    /// The fast path's score at `pose`, and what rescoring adds there.
     score: f64,
     /// The grid pose that it came from.
     grid_pose: Pose,
@@ -42,7 +42,7 @@ pub(super) struct Judge<'a> {
     /// The exact score.
     pub scorer: &'a ExactScorer,
     /// What poses are rescored with.
-    pub rescorer: Option<&'a FineContacts>,
+    pub rescorer: Option<&'a Rescorer>,
     /// Which effects are on, by effect.
     pub on: [bool; Effect::ALL.len()],
 }
@@ -66,7 +66,7 @@ pub(super) fn candidates(
     grid_poses: &[Pose],
     refined: &[(Pose, f64)],
     at_grid: &[ExactScore],
-    rescorer: Option<&FineContacts>,
+    rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = peaks
         .par_iter()
@@ -92,7 +92,7 @@ pub(super) fn candidates(
                 },
                 _ => candidate,
             };
-            let fine = rescorer.map_or(0.0, |rescorer| rescorer.score(&candidate.pose));
+            let fine = rescorer.map_or(0.0, |rescorer| rescorer.score(&candidate.pose).sum());
             Candidate {
                 score: candidate.score + fine,
                 ..candidate
@@ -262,11 +262,14 @@ impl Candidate {
         } else {
             (self.grid_pose, at_grid(), false)
         };
-        let fine_contact = rescorer.map(|rescorer| rescorer.score(&pose));
+        let rescored = rescorer
+            .map(|rescorer| rescorer.score(&pose))
+            .unwrap_or_default();
         RankedPose {
             pose,
-            fine_contact,
-            rank_score: terms.score + fine_contact.unwrap_or(0.0),
+            fine_contact: rescored.fine_contact,
+            atom_pair: rescored.atom_pair,
+            rank_score: terms.score + rescored.sum(),
             z_score: None,
             score: terms.score,
             cluster: None,

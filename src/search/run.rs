@@ -173,7 +173,7 @@ fn dock_in<T: Real>(
     clock.lap("check");
 
     let on = Effect::ALL.map(|effect| plan.is_on(effect));
-    let rescorer = plan.fine_contacts();
+    let rescorer = plan.rescorer();
     if rescorer.is_some() {
         progress.stage("rescore", 1);
     }

@@ -209,7 +209,9 @@ impl Workload {
             } else {
                 DOUBTFUL * options.tolerance
             },
-            rescored: if plan.is_on(Effect::Contact) && options.fine_contact_weight > 0.0 {
+            rescored: if plan.is_on(Effect::Contact)
+                && (options.fine_contact_weight > 0.0 || options.atom_pair_weight > 0.0)
+            {
                 poses
             } else {
                 0.0

@@ -18,6 +18,8 @@ pub struct Knots {
     pub charges: Vec<f64>,
     /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
     pub contact_types: Vec<Option<u8>>,
+    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where the knots carry none.
+    pub atom_kinds: Vec<Option<u8>>,
 }
 
 /// Why a set of knots was refused.
@@ -105,6 +107,7 @@ impl Knots {
             weights,
             charges: Vec::new(),
             contact_types: Vec::new(),
+            atom_kinds: Vec::new(),
         };
         knots.check()?;
         Ok(knots)
@@ -124,6 +127,16 @@ impl Knots {
             contact_types,
             ..self
         };
+        knots.check()?;
+        Ok(knots)
+    }
+
+    /// The same knots with kinds of atoms, which may be empty.
+    ///
+    /// # Errors
+    /// [`KnotsError`] when there are kinds but not one a knot.
+    pub fn with_atom_kinds(self, atom_kinds: Vec<Option<u8>>) -> Result<Self, KnotsError> {
+        let knots = Self { atom_kinds, ..self };
         knots.check()?;
         Ok(knots)
     }
@@ -163,6 +176,7 @@ impl Knots {
         let labels = [
             ("charges", self.charges.len()),
             ("contact types", self.contact_types.len()),
+            ("atom kinds", self.atom_kinds.len()),
         ];
         for (name, labels) in labels {
             if labels != 0 && labels != self.len() {

@@ -1,7 +1,7 @@
 //! What fuzzing found, each with its story. No mutated input has made a reader panic; promises were broken otherwise.
 
 use knotdock_scoring::effect::contact::Potential;
-use knotdock_scoring::rescoring::FinePotential;
+use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 
 /// The first runs on tables of potentials took too many inputs: whatever followed the last row, a copied line or a cut-off second table,
 /// was never looked at, so a table joined to another by mistake was half used without a word.
@@ -20,4 +20,8 @@ fn rows_after_a_table_are_refused() {
         FinePotential::parse(&format!("{fine}\n\n")).is_ok(),
         "blank lines may follow"
     );
+    let pairs = include_str!("../../scoring/src/rescoring/atom_pair_potential.csv");
+    assert!(AtomPairPotential::parse(pairs).is_ok());
+    let again = pairs.lines().next_back().unwrap();
+    assert!(AtomPairPotential::parse(&format!("{pairs}{again}\n")).is_err());
 }

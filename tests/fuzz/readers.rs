@@ -7,12 +7,12 @@ use std::path::Path;
 use knotdock::output::poses::PoseTable;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
-use knotdock_scoring::rescoring::FinePotential;
+use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
     AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ReadError, ReadOptions, Waters,
-    read_listed, write_molecule,
+    atom_kinds, read_listed, write_molecule,
 };
 
 /// A reader under test.
@@ -29,10 +29,11 @@ pub enum Reader {
     Run,
     Contact,
     FineContact,
+    AtomPair,
 }
 
 impl Reader {
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Pdb,
         Self::Mmcif,
         Self::Gzip,
@@ -44,6 +45,7 @@ impl Reader {
         Self::Run,
         Self::Contact,
         Self::FineContact,
+        Self::AtomPair,
     ];
 
     /// Sound inputs, small so that a change is likely to hit something that matters.
@@ -60,6 +62,7 @@ impl Reader {
             Self::Run => vec![RUN.to_owned()],
             Self::Contact => vec![include_str!("../../scoring/src/effect/contact_potential.csv").to_owned()],
             Self::FineContact => vec![include_str!("../../scoring/src/rescoring/fine_contact_potential.csv").to_owned()],
+            Self::AtomPair => vec![include_str!("../../scoring/src/rescoring/atom_pair_potential.csv").to_owned()],
         };
         texts.into_iter().map(String::into_bytes).collect()
     }
@@ -111,6 +114,7 @@ impl Reader {
             }
             Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
             Self::FineContact => table(bytes, |text| Ok(FinePotential::parse(text)?.ranges.into())),
+            Self::AtomPair => pair_table(bytes),
         }
     }
 }
@@ -140,12 +144,34 @@ fn table(bytes: &[u8], parse: fn(&str) -> Result<Vec<Potential>, PotentialError>
             }
             true
         }
-        Err(error) => {
-            assert!((1..=text.lines().count().max(1)).contains(&error.line));
-            assert!(!error.message.is_empty());
-            false
-        }
+        Err(error) => refused(text, &error),
     }
+}
+
+/// The same of energies of kinds of atoms.
+fn pair_table(bytes: &[u8]) -> bool {
+    let Ok(text) = str::from_utf8(bytes) else {
+        return false;
+    };
+    match AtomPairPotential::parse(text) {
+        Ok(table) => {
+            for a in 0..atom_kinds().len() {
+                for b in 0..=a {
+                    let energies = table.energies(a, b);
+                    assert!(energies.iter().all(|energy| energy.is_finite()));
+                    assert_eq!(energies, table.energies(b, a));
+                }
+            }
+            true
+        }
+        Err(error) => refused(text, &error),
+    }
+}
+
+fn refused(text: &str, error: &PotentialError) -> bool {
+    assert!((1..=text.lines().count().max(1)).contains(&error.line));
+    assert!(!error.message.is_empty());
+    false
 }
 
 /// Reads a structure by options that go round with the index, and uses what comes of it.

@@ -1,38 +1,24 @@
-//! The sum over contacts by distance range, with the receptor's atoms in cells.
+//! The sum over contacts by distance range.
 
+use super::cells::{Atom, Cells, typed};
 use super::potential::{ENDS, FinePotential, step_down};
 use crate::effect::contact::TYPES;
-use crate::exact::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
 /// Distance in Å from which nothing counts.
 const REACH: f64 = ENDS[2][1];
-/// Edge of a cell in Å, where the receptor is not so large that there would be more than [`MOST_CELLS`].
-const EDGE: f64 = 4.0;
-const MOST_CELLS: f64 = 4e6;
-
-#[derive(Clone, Copy)]
-struct Atom {
-    position: Vector3<f64>,
-    kind: usize,
-}
 
 /// Two bodies prepared for the sum of minus the weighted potential over their contacts.
 ///
 /// A pair of typed atoms at distance d scores `-weight sum_b E_b[a][c] (s_b(d) - s_{b-1}(d))` over the ranges b, s_b the step that ends
 /// range b and s_{-1} = 0. Atoms without a type take no part.
 pub struct FineContacts {
-    receptor: Vec<Atom>,
+    receptor: Cells,
     receptor_center: Vector3<f64>,
     ligand: Vec<Atom>,
     ligand_center: Vector3<f64>,
-    low: Vector3<f64>,
-    edge: f64,
-    cells: [usize; 3],
-    /// Place in `receptor` of each cell's first atom, row-major, and their number.
-    starts: Vec<u32>,
     /// What each step s_b is worth, `[receptor type][ligand type][range]`: -weight (E_b - E_{b+1}).
     steps: Vec<[[f64; 3]; TYPES.len()]>,
 }
@@ -40,35 +26,8 @@ pub struct FineContacts {
 impl FineContacts {
     /// Prepares two sets of knots with contact types; `weight` is score per RT.
     pub fn new(receptor: &Knots, ligand: &Knots, potential: &FinePotential, weight: f64) -> Self {
-        let receptor_center = center(receptor);
-        let ligand_center = center(ligand);
-        let mut atoms = typed(receptor, receptor_center);
-        let ends = |pick: fn(f64, f64) -> f64, start: f64| {
-            atoms.iter().fold(Vector3::repeat(start), |end, atom| {
-                end.zip_map(&atom.position, pick)
-            })
-        };
-        let low = ends(f64::min, 0.0);
-        let extent = ends(f64::max, 0.0) - low;
-        let count = |edge: f64| extent.map(|length| (length / edge).floor() + 1.0);
-        let mut edge = EDGE;
-        while count(edge).product() > MOST_CELLS {
-            edge *= 1.5;
-        }
-        let cells: [usize; 3] = count(edge).map(|n| n as usize).into();
-        let cell_of = |atom: &Atom| {
-            let [x, y, z]: [f64; 3] = ((atom.position - low) / edge).into();
-            (x as usize * cells[1] + y as usize) * cells[2] + z as usize
-        };
-        // Stable: atoms of a cell keep their order, so sums do too.
-        atoms.sort_by_key(cell_of);
-        let mut starts = vec![0u32; cells.iter().product::<usize>() + 1];
-        for atom in &atoms {
-            starts[cell_of(atom) + 1] += 1;
-        }
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
+        let (atoms, receptor_center) = typed(receptor, &receptor.contact_types, TYPES.len());
+        let (ligand, ligand_center) = typed(ligand, &ligand.contact_types, TYPES.len());
         let energy = |range: usize, a: usize, b: usize| {
             potential
                 .ranges
@@ -83,15 +42,11 @@ impl FineContacts {
             })
         });
         Self {
+            receptor: Cells::new(atoms),
             receptor_center,
-            ligand: typed(ligand, ligand_center),
+            ligand,
             ligand_center,
-            low,
-            edge,
-            cells,
-            starts,
             steps: steps.collect(),
-            receptor: atoms,
         }
     }
 
@@ -99,57 +54,21 @@ impl FineContacts {
     pub fn score(&self, pose: &Pose) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
-        self.ligand
-            .iter()
-            .map(|atom| self.atom(matrix * atom.position + place, atom.kind))
-            .sum()
-    }
-
-    /// What one ligand atom at a position relative to the receptor's centre adds.
-    fn atom(&self, position: Vector3<f64>, kind: usize) -> f64 {
-        let from = (position - self.low).map(|x| ((x - REACH) / self.edge).floor().max(0.0));
-        let to = (position - self.low).map(|x| ((x + REACH) / self.edge).floor());
-        if (0..3).any(|axis| to[axis] < 0.0 || from[axis] >= self.cells[axis] as f64) {
-            return 0.0;
-        }
-        let from = from.map(|x| x as usize);
-        let last = |axis: usize| (to[axis] as usize).min(self.cells[axis] - 1);
-        let mut sum = 0.0;
-        for x in from.x..=last(0) {
-            for y in from.y..=last(1) {
-                let row = (x * self.cells[1] + y) * self.cells[2];
-                let first = self.starts[row + from.z] as usize;
-                let end = self.starts[row + last(2) + 1] as usize;
-                for other in &self.receptor[first..end] {
-                    let square = (other.position - position).norm_squared();
-                    if square < REACH * REACH {
-                        let distance = square.sqrt();
-                        let worth = &self.steps[other.kind][kind];
-                        for (worth, ends) in worth.iter().zip(ENDS) {
-                            sum += worth * step_down(distance, ends);
-                        }
-                    }
+        let mut total = 0.0;
+        for atom in &self.ligand {
+            let mut sum = 0.0;
+            let position = matrix * atom.position + place;
+            self.receptor.near(position, REACH, |other, square| {
+                let distance = square.sqrt();
+                let worth = &self.steps[other.kind][atom.kind];
+                for (worth, ends) in worth.iter().zip(ENDS) {
+                    sum += worth * step_down(distance, ends);
                 }
-            }
+            });
+            total += sum;
         }
-        sum
+        total
     }
-}
-
-/// The atoms that have a type, relative to a centre.
-fn typed(knots: &Knots, center: Vector3<f64>) -> Vec<Atom> {
-    knots
-        .centers
-        .iter()
-        .zip(&knots.contact_types)
-        .filter_map(|(&x, kind)| {
-            let kind = usize::from((*kind)?);
-            (kind < TYPES.len()).then(|| Atom {
-                position: Vector3::from(x) - center,
-                kind,
-            })
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -2,12 +2,21 @@
 //!
 //! A search ranks poses by a correlation, in which every term is one radial function times a class matrix of low rank. Of the few thousand
 //! poses that it keeps, more can be asked. [`FineContacts`] asks which atoms meet at which distance: a potential of three
-//! ranges over all pairs of the types of [`crate::effect::contact`], summed over the atoms themselves.
+//! ranges over all pairs of the types of [`crate::effect::contact`], summed over the atoms themselves; it was learnt from interfaces. [`AtomPairs`] asks
+//! the same of every atom of every residue by itself, in finer steps; so much cannot be learnt from interfaces, and comes from the insides
+//! of proteins. [`Rescorer`] holds both.
 //!
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
+mod atom_pairs;
+mod cells;
 mod contacts;
+mod pair_potential;
 mod potential;
+mod rescorer;
 
+pub use atom_pairs::AtomPairs;
 pub use contacts::FineContacts;
+pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use potential::{FinePotential, RANGES};
+pub use rescorer::{Rescored, Rescorer};

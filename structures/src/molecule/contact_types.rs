@@ -1,10 +1,10 @@
-//! Contact types of amino acid atoms, from the table beside this file, which the script that derives the potential reads too.
+//! Contact types and kinds of amino acid atoms, from the table beside this file, which the scripts that derive potentials read too.
 
 use super::residues::parent;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Lines of `#`, a header, then residue,atom,type.
+/// Lines of `#`, a header, then residue,atom,type,kind.
 const TABLE: &str = include_str!("contact_types.csv");
 
 /// Names of the types; a type's number is its place here.
@@ -13,22 +13,56 @@ pub const CONTACT_TYPES: [&str; 18] = [
     "YCZ", "FCZ", "LCD", "CSG",
 ];
 
-static TYPES: LazyLock<HashMap<(&'static str, &'static str), u8>> = LazyLock::new(|| {
-    TABLE
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .skip(1)
-        .filter_map(|line| {
-            let mut fields = line.split(',');
-            let (residue, atom, name) = (fields.next()?, fields.next()?, fields.next()?);
-            let number = CONTACT_TYPES.iter().position(|known| *known == name)?;
-            Some(((residue, atom), u8::try_from(number).ok()?))
+/// What potentials know an atom by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct AtomTypes {
+    /// Place in [`CONTACT_TYPES`].
+    pub contact: u8,
+    /// Place in [`atom_kinds`].
+    pub kind: u8,
+}
+
+/// Residue, atom, contact type and kind of each row.
+fn rows() -> impl Iterator<Item = [&'static str; 4]> {
+    let lines = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.filter_map(|line| line.split(',').collect::<Vec<_>>().try_into().ok())
+}
+
+static KINDS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let mut kinds = Vec::new();
+    for [_, _, _, kind] in rows() {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+});
+
+static TYPES: LazyLock<HashMap<(&'static str, &'static str), AtomTypes>> = LazyLock::new(|| {
+    let place = |names: &[&str], name: &str| {
+        let place = names.iter().position(|known| *known == name)?;
+        u8::try_from(place).ok()
+    };
+    rows()
+        .filter_map(|[residue, atom, contact, kind]| {
+            let types = AtomTypes {
+                contact: place(&CONTACT_TYPES, contact)?,
+                kind: place(&KINDS, kind)?,
+            };
+            Some(((residue, atom), types))
         })
         .collect()
 });
 
-/// The contact type of an atom; `None` outside the amino acids of the table.
-pub(super) fn contact_type(residue_name: &str, atom_name: &str) -> Option<u8> {
+/// Names of the kinds of amino acid atoms, residue and atom as in `ARG_CZ`; a kind's number is its place here.
+///
+/// Atoms that a turn or a proton's choice makes alike are of one kind: the oxygens of a carboxylate, both sides of a ring.
+pub fn atom_kinds() -> &'static [&'static str] {
+    &KINDS
+}
+
+/// Contact type and kind of an atom; `None` outside the amino acids of the table.
+pub(super) fn atom_types(residue_name: &str, atom_name: &str) -> Option<AtomTypes> {
     let name = match (parent(residue_name), atom_name) {
         ("ILE", "CD") => "CD1",
         (_, "OT1" | "OT2" | "O1" | "O2" | "OT") => "OXT",
@@ -51,17 +85,23 @@ mod tests {
             "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL", "MSE", "SEC",
         ] {
             for (atom, _) in side_chain(name).unwrap() {
-                assert!(contact_type(name, atom).is_some(), "{name} {atom}");
+                assert!(atom_types(name, atom).is_some(), "{name} {atom}");
             }
             for atom in ["N", "CA", "C", "O", "OXT"] {
-                assert!(contact_type(name, atom).is_some(), "{name} {atom}");
+                assert!(atom_types(name, atom).is_some(), "{name} {atom}");
             }
         }
         // Nor does the table name an atom that no residue has.
         for (residue, atom) in TYPES.keys() {
             assert!(amino_acid_type(residue, atom).is_some(), "{residue} {atom}");
         }
-        assert_eq!(contact_type("HSD", "ND1"), contact_type("HIS", "ND1"));
-        assert_eq!(contact_type("HEM", "CA"), None);
+        assert_eq!(atom_types("HSD", "ND1"), atom_types("HIS", "ND1"));
+        assert_eq!(atom_types("HEM", "CA"), None);
+        // 167 atoms without OXT, of which nine are alike by symmetry.
+        assert_eq!(atom_kinds().len(), 158);
+        let kind = |residue, atom| atom_types(residue, atom).unwrap().kind;
+        assert_eq!(kind("ARG", "NH1"), kind("ARG", "NH2"));
+        assert_ne!(kind("ALA", "CB"), kind("SER", "CB"));
+        assert_eq!(atom_kinds()[usize::from(kind("ALA", "OXT"))], "ALA_O");
     }
 }

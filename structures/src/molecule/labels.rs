@@ -8,7 +8,7 @@ use super::charge_table::{
     AMINO_TERMINUS, BACKBONE, CARBOXYL_CARBON, CARBOXYL_OXYGENS, Charges, NUCLEOTIDE, PROLINE,
     PROLINE_TERMINUS, TERMINI_PKA, cofactor, ion, side_chain,
 };
-use super::contact_types::contact_type;
+use super::contact_types::atom_types;
 use super::groups::{GroupKind, Residue, residues};
 use super::{Atom, Molecule};
 use serde::Serialize;
@@ -24,6 +24,8 @@ pub struct Labels {
     pub charges: Vec<f64>,
     /// Contact type of each atom, `None` outside amino acids.
     pub contact_types: Vec<Option<u8>>,
+    /// Kind of each atom ([`super::atom_kinds`]), `None` outside amino acids.
+    pub atom_kinds: Vec<Option<u8>>,
     /// How they came about.
     pub report: LabelReport,
 }
@@ -50,13 +52,22 @@ pub struct LabelReport {
 impl Molecule {
     /// Charges at a pH, and contact types.
     pub fn labels(&self, ph: f64) -> Labels {
+        let types = self
+            .atoms
+            .iter()
+            .map(|atom| atom_types(&atom.residue_name, &atom.name));
+        let (contact_types, atom_kinds) = types
+            .map(|types| {
+                (
+                    types.map(|types| types.contact),
+                    types.map(|types| types.kind),
+                )
+            })
+            .unzip();
         let mut labels = Labels {
             charges: vec![0.0; self.atoms.len()],
-            contact_types: self
-                .atoms
-                .iter()
-                .map(|atom| contact_type(&atom.residue_name, &atom.name))
-                .collect(),
+            contact_types,
+            atom_kinds,
             report: LabelReport::default(),
         };
         let groups = residues(&self.atoms);

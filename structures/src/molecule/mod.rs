@@ -40,7 +40,7 @@ mod source;
 mod write;
 
 pub use accessible::PROBE;
-pub use contact_types::CONTACT_TYPES;
+pub use contact_types::{CONTACT_TYPES, atom_kinds};
 pub use error::ReadError;
 pub use groups::GroupKind;
 pub use input::InputSpec;

@@ -1,0 +1,126 @@
+//! Preparing the engine on CPU cores: everything that does not turn, for a rank of the lifted axis.
+
+use super::cpu::CpuEngine;
+use super::folded::{Factors, Folded};
+use super::plan::Plan;
+use crate::transform::Real;
+use crate::transform::nfft::Forward;
+use knotdock_structures::Knots;
+use nalgebra::Vector3;
+use num_complex::Complex;
+use std::sync::Arc;
+
+impl<T: Real> CpuEngine<T> {
+    /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
+    pub fn new(plan: Arc<Plan>, folded: &Folded<T>, ligand: &Knots, rank: usize) -> Self {
+        let factors = folded.factor(&plan.modes);
+        Self::with_factors(plan, folded, &factors, ligand, rank)
+    }
+
+    /// As [`Self::new`], with factors that are at hand.
+    pub fn with_factors(
+        plan: Arc<Plan>,
+        folded: &Folded<T>,
+        factors: &Factors,
+        ligand: &Knots,
+        rank: usize,
+    ) -> Self {
+        let modes = Arc::clone(&plan.modes);
+        let rank = rank.clamp(1, folded.full_rank());
+        let Factors {
+            combination,
+            coefficients,
+            singular,
+        } = factors;
+        let forward = ligand_forward::<T>(&plan, rank);
+        let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
+            (0..=modes.size[axis] as i32 / 2)
+                .map(|k| forward.deconvolution(axis, k))
+                .collect()
+        });
+        let zero = Complex::new(T::zero(), T::zero());
+        let mut spectra = vec![zero; rank * modes.count];
+        for column in &modes.columns {
+            let outer = factors[1][column.ky.unsigned_abs() as usize]
+                * factors[2][column.kz as usize]
+                / modes.volume();
+            for q in 0..rank {
+                for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
+                    let mut sum = zero;
+                    for (b, spectrum) in folded.spectra.iter().enumerate() {
+                        sum = sum + spectrum[column.start + i].scale(T::of(combination[(b, q)]));
+                    }
+                    let factor = outer * factors[0][k.unsigned_abs() as usize];
+                    spectra[rank * column.start + q * column.len() + i] = sum.scale(T::of(factor));
+                }
+            }
+        }
+        let weights = (0..ligand.len())
+            .flat_map(|j| (0..rank).map(move |q| (j, q)))
+            .map(|(j, q)| T::of(coefficients[(j, q)]))
+            .collect();
+        let scale = forward.cells_per_length();
+        let center = forward.center();
+        let mirrors = modes.mirrors();
+        let largest = singular
+            .first()
+            .copied()
+            .unwrap_or(1.0)
+            .max(f64::MIN_POSITIVE);
+        Self {
+            forward,
+            spectra,
+            weights,
+            ligand: ligand
+                .centers
+                .iter()
+                .map(|&y| Vector3::from(y) - plan.ligand_center)
+                .collect(),
+            block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
+            receptor_center: folded.center,
+            mirrors,
+            inverse_x: T::inverse_fft(modes.size[0]),
+            inverse_y: T::inverse_fft(modes.size[1]),
+            inverse_z: T::inverse_fft(modes.size[2]),
+            singular: singular.iter().map(|value| value / largest).collect(),
+            plan,
+        }
+    }
+
+    /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first fields are these.
+    #[must_use]
+    pub fn truncated(&self, rank: usize) -> Self {
+        let full = self.rank();
+        let rank = rank.clamp(1, full);
+        let columns = &self.plan.modes.columns;
+        let spectra = columns.iter().flat_map(|column| {
+            let start = full * column.start;
+            &self.spectra[start..start + rank * column.len()]
+        });
+        let weights = self.weights.chunks_exact(full);
+        Self {
+            plan: Arc::clone(&self.plan),
+            forward: ligand_forward::<T>(&self.plan, rank),
+            spectra: spectra.copied().collect(),
+            weights: weights
+                .flat_map(|fields| &fields[..rank])
+                .copied()
+                .collect(),
+            ligand: self.ligand.clone(),
+            mirrors: self.mirrors.clone(),
+            inverse_x: Arc::clone(&self.inverse_x),
+            inverse_y: Arc::clone(&self.inverse_y),
+            inverse_z: Arc::clone(&self.inverse_z),
+            singular: self.singular.clone(),
+            ..*self
+        }
+    }
+}
+
+/// The transform of the ligand, which may lie anyhow within its radius.
+pub(super) fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
+    let modes = &plan.modes;
+    let extent = [0, 1, 2]
+        .map(|axis| plan.ligand_radius * plan.fine[axis] as f64 / modes.lengths[axis] + 0.5);
+    Forward::new(Arc::clone(modes), plan.fine, plan.width, extent, rank)
+}

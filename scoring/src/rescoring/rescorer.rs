@@ -1,0 +1,38 @@
+//! All that poses are rescored with.
+
+use super::{AtomPairs, FineContacts};
+use crate::se3::Pose;
+
+/// Terms that are asked of a pose beside its score.
+pub struct Rescorer {
+    /// Contacts by range of distance.
+    pub fine_contacts: Option<FineContacts>,
+    /// The atom pair potential.
+    pub atom_pairs: Option<AtomPairs>,
+}
+
+/// What they say of a pose, weighted; higher is better. `None` where the term is left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rescored {
+    /// Fine contacts.
+    pub fine_contact: Option<f64>,
+    /// The atom pair potential.
+    pub atom_pair: Option<f64>,
+}
+
+impl Rescorer {
+    /// What is added to a pose's score.
+    pub fn score(&self, pose: &Pose) -> Rescored {
+        Rescored {
+            fine_contact: self.fine_contacts.as_ref().map(|terms| terms.score(pose)),
+            atom_pair: self.atom_pairs.as_ref().map(|terms| terms.score(pose)),
+        }
+    }
+}
+
+impl Rescored {
+    /// All terms together.
+    pub fn sum(&self) -> f64 {
+        self.fine_contact.unwrap_or(0.0) + self.atom_pair.unwrap_or(0.0)
+    }
+}

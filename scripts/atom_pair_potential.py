@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Derives the atom pair potential of knotdock from the insides of proteins.
+
+    python3 scripts/atom_pair_potential.py DIR [--split fit] [--without-fold K/N] [--exclude ID,...] [-o FILE]
+
+DIR is a folder as `scripts/benchmark.py` reads it; the unbound proteins of the split's pairs, each by itself, give the statistics. Kinds
+are the atoms of each amino acid by themselves, those alike by symmetry as one (structures/src/molecule/contact_types.csv). Counted are pairs of
+atoms whose residues stand at least --separation apart in the file, in shells of 0.5 A about the table's distances, the first one down to 0. In
+each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT: n_ab the pairs found, m_ab those of
+a reference state in which kinds are strewn by chance over as many pairs, x_a x_b n with x the share of a kind among all atoms
+(Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726), c a pseudocount. Both counts take a pair from both sides.
+
+Needs Python 3.9 or later and NumPy.
+"""
+
+import argparse
+import csv
+import datetime
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from contact_potential import ROOT, TYPES_FILE, fold, neighbours, open_text, part, select
+from whole_file import write
+
+DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/rescoring/pair_potential.rs
+STEP = 0.5  # A
+
+
+def main():
+    options = parse_arguments()
+    kinds, names = read_kinds()
+    pairs = select(options)
+    found = np.zeros((len(DISTANCES), len(names), len(names)))
+    atoms_of = np.zeros(len(names))
+    for pair in pairs:
+        for side in ("receptor", "ligand"):
+            positions, types, residues = read_atoms(part(options.folder / pair, f"{side}_unbound"), kinds)
+            atoms_of += np.bincount(types, minlength=len(names))
+            found += count(positions, types, residues, options.separation, len(names))
+    shares = atoms_of / atoms_of.sum()
+    expected = np.outer(shares, shares) * found.sum(axis=(1, 2), keepdims=True)
+    energies = -np.log((found + options.pseudocount) / (expected + options.pseudocount))
+    write_table(options, pairs, names, energies, found.sum() / 2)
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
+    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
+    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
+    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
+    parser.add_argument("--separation", type=int, default=10, help="residues between the two atoms' at least (default: 10)")
+    parser.add_argument("--pseudocount", type=float, default=30.0, help="expected pairs, counted from both sides (default: 30)")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=ROOT / "scoring/src/rescoring/atom_pair_potential.csv", help="default: the program's own table"
+    )
+    return parser.parse_args()
+
+
+def read_kinds():
+    """Kind by residue and atom, and the names of the kinds."""
+    with open(TYPES_FILE, newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    names = list(dict.fromkeys(row["kind"] for row in rows))
+    return {(row["residue"], row["atom"]): names.index(row["kind"]) for row in rows}, names
+
+
+def read_atoms(path, kinds):
+    """Positions, kinds and places of the residues of the atoms that have a kind, of the first model."""
+    positions, types, residues = [], [], []
+    residue, last = -1, None
+    for line in open_text(path).split("\nENDMDL")[0].splitlines():
+        if not line.startswith(("ATOM  ", "HETATM")) or line[16] not in " A1":
+            continue
+        if line[17:27] != last:
+            residue, last = residue + 1, line[17:27]
+        kind = kinds.get((line[17:20].strip(), line[12:16].strip()))
+        if kind is not None:
+            positions.append([float(line[start : start + 8]) for start in (30, 38, 46)])
+            types.append(kind)
+            residues.append(residue)
+    return np.array(positions), np.array(types), np.array(residues)
+
+
+def count(positions, types, residues, separation, kinds):
+    """Pairs by shell and kinds, each from both sides."""
+    first, second, distances = neighbours(positions, positions, DISTANCES[-1] + STEP / 2)
+    apart = np.abs(residues[first] - residues[second]) >= separation
+    first, second, distances = first[apart], second[apart], distances[apart]
+    shells = np.maximum(((distances - DISTANCES[0]) / STEP + 0.5).astype(int), 0)
+    counts = np.zeros((len(DISTANCES), kinds, kinds))
+    np.add.at(counts, (shells, types[first], types[second]), 1.0)
+    return counts
+
+
+def write_table(options, used, names, energies, pairs_counted):
+    lines = [
+        "# Atom pair potential in units of RT, -ln(found / expected) at distances in Angstrom; lower is better.",
+        f"# Written by scripts/atom_pair_potential.py on {datetime.date.today()} from {pairs_counted:.0f} pairs of atoms, residues {options.separation} or more "
+        f"apart, of {2 * len(used)} proteins; pseudocount {options.pseudocount:g}.",
+        "# Unbound receptors and ligands of Docking Benchmark 5 (BM5-clean, haddocking, Apache-2.0; Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041):",
+        f"# {' '.join(used)}",
+        "kind,kind," + ",".join(f"{distance:g}" for distance in DISTANCES),
+    ]
+    for a, name in enumerate(names):
+        for b in range(a + 1):
+            lines.append(f"{name},{names[b]}," + ",".join(f"{round(value, 2) + 0.0:.2f}" for value in energies[:, a, b]))
+    write(options.output, "\n".join(lines) + "\n")
+    print(f"{2 * len(used)} proteins; table in {options.output}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
