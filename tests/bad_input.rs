@@ -200,6 +200,9 @@ fn options_out_of_range() {
         ["--contact-weight", "-1"],
         ["--contact-potential", "receptor.pdb"],
         ["--contact-potential", "nowhere.csv"],
+        ["--fine-contact-potential", "receptor.pdb"],
+        ["--atom-pair-potential", "receptor.pdb"],
+        ["--atom-pair-weight", "-1"],
         ["--memory", "lots"],
         ["--threads", "0"],
         ["--native-receptor", "receptor.pdb"],
@@ -212,6 +215,25 @@ fn options_out_of_range() {
     place.refused(&["dock"]);
     place.refused(&["fold", "receptor.pdb"]);
     place.refused(&["complex", "run", "--rank", "0"]);
+}
+
+/// A table that breaks off is told by its last line.
+#[test]
+fn a_table_of_kinds_that_is_not_whole() {
+    let place = Place::new();
+    let whole = include_str!("../scoring/src/rescoring/atom_pair_potential.csv");
+    let lines: Vec<&str> = whole.lines().take(100).collect();
+    place.write("short.csv", &lines.join("\n"));
+    let error = place.refused(&[
+        "dock",
+        "receptor.pdb",
+        "ligand.pdb",
+        "--atom-pair-potential",
+        "short.csv",
+    ]);
+    says(&error, "short.csv");
+    says(&error, "pairs of kinds have no row");
+    assert_eq!(error["line"], 100);
 }
 
 #[test]

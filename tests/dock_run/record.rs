@@ -49,6 +49,53 @@ fn a_recorded_run_repeats_to_the_byte() {
     assert!(!folder.path().join("third").exists());
 }
 
+/// Tables of potentials are part of the record: a run repeats without the files that they came from.
+#[test]
+fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
+    let folder = place();
+    let tables = [
+        (
+            "contact",
+            include_str!("../../scoring/src/effect/contact_potential.csv"),
+        ),
+        (
+            "fine-contact",
+            include_str!("../../scoring/src/rescoring/fine_contact_potential.csv"),
+        ),
+        (
+            "atom-pair",
+            include_str!("../../scoring/src/rescoring/atom_pair_potential.csv"),
+        ),
+    ];
+    let options: Vec<String> = tables
+        .iter()
+        .map(|(name, own)| {
+            // The program's own, turned about.
+            let turned = own
+                .replace(",-", ",+")
+                .replace(",0", ",-0")
+                .replace(",+", ",");
+            assert_ne!(&turned, own);
+            fs::write(folder.path().join(format!("{name}.csv")), turned).unwrap();
+            format!("--{name}-potential {name}.csv")
+        })
+        .collect();
+    let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";
+    run(folder.path(), &format!("{dock} -o own"));
+    run(
+        folder.path(),
+        &format!("{dock} -o first {}", options.join(" ")),
+    );
+    for (name, _) in tables {
+        fs::remove_file(folder.path().join(format!("{name}.csv"))).unwrap();
+    }
+    run(folder.path(), "dock --from first/run.json -o again --quiet");
+    let [own, first, again] =
+        ["own", "first", "again"].map(|run| comparable(&folder.path().join(run)));
+    assert_eq!(first, again);
+    assert_ne!(own, first);
+}
+
 #[test]
 fn an_older_run_goes_only_when_told_and_when_the_new_one_is_done() {
     let folder = place();
