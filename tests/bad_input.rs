@@ -231,8 +231,8 @@ fn a_table_of_kinds_that_is_not_whole() {
         "--atom-pair-potential",
         "short.csv",
     ]);
-    says(&error, "short.csv");
     says(&error, "pairs of kinds have no row");
+    assert_eq!(error["file"], "short.csv");
     assert_eq!(error["line"], 100);
 }
 

@@ -6,7 +6,11 @@
 //!
 //! Printed are, for each rung of the ladder of accuracies and for three numbers of rotations, the seconds on the clock that both models
 //! expect and those that the search took, and the error expected and made. Each docking is done three times, or until they have taken a
-//! minute, and the fastest counts, for whatever else runs on the machine only ever slows one down; the slowest stands beside it.
+//! minute. `pace` is the time of a fixed piece of work just before and after a docking, over that beside the calibration: what the fitted model
+//! expects is of a machine at its pace then, so `share` sets the time taken, at that pace, against it. Told are the median share of the
+//! dockings and the time and pace of the one that had it.
+
+mod pace;
 
 use std::error::Error;
 use std::path::Path;
@@ -15,6 +19,7 @@ use knotdock::search::{DockOptions, DockPlan, Progress, dock, molecule_points, p
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::{CostModel, LADDER, Workload};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
+use pace::Pace;
 
 /// Dockings of a setting, and seconds after which no further one is begun.
 const MOST_DOCKINGS: usize = 3;
@@ -44,25 +49,64 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (pairs, []) = named.as_chunks::<2>() else {
         return Err("each receptor needs a ligand".into());
     };
+    let pace = Pace::new(threads);
+    // Memory is touched and the processor awake after one.
+    pace.seconds();
+    let before = pace.seconds();
     let fitted = calibrate(threads, &Silent)?;
-    println!("{threads} threads; fitted here: {fitted:?}");
+    let machine = Machine {
+        threads,
+        fitted,
+        // The model is of the fastest of its rounds.
+        at_fit: before.min(pace.seconds()),
+        pace,
+    };
+    println!(
+        "{threads} threads, pace {:.3} s; fitted here: {:?}",
+        machine.at_fit, machine.fitted
+    );
     for files in std::iter::once(&example).chain(pairs) {
-        pair(files, threads, &fitted)?;
+        pair(files, &machine)?;
     }
     Ok(())
 }
 
+/// What is known of the machine.
+struct Machine {
+    threads: usize,
+    fitted: CostModel,
+    pace: Pace,
+    /// Seconds of the pace's work about the calibration.
+    at_fit: f64,
+}
+
+/// A docking's time.
+#[derive(Clone, Copy)]
+struct Time {
+    seconds: f64,
+    pace: f64,
+}
+
+impl Time {
+    /// Seconds at the pace of the calibration.
+    fn even(self) -> f64 {
+        self.seconds / self.pace
+    }
+}
+
 /// Docks a pair at each setting.
-fn pair(files: &[String; 2], threads: usize, fitted: &CostModel) -> Result<(), Box<dyn Error>> {
+fn pair(files: &[String; 2], machine: &Machine) -> Result<(), Box<dyn Error>> {
+    let threads = machine.threads;
     let [receptor, ligand] = [molecule(&files[0])?, molecule(&files[1])?];
     println!(
-        "\n{}\n{:39}{:>9} {:>7} {:>7} {:>7} {:>16} {:>7}",
+        "\n{}\n{:39}{:>9} {:>7} {:>7} {:>7} {:>7} {:>16} {:>7}",
         files.join(" "),
         "setting",
         "built-in",
         "fitted",
         "took",
-        "slowest",
+        "pace",
+        "share",
         "error expected",
         "made"
     );
@@ -86,30 +130,36 @@ fn pair(files: &[String; 2], threads: usize, fitted: &CostModel) -> Result<(), B
         settings.push((options, Some(rung.error)));
     }
     for (options, error) in settings {
-        let (mut took, mut slowest, mut spent, mut dockings) = (f64::INFINITY, 0.0f64, 0.0, 0);
+        let (mut times, mut spent) = (Vec::new(), 0.0);
         let (plan, outcome) = loop {
+            let before = machine.pace.seconds();
             let clock = std::time::Instant::now();
             let plan: DockPlan = plan(&receptor, &ligand, &options)?;
             let outcome = dock(&plan, &molecule_points(&ligand), &Silent)?;
             let seconds = clock.elapsed().as_secs_f64();
-            (took, slowest) = (took.min(seconds), slowest.max(seconds));
+            let pace = 0.5 * (before + machine.pace.seconds()) / machine.at_fit;
+            times.push(Time { seconds, pace });
             spent += seconds;
-            dockings += 1;
-            if dockings == MOST_DOCKINGS || spent > ENOUGH_SECONDS {
+            if times.len() == MOST_DOCKINGS || spent > ENOUGH_SECONDS {
                 break (plan, outcome);
             }
         };
+        times.sort_by(|a, b| a.even().total_cmp(&b.even()));
+        let median = times[(times.len() - 1) / 2];
         let work = Workload::of(&plan);
         let expected = |model: &CostModel| model.seconds(&work, options.rotations, threads);
         println!(
-            "{:5} rotations, {:6} at {:.2} Å, rank {} ({:.0}) {:8.2} {:7.2} {took:7.2} {slowest:7.2} {:>16} {:7.1e}",
+            "{:5} rotations, {:6} at {:.2} Å, rank {} ({:.0}) {:8.2} {:7.2} {:7.2} {:7.2} {:7.2} {:>16} {:7.1e}",
             options.rotations,
             options.tolerance,
             plan.spacing,
             outcome.rank,
             work.rank,
             expected(&CostModel::BUILT_IN),
-            expected(fitted),
+            expected(&machine.fitted),
+            median.seconds,
+            median.pace,
+            median.even() / expected(&machine.fitted),
             error.map_or(String::new(), |error| format!("{error:.0e}")),
             outcome.error.rms,
         );
