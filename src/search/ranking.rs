@@ -16,7 +16,7 @@ use super::peaks::Peak;
 use super::run::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::rescoring::{Rescored, Rescorer};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
@@ -26,6 +26,8 @@ pub(super) struct Candidate {
     pose: Pose,
     /// The fast path's score at `pose`, and what rescoring adds there.
     score: f64,
+    /// What rescoring says of `pose`.
+    rescored: Rescored,
     /// The grid pose that it came from.
     grid_pose: Pose,
     /// All terms at `grid_pose`, where they are known already.
@@ -77,6 +79,7 @@ pub(super) fn candidates(
             let candidate = Candidate {
                 pose: *grid_pose,
                 score: score_grid,
+                rescored: Rescored::default(),
                 grid_pose: *grid_pose,
                 terms: at_grid.get(index).copied(),
                 refined: false,
@@ -92,9 +95,12 @@ pub(super) fn candidates(
                 },
                 _ => candidate,
             };
-            let fine = rescorer.map_or(0.0, |rescorer| rescorer.score(&candidate.pose).sum());
+            let rescored = rescorer
+                .map(|rescorer| rescorer.score(&candidate.pose))
+                .unwrap_or_default();
             Candidate {
-                score: candidate.score + fine,
+                score: candidate.score + rescored.sum(),
+                rescored,
                 ..candidate
             }
         })
@@ -262,9 +268,11 @@ impl Candidate {
         } else {
             (self.grid_pose, at_grid(), false)
         };
-        let rescored = rescorer
-            .map(|rescorer| rescorer.score(&pose))
-            .unwrap_or_default();
+        let rescored = match rescorer {
+            // An undone climb leaves another pose than was rescored.
+            Some(rescorer) if refined != self.refined => rescorer.score(&pose),
+            _ => self.rescored,
+        };
         RankedPose {
             pose,
             fine_contact: rescored.fine_contact,
