@@ -234,6 +234,8 @@ fn a_table_of_kinds_that_is_not_whole() {
     says(&error, "pairs of kinds have no row");
     assert_eq!(error["file"], "short.csv");
     assert_eq!(error["line"], 100);
+    let remedy = error["remedy"].as_str().unwrap();
+    assert!(remedy.contains("atom_pair_potential.py"), "{remedy}");
 }
 
 #[test]

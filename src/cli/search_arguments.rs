@@ -163,33 +163,28 @@ impl KernelArguments {
     /// # Errors
     /// [`Failure`] when a contact potential cannot be read.
     pub fn options(&self) -> Result<DockOptions, Failure> {
-        let contact_potential = match &self.contact_potential {
-            Some(path) => Some(read_potential(path, "contact-potential", Potential::parse)?),
-            None => None,
-        };
-        let fine_contact_potential = match &self.fine_contact_potential {
-            Some(path) => Some(read_potential(
-                path,
-                "fine-contact-potential",
-                FinePotential::parse,
-            )?),
-            None => None,
-        };
-        let atom_pair_potential = match &self.atom_pair_potential {
-            Some(path) => Some(read_potential(
-                path,
-                "atom-pair-potential",
-                AtomPairPotential::parse,
-            )?),
-            None => None,
-        };
         let default = DockOptions::default();
         Ok(DockOptions {
-            contact_potential,
-            atom_pair_weight: self.atom_pair_weight,
-            atom_pair_potential,
+            contact_potential: read_potential(
+                self.contact_potential.as_deref(),
+                "contact-potential",
+                "contact_potential.py",
+                Potential::parse,
+            )?,
             fine_contact_weight: self.fine_contact_weight,
-            fine_contact_potential,
+            fine_contact_potential: read_potential(
+                self.fine_contact_potential.as_deref(),
+                "fine-contact-potential",
+                "contact_potential.py --fine",
+                FinePotential::parse,
+            )?,
+            atom_pair_weight: self.atom_pair_weight,
+            atom_pair_potential: read_potential(
+                self.atom_pair_potential.as_deref(),
+                "atom-pair-potential",
+                "atom_pair_potential.py",
+                AtomPairPotential::parse,
+            )?,
             resolution: self.resolution.unwrap_or(default.resolution),
             pass_length: self.pass_length,
             spacing: self.spacing,
@@ -253,19 +248,24 @@ fn sample_weights(text: &str) -> Result<SampleWeights, String> {
     }
 }
 
+/// The table that an option names, if it does; `script` writes such tables.
 fn read_potential<P>(
-    path: &Path,
+    path: Option<&Path>,
     option: &str,
+    script: &str,
     parse: fn(&str) -> Result<P, PotentialError>,
-) -> Result<P, Failure> {
-    let remedy =
-        format!("give a table as scripts/contact_potential.py writes it, or leave --{option} out");
+) -> Result<Option<P>, Failure> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let remedy = format!("give a table as scripts/{script} writes it, or leave --{option} out");
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::input(&error).at(path).remedy(&remedy))?;
-    parse(&text).map_err(|error| {
+    let table = parse(&text).map_err(|error| {
         Failure::input(&error)
             .at(path)
             .on_line(Some(error.line as u64))
             .remedy(remedy)
-    })
+    })?;
+    Ok(Some(table))
 }
