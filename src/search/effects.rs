@@ -264,7 +264,7 @@ pub(super) fn rescorer(
 ) -> Option<Rescorer> {
     let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
     let (fine, pairs) = (options.fine_contact_weight, options.atom_pair_weight);
-    let asked = decisions.iter().any(contact) && (fine > 0.0 || pairs > 0.0);
+    let asked = decisions.iter().any(contact) && options.asks_rescoring();
     asked.then(|| Rescorer {
         fine_contacts: (fine > 0.0).then(|| {
             let potential = options.fine_contact_potential.clone().unwrap_or_default();

@@ -7,8 +7,8 @@ use knotdock_structures::knots::KnotsError;
 
 use super::cost_model::{CostModel, Workload};
 use crate::search::{
-    Decision, DockOptions, DockOutcome, DockPlan, LengthUnit, Progress, Scene, SearchError,
-    StageTime, dock, plan_scene,
+    Decision, DockOptions, DockPlan, LengthUnit, Progress, Scene, SearchError, StageTime, dock,
+    plan_scene,
 };
 use knotdock_structures::molecule::LabelReport;
 
@@ -67,10 +67,11 @@ pub fn calibrate(threads: usize, progress: &dyn Progress) -> Result<CostModel, S
 
 /// Dockings of a setting that were timed.
 struct Timed {
-    outcome: DockOutcome,
-    /// Stages of the outcome, each as fast as it ever was.
+    /// Each as fast as it ever was.
     stages: Vec<StageTime>,
     work: Workload,
+    /// Exact sums of the stage `check`.
+    checked: f64,
     rotations: f64,
     in_flight: f64,
     rotation_set_seconds: f64,
@@ -124,8 +125,8 @@ fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchEr
         rotations: plan.rotations as f64,
         in_flight: plan.in_flight as f64,
         rotation_set_seconds,
-        stages: outcome.timing.clone(),
-        outcome,
+        checked: outcome.error.poses as f64,
+        stages: outcome.timing,
     })
 }
 
@@ -212,7 +213,7 @@ fn fit(runs: &[Timed]) -> CostModel {
             values.iter().sum::<f64>() / values.len() as f64
         }
     };
-    let checked = |run: &Timed| run.stage("check") / run.outcome.error.poses as f64;
+    let checked = |run: &Timed| run.stage("check") / run.checked;
     let pair = FLATTER
         * mean(
             &|run| checked(run) / run.work.pairs,

@@ -209,9 +209,7 @@ impl Workload {
             } else {
                 DOUBTFUL * options.tolerance
             },
-            rescored: if plan.is_on(Effect::Contact)
-                && (options.fine_contact_weight > 0.0 || options.atom_pair_weight > 0.0)
-            {
+            rescored: if plan.is_on(Effect::Contact) && options.asks_rescoring() {
                 poses
             } else {
                 0.0
