@@ -144,6 +144,17 @@ fn rescoring_orders_poses_and_changes_no_score() {
             );
         }
     }
+    // Each term by itself.
+    for (off, on) in [("fine-contact", "atom_pair"), ("atom-pair", "fine_contact")] {
+        let option = format!("--{off}-weight");
+        for row in table(&[&option, "0"]) {
+            assert_eq!(row[&off.replace('-', "_")], "");
+            assert_eq!(
+                number(&row, "rank_score"),
+                number(&row, "score") + number(&row, on)
+            );
+        }
+    }
     let mut moved = 0;
     for row in &twice {
         let same = |other: &&std::collections::BTreeMap<String, String>| {
