@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from contact_potential import ROOT, TYPES_FILE, fold, neighbours, open_text, part, select
+from contact_potential import ROOT, TYPES_FILE, neighbours, open_text, pair_arguments, part, select
 from whole_file import write
 
 DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/rescoring/pair_potential.rs
@@ -47,10 +47,7 @@ def main():
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
-    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
-    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
-    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
+    pair_arguments(parser)
     parser.add_argument("--separation", type=int, default=10, help="residues between the two atoms' at least (default: 10)")
     parser.add_argument("--pseudocount", type=float, default=30.0, help="expected pairs, counted from both sides (default: 30)")
     parser.add_argument(

@@ -5,7 +5,9 @@
 
 Each folder (or several, with commas between them, which hold a setting's pairs together) is the --out of a `scripts/benchmark.py` run; pairs and seeds that all of them hold are compared. Success among the first N
 is the number of pairs, as the mean over seeds. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
-a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none.
+a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none. A second table has
+the mean logarithm of the first rank, which a rank that is merely better moves, too: over turns, then over pairs; with its difference from
+the first setting's and the standard error of that over pairs. What was not found counts as rank 3,000.
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -21,6 +23,7 @@ from whole_file import write
 
 DEPTHS = (1, 10, 100, 1000)
 CRITERIA = (("acceptable", "first_acceptable_rank"), ("near-native", "first_near_native_rank"))
+NOT_FOUND = 3000
 
 
 def main():
@@ -58,6 +61,7 @@ def main():
                 for key, values in columns.items()
             ]
             lines.append("| gain | " + " | ".join(gains) + " | |")
+    lines += ["", *log_ranks(runs, complete, seeds)]
     text = "\n".join(lines) + "\n"
     if options.output:
         write(options.output, text)
@@ -89,6 +93,27 @@ def read(folders, ranking="poses"):
                 ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
                 rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}
     return rows
+
+
+def log_ranks(runs, pairs, seeds):
+    """Table of mean log ranks, and of their differences from the first run's."""
+    lines = ["| mean log rank | " + " | ".join(f"{name} | against the first" for name, _ in CRITERIA) + " |", "|---" * 5 + "|"]
+    first = None
+    for name, rows in runs.items():
+        means = {
+            column: [statistics.fmean(math.log(min(rows[pair, seed][column], NOT_FOUND)) for seed in seeds) for pair in pairs]
+            for _, column in CRITERIA
+        }
+        cells = []
+        for column, values in means.items():
+            gain = ""
+            if first is not None and len(pairs) > 1:
+                gains = [a - b for a, b in zip(values, first[column])]
+                gain = f"{statistics.fmean(gains):+.2f} ({statistics.stdev(gains) / math.sqrt(len(gains)):.2f})"
+            cells += [f"{statistics.fmean(values):.2f}", gain]
+        first = first or means
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return lines
 
 
 def draw_pairs(count, resamples):

@@ -87,10 +87,7 @@ def shares(counts):
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
-    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
-    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
-    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
+    pair_arguments(parser)
     parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
     parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
     parser.add_argument("--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)")
@@ -104,6 +101,14 @@ def parse_arguments():
     if options.output is None:
         options.output = ROOT / "scoring/src" / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
     return options
+
+
+def pair_arguments(parser):
+    """The options that say which pairs the statistics are of, for `select`."""
+    parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
+    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
+    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
+    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
 
 
 def fold(text):

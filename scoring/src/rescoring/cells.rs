@@ -1,7 +1,5 @@
 //! Atoms in cells, so that those near a point are found without asking all.
 
-use crate::exact::center;
-use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
 /// Edge of a cell in Å, where the atoms do not lie so far apart that there would be more than [`MOST_CELLS`].
@@ -14,28 +12,6 @@ pub(super) struct Atom {
     /// Relative to its body's centre, Å.
     pub position: Vector3<f64>,
     pub kind: usize,
-}
-
-/// The atoms of a set of knots that have a type below `kinds`, relative to the middle of the set, which comes with them.
-pub(super) fn typed(
-    knots: &Knots,
-    types: &[Option<u8>],
-    kinds: usize,
-) -> (Vec<Atom>, Vector3<f64>) {
-    let center = center(knots);
-    let atoms = knots
-        .centers
-        .iter()
-        .zip(types)
-        .filter_map(|(&x, kind)| {
-            let kind = usize::from((*kind)?);
-            (kind < kinds).then(|| Atom {
-                position: Vector3::from(x) - center,
-                kind,
-            })
-        })
-        .collect();
-    (atoms, center)
 }
 
 /// Atoms by cell.

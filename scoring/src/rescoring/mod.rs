@@ -9,6 +9,7 @@
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
 mod atom_pairs;
+mod bodies;
 mod cells;
 mod contacts;
 mod pair_potential;
