@@ -113,8 +113,9 @@ mod tests {
 
     #[test]
     fn cells_give_the_double_sum() {
-        let mut met = 0;
-        for (count, size, at) in [(400, 30.0, 0.0), (60, 200.0, 1e6), (1, 1.0, -3.0)] {
+        // The last one's atoms lie far apart, with next to nothing within reach.
+        for (count, size, at) in [(400, 30.0, 0.0), (300, 50.0, 1e6), (60, 200.0, -3.0)] {
+            let mut met = 0;
             let (a, b) = (cloud(count, size, 1, at), cloud(80, 18.0, 2, 5.0));
             let bodies = Bodies::new(&a, &b, |knots| &knots.atom_kinds, KINDS);
             for step in 0..40 {
@@ -132,8 +133,8 @@ mod tests {
                     "{got} {expected}"
                 );
             }
+            assert!(met > 20 || size > 100.0, "poses that touch: {met}");
         }
-        assert!(met > 40, "poses that touch: {met}");
     }
 
     #[test]
