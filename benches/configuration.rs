@@ -4,26 +4,20 @@
 //! `cargo bench --bench configuration` prints medians in microseconds, and nanoseconds a mode, which stay level where time is
 //! linear in modes. B&I (Fig. 9) report under a millisecond for fewer than 4,096 modes.
 
+mod example;
+
 use knotdock_scoring::configuration::Configuration;
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, total};
-use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
-use std::path::Path;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
-    let load = |name: &str| -> Result<_, Box<dyn Error>> {
-        let spec = InputSpec::whole(folder.join(name));
-        Ok(read(&spec, &ReadOptions::default())?.knots()?)
-    };
-    let receptor = load("1ppe_receptor_unbound.pdb")?;
-    let ligand = load("1ppe_ligand_unbound.pdb")?;
+    let [receptor, ligand] = example::knots()?;
     let mut options = knotdock::search::DockOptions::default().engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;

@@ -5,6 +5,8 @@
 //! score of the run; the time is that of the fastest rotation, one thread, single precision. Below, for each error asked, the
 //! fastest setting of either engine that meets it. Neither engine's preparation of the receptor, once a run, counts.
 
+mod example;
+
 use knotdock::search::DockOptions;
 use knotdock::search::rotations::rotation_set;
 use knotdock_scoring::engine::Folded;
@@ -15,10 +17,8 @@ use knotdock_scoring::kernel::{Band, ProductScorer};
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -43,14 +43,10 @@ struct Pair {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
-    let load = |name: &str| -> Result<_, Box<dyn Error>> {
-        let spec = InputSpec::whole(folder.join(name));
-        Ok(read(&spec, &ReadOptions::default())?.knots()?)
-    };
+    let [receptor, ligand] = example::knots()?;
     let pair = Pair {
-        receptor: load("1ppe_receptor_unbound.pdb")?,
-        ligand: load("1ppe_ligand_unbound.pdb")?,
+        receptor,
+        ligand,
         rotations: rotation_set(ROTATIONS),
     };
     let base = DockOptions::default().engine();

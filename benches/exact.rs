@@ -3,29 +3,23 @@
 //! `cargo bench --bench exact` prints microseconds a pose and nanoseconds a pair within reach, medians over the best grid pose of
 //! each of some rotations.
 
+mod example;
+
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use nalgebra::Vector3;
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 const POSES: usize = 201;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
-    let load = |name: &str| -> Result<_, Box<dyn Error>> {
-        let spec = InputSpec::whole(folder.join(name));
-        Ok(read(&spec, &ReadOptions::default())?.knots()?)
-    };
-    let receptor = load("1ppe_receptor_unbound.pdb")?;
-    let ligand = load("1ppe_ligand_unbound.pdb")?;
+    let [receptor, ligand] = example::knots()?;
     let options = knotdock::search::DockOptions::default().engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let prepared = Instant::now();

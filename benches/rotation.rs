@@ -4,28 +4,22 @@
 //! is held against: q forward real transforms of the fine grid and one inverse of the mode grid, unpruned, out of place, by
 //! realfft and rustfft with the `transpose` crate between axes.
 
+mod example;
+
 use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::lifted_axis::Fold;
-use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use num_complex::Complex32;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 const ROTATIONS: usize = 101;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
-    let load = |name: &str| -> Result<_, Box<dyn Error>> {
-        let spec = InputSpec::whole(folder.join(name));
-        Ok(read(&spec, &ReadOptions::default())?.knots()?)
-    };
-    let receptor = load("1ppe_receptor_unbound.pdb")?;
-    let ligand = load("1ppe_ligand_unbound.pdb")?;
+    let [receptor, ligand] = example::knots()?;
     let options = knotdock::search::DockOptions::default().engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);

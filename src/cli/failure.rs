@@ -2,10 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::poses_reader::PoseTableError;
-use knotdock::output::recorded_run::RecordedRunError;
-use knotdock::output::staging::StagingError;
-
 /// Whose fault it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -97,34 +93,5 @@ impl Failure {
             "message": self.message,
             "remedy": self.remedy,
         }})
-    }
-}
-
-impl From<StagingError> for Failure {
-    fn from(error: StagingError) -> Self {
-        let failure = if error.is_input() {
-            Self::input(&error)
-        } else {
-            Self::other(&error)
-        };
-        failure.at(error.path()).remedy(error.remedy())
-    }
-}
-
-impl From<PoseTableError> for Failure {
-    fn from(error: PoseTableError) -> Self {
-        Self::input(&error)
-            .at(error.path())
-            .on_line(error.line())
-            .remedy(error.remedy())
-    }
-}
-
-impl From<RecordedRunError> for Failure {
-    fn from(error: RecordedRunError) -> Self {
-        Self::input(&error)
-            .at(error.path())
-            .on_line(error.line())
-            .remedy("give a run that `knotdock dock` of this version wrote")
     }
 }

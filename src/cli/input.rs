@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use knotdock::output::input_record::{InputRecord, InputRecordError};
+use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
-use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
+use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
 use super::failure::Failure;
 use super::mesh_input::is_mesh;
@@ -100,32 +100,6 @@ fn stem(name: &str) -> &str {
         }
     }
     name.get(..end).unwrap_or(name)
-}
-
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        let failure = Self::input(&error)
-            .on_line(error.line().and_then(|line| u64::try_from(line).ok()))
-            .remedy(error.remedy());
-        match error.file() {
-            Some(file) => failure.at(file),
-            None => failure,
-        }
-    }
-}
-
-impl From<InputRecordError> for Failure {
-    fn from(error: InputRecordError) -> Self {
-        let remedy = match &error {
-            InputRecordError::Read { .. } => {
-                "put the file where the run found it, or beside the directory of the run"
-            }
-            InputRecordError::Changed { .. } => {
-                "put back the file that the run was made from, or dock again"
-            }
-        };
-        Self::input(&error).at(error.path()).remedy(remedy)
-    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod evaluate;
 mod failure;
 mod input;
 mod inspect;
+mod library_errors;
 mod machine_arguments;
 mod memory;
 mod mesh_input;

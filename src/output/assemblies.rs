@@ -12,23 +12,20 @@ use knotdock_structures::mesh::Mesh;
 
 use super::manifest::VERSION;
 use super::poses::{PoseRow, number};
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 
 /// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the rows.
 ///
 /// # Errors
-/// [`StagingError`] when the folder cannot be made or a file cannot be written.
+/// [`FileError`] when the folder cannot be made or a file cannot be written.
 pub fn write_assemblies(
     receptor: &Mesh,
     ligand: &Mesh,
     rows: &[PoseRow],
     folder: &Path,
-) -> Result<Vec<String>, StagingError> {
+) -> Result<Vec<String>, FileError> {
     if !rows.is_empty() {
-        std::fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
-            directory: folder.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
     rows.iter()
         .map(|row| {

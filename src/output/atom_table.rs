@@ -9,7 +9,7 @@ use std::path::Path;
 use knotdock_structures::molecule::{DropKind, Listed};
 
 use super::poses::number;
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 
 /// The columns, in order.
 pub const COLUMNS: [&str; 16] = [
@@ -34,8 +34,8 @@ pub const COLUMNS: [&str; 16] = [
 /// Writes the table, whole or not at all.
 ///
 /// # Errors
-/// [`StagingError`].
-pub fn write(path: &Path, listed: &[Listed]) -> Result<(), StagingError> {
+/// [`FileError`].
+pub fn write(path: &Path, listed: &[Listed]) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut table = csv::Writer::from_writer(&mut *file);
         table.write_record(COLUMNS).map_err(io::Error::other)?;

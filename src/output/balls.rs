@@ -5,7 +5,7 @@ use std::path::Path;
 
 use knotdock_structures::Knots;
 
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 
 /// Header of the table.
 pub const COLUMNS: &str = "x,y,z,r,weight";
@@ -13,8 +13,8 @@ pub const COLUMNS: &str = "x,y,z,r,weight";
 /// Writes the table: a row a knot, in the file's unit, 17 significant digits a number, which read back to the same double.
 ///
 /// # Errors
-/// [`StagingError`] when the file cannot be made or written.
-pub fn write_table(knots: &Knots, path: &Path) -> Result<(), StagingError> {
+/// [`FileError`] when the file cannot be made or written.
+pub fn write_table(knots: &Knots, path: &Path) -> Result<(), FileError> {
     write_whole(path, |file| {
         writeln!(file, "{COLUMNS}")?;
         for ((center, radius), weight) in knots.centers.iter().zip(&knots.radii).zip(&knots.weights)
@@ -33,8 +33,8 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<(), StagingError> {
 /// Writes the balls as an OBJ mesh: a sphere of 80 triangles each, circumscribed about none and inscribed in its ball.
 ///
 /// # Errors
-/// [`StagingError`] when the file cannot be made or written.
-pub fn write_mesh(knots: &Knots, path: &Path) -> Result<(), StagingError> {
+/// [`FileError`] when the file cannot be made or written.
+pub fn write_mesh(knots: &Knots, path: &Path) -> Result<(), FileError> {
     let (vertices, triangles) = icosphere();
     write_whole(path, |file| {
         writeln!(file, "# {} balls written by knotdock sample", knots.len())?;
@@ -118,7 +118,7 @@ pub enum PseudoAtomError {
     },
     /// The file could not be written.
     #[error(transparent)]
-    File(#[from] StagingError),
+    File(#[from] FileError),
 }
 
 /// Writes the balls as pseudo-atoms of a PDB file: HETATM records named `X` of residue `BAL`, a residue a ball, with the radius

@@ -9,7 +9,7 @@ use knotdock_structures::molecule::{
 
 use super::manifest::VERSION;
 use super::poses::PoseRow;
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 
 /// Complexes as written.
 #[derive(Clone, Debug)]
@@ -24,18 +24,15 @@ pub struct Written {
 /// complex does not fit the PDB format.
 ///
 /// # Errors
-/// [`StagingError`] when the folder cannot be made or a file cannot be written.
+/// [`FileError`] when the folder cannot be made or a file cannot be written.
 pub fn write_complexes(
     receptor: &Molecule,
     ligand: &Molecule,
     rows: &[PoseRow],
     folder: &Path,
-) -> Result<Written, StagingError> {
+) -> Result<Written, FileError> {
     if !rows.is_empty() {
-        std::fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
-            directory: folder.to_owned(),
-            source,
-        })?;
+        std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
     // Placed ligands are made twice, once to see whether they fit and once to be written: many at once may not fit
     // into the memory.
@@ -63,12 +60,8 @@ pub fn write_complexes(
     let chains = match chains {
         Some(chains) => chains,
         // No complex was asked for: the names are what they would have been.
-        None => write_complex(&mut io::sink(), format, receptor, ligand, &[]).map_err(|error| {
-            StagingError::Write {
-                path: folder.to_owned(),
-                source: io_error(error),
-            }
-        })?,
+        None => write_complex(&mut io::sink(), format, receptor, ligand, &[])
+            .map_err(|error| FileError::writing(folder, io_error(error)))?,
     };
     Ok(Written { names, chains })
 }

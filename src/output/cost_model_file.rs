@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::staging::{StagingError, write_json};
+use super::whole_file::{FileError, write_json};
 use crate::tradeoff::cost_model::CostModel;
 
 /// Number of the layout of the file; it rises when an entry or what a coefficient multiplies changes.
@@ -58,13 +58,10 @@ pub fn default_path() -> Option<PathBuf> {
 /// Writes a cost model, whole or not at all, and the folder for it.
 ///
 /// # Errors
-/// [`StagingError`].
-pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), StagingError> {
+/// [`FileError`].
+pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|source| StagingError::Unwritable {
-            directory: folder.to_owned(),
-            source,
-        })?;
+        fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
     let file = File {
         schema: SCHEMA,

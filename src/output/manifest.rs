@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 use super::input_record::{InputRecord, NativeRecord};
 use super::run_options::RunOptions;
-use super::staging::{StagingError, write_json};
+use super::whole_file::{FileError, write_json};
 use crate::evaluate::MatchReport;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::meshes::SampledPart;
@@ -221,8 +221,8 @@ impl<'a> Manifest<'a> {
     /// Writes the manifest, whole or not at all.
     ///
     /// # Errors
-    /// [`StagingError`].
-    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+    /// [`FileError`].
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
         write_json(path, self)
     }
 }

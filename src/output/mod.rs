@@ -5,7 +5,7 @@
 //! # Conventions
 //!
 //! - Every file is written whole under a `.partial` name and then renamed, so that a run that fails or is killed never
-//!   leaves part of a file where a whole one is looked for. See [`staging`].
+//!   leaves part of a file where a whole one is looked for. See [`whole_file`] and [`staging`].
 //! - Coordinates are in Å, of meshes in the unit of their files. A pose carries the ligand from its own file's frame to the receptor's.
 //! - Numbers are printed in the shortest digits that read back to the same f64; a value that does not exist is an empty
 //!   field in CSV and `null` in JSON, never NaN.
@@ -27,3 +27,4 @@ pub mod run_options;
 pub mod sample_picture;
 pub mod staging;
 pub mod tradeoff;
+pub mod whole_file;

@@ -12,7 +12,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
@@ -185,8 +185,8 @@ impl PoseTable {
     /// Writes the table, whole or not at all.
     ///
     /// # Errors
-    /// [`StagingError`] when the file cannot be made or written.
-    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+    /// [`FileError`] when the file cannot be made or written.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
         write_whole(path, |file| self.write_to(file))
     }
 

@@ -11,7 +11,7 @@ use knotdock_structures::sampler::Ball;
 use knotdock_structures::sampler::skeletal_density::share;
 use rayon::prelude::*;
 
-use super::staging::{StagingError, write_whole};
+use super::whole_file::{FileError, write_whole};
 
 /// Pixels along the longer edge of a slice.
 const PIXELS: usize = 72;
@@ -25,8 +25,8 @@ const SHOWN: usize = 3000;
 /// Writes the picture of `balls` (in the solid's unit) beside the fields of `solid`.
 ///
 /// # Errors
-/// [`StagingError`] when the file cannot be made or written.
-pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<(), StagingError> {
+/// [`FileError`] when the file cannot be made or written.
+pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<(), FileError> {
     let text = picture(solid, balls);
     write_whole(path, |file| file.write_all(text.as_bytes()))
 }

@@ -5,13 +5,9 @@
 //! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-/// Name of the folder in which a run is built, and ending of single files that are being written.
-pub const PARTIAL: &str = ".partial";
+use super::whole_file::{FileError, PARTIAL};
 
 /// What a command puts into its directory.
 #[derive(Debug, PartialEq, Eq)]
@@ -55,22 +51,9 @@ pub enum StagingError {
         /// The record that would show it to be a run.
         record: &'static str,
     },
-    /// The directory cannot be made or written to.
-    #[error("cannot write to {}: {source}", directory.display())]
-    Unwritable {
-        /// The directory.
-        directory: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// A file could not be written although its directory could: a full disk, for instance.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
+    /// Something could not be written.
+    #[error(transparent)]
+    Write(#[from] FileError),
 }
 
 impl StagingError {
@@ -81,24 +64,24 @@ impl StagingError {
                 "choose another directory with -o, or pass --force to replace the run"
             }
             Self::NotARun { .. } => "choose another directory with -o",
-            Self::Unwritable { .. } => "choose with -o a directory that you may write to",
-            Self::Write { .. } => "check the free space and the permissions there",
+            Self::Write(error) => error.remedy(),
         }
     }
 
     /// The file or directory in question.
     pub fn path(&self) -> &Path {
         match self {
-            Self::ExistingRun(directory)
-            | Self::NotARun { directory, .. }
-            | Self::Unwritable { directory, .. } => directory,
-            Self::Write { path, .. } => path,
+            Self::ExistingRun(directory) | Self::NotARun { directory, .. } => directory,
+            Self::Write(error) => error.path(),
         }
     }
 
     /// Whether the request was at fault (exit code 2) and not the writing (exit code 1).
     pub fn is_input(&self) -> bool {
-        !matches!(self, Self::Write { .. })
+        match self {
+            Self::ExistingRun(_) | Self::NotARun { .. } => true,
+            Self::Write(error) => error.is_input(),
+        }
     }
 }
 
@@ -129,7 +112,7 @@ impl Staging {
     ///
     /// # Errors
     /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when `force`
-    /// would replace what no run has written, [`StagingError::Unwritable`] when nothing can be written there.
+    /// would replace what no run has written, [`StagingError::Write`] when nothing can be written there.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
         Self::of(&RUN, directory, force)
     }
@@ -162,10 +145,7 @@ impl Staging {
                 });
             }
         }
-        let unwritable = |source| StagingError::Unwritable {
-            directory: directory.to_owned(),
-            source,
-        };
+        let unwritable = |source| FileError::unwritable(directory, source);
         if interrupted {
             fs::remove_dir_all(&folder).map_err(unwritable)?;
         }
@@ -191,7 +171,7 @@ impl Staging {
     /// [`StagingError::Write`] when a rename fails; the older run's entries are put back.
     pub fn commit(mut self) -> Result<(), StagingError> {
         let replaced = self.folder.join("replaced");
-        fs::create_dir(&replaced).map_err(|source| write_error(&replaced, source))?;
+        fs::create_dir(&replaced).map_err(|source| FileError::writing(&replaced, source))?;
         let entries = self.product.entries;
         let outward = entries
             .iter()
@@ -212,7 +192,7 @@ impl Staging {
                         self.state = State::Kept;
                     }
                 }
-                return Err(write_error(&to, source));
+                return Err(FileError::writing(&to, source).into());
             }
             done.push((from, to));
         }
@@ -231,63 +211,6 @@ impl Drop for Staging {
         if self.made_directory && self.state == State::Open {
             let _ = fs::remove_dir(&self.directory);
         }
-    }
-}
-
-/// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file
-/// (`/dev/stdout`, a pipe) is written to as it stands.
-///
-/// # Errors
-/// [`StagingError::Unwritable`] when the file cannot be made, [`StagingError::Write`] when writing to it fails.
-pub fn write_whole(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
-) -> Result<(), StagingError> {
-    let in_place = fs::metadata(path).is_ok_and(|found| !found.is_file());
-    let target = if in_place {
-        path.to_owned()
-    } else {
-        let mut name = path.as_os_str().to_owned();
-        name.push(PARTIAL);
-        PathBuf::from(name)
-    };
-    let file = fs::OpenOptions::new()
-        .write(true)
-        .create(!in_place)
-        .truncate(!in_place)
-        .open(&target)
-        .map_err(|source| StagingError::Unwritable {
-            directory: path.to_owned(),
-            source,
-        })?;
-    let mut buffer = io::BufWriter::new(file);
-    let written = fill(&mut buffer).and_then(|()| io::Write::flush(&mut buffer));
-    if in_place {
-        return written.map_err(|source| write_error(path, source));
-    }
-    written
-        .and_then(|()| fs::rename(&target, path))
-        .map_err(|source| {
-            let _ = fs::remove_file(&target);
-            write_error(path, source)
-        })
-}
-
-/// Writes a value as indented JSON with a line end, whole or not at all.
-///
-/// # Errors
-/// As [`write_whole`].
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), StagingError> {
-    write_whole(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, value)?;
-        writeln!(file)
-    })
-}
-
-fn write_error(path: &Path, source: io::Error) -> StagingError {
-    StagingError::Write {
-        path: path.to_owned(),
-        source,
     }
 }
 
@@ -373,19 +296,5 @@ mod tests {
         fs::write(root.path().join(".partial/poses.csv"), "half").unwrap();
         let staging = Staging::open(root.path(), false).unwrap();
         assert!(!staging.folder().join("poses.csv").exists());
-    }
-
-    #[test]
-    fn a_file_whose_writing_fails_leaves_the_old_one() {
-        let root = tempfile::tempdir().unwrap();
-        let path = root.path().join("table.csv");
-        fs::write(&path, "old").unwrap();
-        let failed = write_whole(&path, |file| {
-            file.write_all(b"half")?;
-            Err(io::Error::other("disk full"))
-        });
-        assert!(matches!(failed, Err(StagingError::Write { .. })));
-        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
     }
 }

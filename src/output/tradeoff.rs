@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value};
 use super::manifest::{COMMIT, Inputs, Machine, VERSION, cpu_features};
 use super::poses::number;
 use super::run_options::RunOptions;
-use super::staging::{StagingError, write_json, write_whole};
+use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
@@ -120,8 +120,8 @@ fn field(value: &Value) -> String {
 /// Writes the table, whole or not at all.
 ///
 /// # Errors
-/// [`StagingError`].
-pub fn write_table(tradeoff: &Tradeoff, path: &Path) -> Result<(), StagingError> {
+/// [`FileError`].
+pub fn write_table(tradeoff: &Tradeoff, path: &Path) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
         for (index, run) in tradeoff.measured.iter().enumerate() {
@@ -204,8 +204,8 @@ impl<'a> TradeoffRecord<'a> {
     /// Writes the record, whole or not at all.
     ///
     /// # Errors
-    /// [`StagingError`].
-    pub fn write(&self, path: &Path) -> Result<(), StagingError> {
+    /// [`FileError`].
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
         write_json(path, self)
     }
 }

@@ -65,6 +65,14 @@ pub struct Step {
     pub seconds: f64,
 }
 
+impl Step {
+    /// A step that began at `start` and ends now.
+    pub fn since(name: &'static str, start: Instant) -> Self {
+        let seconds = start.elapsed().as_secs_f64();
+        Self { name, seconds }
+    }
+}
+
 /// A sampled solid.
 #[derive(Clone, Debug)]
 pub struct Sampling {

@@ -8,22 +8,25 @@
 //! A plan correlates one of two pair kernels ([`PairKernel`]): the lifted cone that ranks poses, or the product kernel of rasterised
 //! bumps, for comparison with grid engines. All that follows a plan takes its kernel from [`Plan::coupling`] alone.
 
+mod error;
+mod grid;
+
 use crate::effect::{ActiveTerm, EffectKernel, Term};
-use crate::exact::center;
-use crate::kernel::product::rim_and_reach;
-use crate::kernel::ranking::KernelError;
 use crate::kernel::table::Table;
 use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
 use crate::lifted_axis::{Fold, LiftedAxis, RadiusBasis};
 use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
-use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use crate::transform::truncation::ball;
+use error::{check_tolerance, checked_spacing};
+use grid::{Extents, oversampling, product_kernel, ranking_spacing, window_width};
 use knotdock_structures::Knots;
-use knotdock_structures::knots::KnotsError;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+pub use error::PlanError;
+pub(super) use error::check_bodies;
 
 /// What a user may set; every approximation is a knob.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,38 +39,6 @@ pub struct EngineOptions {
     pub tolerance: f64,
     /// Rank of the lifted axis; `None`: as the tolerance needs.
     pub rank: Option<usize>,
-}
-
-/// Why no plan could be made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlanError {
-    /// The knots are not usable.
-    #[error(transparent)]
-    Knots(#[from] KnotsError),
-    /// The kernel's options are not usable.
-    #[error(transparent)]
-    Kernel(#[from] KernelError),
-    /// A number is out of its range.
-    #[error("{name} is {value}; it must be {bound}")]
-    Option {
-        /// Name of the option.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its range.
-        bound: &'static str,
-    },
-    /// A weight has an imaginary part.
-    #[error("the fast engine takes real weights; knot {0} has a complex one")]
-    ComplexWeight(usize),
-    /// A body's weights are so large or small that scores would leave the range of single precision.
-    #[error(
-        "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
-    )]
-    WeightRange(f64),
-    /// The box would need more grid points than any machine holds.
-    #[error("a grid of {0:.2e} points is needed; use a coarser spacing")]
-    TooLarge(f64),
 }
 
 /// The function of two balls that a plan correlates.
@@ -114,12 +85,6 @@ pub struct Plan {
     pub ligand_center: Vector3<f64>,
     /// Distance of the farthest ligand knot from it, Å.
     pub ligand_radius: f64,
-}
-
-/// Oversampling of the fine grid against the mode grid. The low-pass takes the modes near the grid's own limit down to
-/// nothing, so far less is needed than the 2 of a transform whose modes all count alike.
-fn oversampling(tolerance: f64) -> f64 {
-    if tolerance >= 1e-3 { 1.25 } else { 1.5 }
 }
 
 impl Plan {
@@ -195,16 +160,9 @@ impl Plan {
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
         check_bodies(receptor, ligand)?;
+        check_tolerance(options.tolerance)?;
+        check_tolerance(kernel_tolerance)?;
         let tolerance = options.tolerance;
-        for value in [tolerance, kernel_tolerance] {
-            if !(1e-8..=0.1).contains(&value) {
-                return Err(PlanError::Option {
-                    name: "tolerance",
-                    value,
-                    bound: "between 1e-8 and 0.1",
-                });
-            }
-        }
         let (receptor_radii, _) = receptor.radius_classes();
         let (ligand_radii, _) = ligand.radius_classes();
         let ends = |radii: &[f64]| match (radii.first(), radii.last()) {
@@ -219,17 +177,7 @@ impl Plan {
         let reach_factor = 1.15 + 0.75 * (1e-2 * severity / kernel_tolerance).log10().max(0.0);
         let kernel =
             RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
-        let chosen = match options.spacing {
-            Some(spacing) if spacing.is_finite() && spacing > 0.0 => Some(spacing),
-            Some(value) => {
-                return Err(PlanError::Option {
-                    name: "spacing",
-                    value,
-                    bound: "above 0 and finite",
-                });
-            }
-            None => None,
-        };
+        let chosen = checked_spacing(options.spacing)?;
         let effects: Vec<ActiveTerm> = terms
             .into_iter()
             .map(|term| ActiveTerm {
@@ -257,44 +205,10 @@ impl Plan {
                 (PairKernel::Product(Box::new(product)), spacing, reach)
             }
         };
-        let receptor_center = center(receptor);
-        let ligand_center = center(ligand);
-        let (low, high) = receptor.bounds();
-        let receptor_extent = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
-        let ligand_radius = ligand
-            .centers
-            .iter()
-            .map(|&x| (Vector3::from(x) - ligand_center).norm())
-            .fold(0.0, f64::max);
-        let ratio = match band {
-            // Cut sharply, all modes count alike.
-            Some(Band::Whole) => 2.0,
-            _ => oversampling(tolerance),
-        };
-        // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
-        // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
-        let share = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
-        let share = share / severity;
-        let width =
-            SpreadingKernel::<f64>::width_for(share * tolerance, ratio * 1.2).min(MAX_WIDTH);
-        let mut points = 1.0;
-        let size = [0, 1, 2].map(|axis| {
-            let length = 2.0 * (receptor_extent[axis] + ligand_radius + effective_reach);
-            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
-            // a kernel shorter than that window would make too small.
-            let extent = receptor_extent[axis].max(ligand_radius);
-            let block = 2.0 * extent + (width as f64 + 6.0) * spacing;
-            let count = (length.max(block) / spacing).ceil().max(4.0);
-            points *= count;
-            if count < 1e6 {
-                fast_size(count as usize)
-            } else {
-                0
-            }
-        });
-        if points > 1e11 || size.contains(&0) {
-            return Err(PlanError::TooLarge(points));
-        }
+        let extents = Extents::of(receptor, ligand);
+        let ratio = oversampling(tolerance, band);
+        let width = window_width(tolerance, severity, ratio);
+        let size = extents.grid(effective_reach, width, spacing)?;
         let lengths = size.map(|n| n as f64 * spacing);
         let modes = Arc::new(ModeSet::new(size, lengths, 0.5 / spacing));
         let fine = size.map(|n| fast_size((n as f64 * ratio).ceil() as usize));
@@ -327,10 +241,10 @@ impl Plan {
             fine,
             width,
             effective_reach,
-            receptor_center,
-            receptor_extent,
-            ligand_center,
-            ligand_radius,
+            receptor_center: extents.receptor_center,
+            receptor_extent: extents.receptor_extent,
+            ligand_center: extents.ligand_center,
+            ligand_radius: extents.ligand_radius,
             kernel,
             effects,
         })
@@ -388,69 +302,4 @@ impl Plan {
     pub fn size(&self) -> [usize; 3] {
         self.modes.size
     }
-}
-
-/// Refuses knots that no engine can correlate: unusable ones, complex weights, and weights that leave single precision.
-pub(super) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
-    for knots in [receptor, ligand] {
-        knots.check()?;
-        if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
-            return Err(PlanError::ComplexWeight(index));
-        }
-        let size: f64 = knots.weights.iter().map(|c| c.re.abs()).sum();
-        // No weight at all is a body that scores nothing, which every precision holds.
-        if size != 0.0 && !(1e-9..=1e9).contains(&size) {
-            return Err(PlanError::WeightRange(size));
-        }
-    }
-    Ok(())
-}
-
-/// Grid spacing that keeps all modes of the ranking kernel that count.
-fn ranking_spacing(kernel: &RankingKernel, widest: f64, tolerance: f64) -> f64 {
-    let stop = kernel.stop();
-    // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any tolerance.
-    let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
-        stop
-    } else {
-        let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
-        (0..100)
-            .map(|i| stop * (1.0 + 0.02 * f64::from(i)))
-            .find(|&f| kernel.leak_beyond(widest, f) <= tolerance * rim)
-            .unwrap_or(2.0 * stop)
-    };
-    0.5 / cut
-}
-
-/// The product kernel for the smallest and largest radii of receptor and ligand, a spacing that keeps the modes that count, and the
-/// distance beyond which a pair stays below the tolerance.
-fn product_kernel(
-    options: EngineOptions,
-    band: Band,
-    [r_low, s_low, r_high, s_high]: [f64; 4],
-    chosen: Option<f64>,
-) -> Result<(ProductKernel, f64, f64), PlanError> {
-    let largest = r_high.max(s_high);
-    // No grid is planned finer than an eighth of the smallest ball unasked.
-    let finest = 4.0 / r_low.min(s_low);
-    let w_max = chosen.map_or(finest, |spacing| 0.5 / spacing);
-    let kernel = ProductKernel::new(options.kernel, band, largest, w_max)?;
-    let spacing = chosen.unwrap_or_else(|| match band {
-        Band::LowPass => 0.5 * options.kernel.resolution,
-        Band::Whole => {
-            let (rim, _) = rim_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
-            // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2 to 1e-4).
-            let allowed = 10.0 * options.tolerance * rim;
-            let cut = (1..100)
-                .map(|i| 0.01 * f64::from(i) * finest)
-                .find(|&f| kernel.leak_beyond(r_low, s_low, f) <= allowed)
-                .unwrap_or(finest);
-            0.5 / cut
-        }
-    });
-    let reach = match band {
-        Band::Whole => kernel.reach(r_high, s_high),
-        Band::LowPass => rim_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1,
-    };
-    Ok((kernel, spacing, reach))
 }

@@ -1,0 +1,77 @@
+//! What no plan can be made of.
+
+use crate::kernel::ranking::KernelError;
+use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+
+/// Why no plan could be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// The knots are not usable.
+    #[error(transparent)]
+    Knots(#[from] KnotsError),
+    /// The kernel's options are not usable.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+    /// A number is out of its range.
+    #[error("{name} is {value}; it must be {bound}")]
+    Option {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its range.
+        bound: &'static str,
+    },
+    /// A weight has an imaginary part.
+    #[error("the fast engine takes real weights; knot {0} has a complex one")]
+    ComplexWeight(usize),
+    /// A body's weights are so large or small that scores would leave the range of single precision.
+    #[error(
+        "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
+    )]
+    WeightRange(f64),
+    /// The box would need more grid points than any machine holds.
+    #[error("a grid of {0:.2e} points is needed; use a coarser spacing")]
+    TooLarge(f64),
+}
+
+/// Refuses knots that no engine can correlate: unusable ones, complex weights, and weights that leave single precision.
+pub(in crate::engine) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
+    for knots in [receptor, ligand] {
+        knots.check()?;
+        if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
+            return Err(PlanError::ComplexWeight(index));
+        }
+        let size: f64 = knots.weights.iter().map(|c| c.re.abs()).sum();
+        // No weight at all is a body that scores nothing, which every precision holds.
+        if size != 0.0 && !(1e-9..=1e9).contains(&size) {
+            return Err(PlanError::WeightRange(size));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a tolerance that no plan can be made for.
+pub(super) fn check_tolerance(value: f64) -> Result<(), PlanError> {
+    if (1e-8..=0.1).contains(&value) {
+        return Ok(());
+    }
+    Err(PlanError::Option {
+        name: "tolerance",
+        value,
+        bound: "between 1e-8 and 0.1",
+    })
+}
+
+/// A spacing that was asked for, if it is one.
+pub(super) fn checked_spacing(chosen: Option<f64>) -> Result<Option<f64>, PlanError> {
+    match chosen {
+        Some(value) if !(value.is_finite() && value > 0.0) => Err(PlanError::Option {
+            name: "spacing",
+            value,
+            bound: "above 0 and finite",
+        }),
+        chosen => Ok(chosen),
+    }
+}

@@ -1,0 +1,132 @@
+//! The grid of a plan: spacing, spreading window, and a box that holds both bodies wherever they touch.
+
+use super::EngineOptions;
+use super::error::PlanError;
+use crate::exact::center;
+use crate::kernel::product::rim_and_reach;
+use crate::kernel::{Band, ProductKernel, RankingKernel};
+use crate::transform::fast_size;
+use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use knotdock_structures::Knots;
+use nalgebra::Vector3;
+
+/// Where two bodies lie and how far they extend, in Å.
+pub(super) struct Extents {
+    /// Middle of the receptor's bounding box.
+    pub receptor_center: Vector3<f64>,
+    /// Half the receptor's bounding box.
+    pub receptor_extent: [f64; 3],
+    /// Middle of the ligand's bounding box.
+    pub ligand_center: Vector3<f64>,
+    /// Distance of the farthest ligand knot from it.
+    pub ligand_radius: f64,
+}
+
+impl Extents {
+    pub fn of(receptor: &Knots, ligand: &Knots) -> Self {
+        let ligand_center = center(ligand);
+        let (low, high) = receptor.bounds();
+        let distances = ligand
+            .centers
+            .iter()
+            .map(|&x| (Vector3::from(x) - ligand_center).norm());
+        Self {
+            receptor_center: center(receptor),
+            receptor_extent: [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis])),
+            ligand_center,
+            ligand_radius: distances.fold(0.0, f64::max),
+        }
+    }
+
+    /// Points per axis of a grid that holds the receptor, the ligand turned however, and the kernel's reach between them; `width` is
+    /// that of the spreading window.
+    pub fn grid(&self, reach: f64, width: usize, spacing: f64) -> Result<[usize; 3], PlanError> {
+        let mut points = 1.0;
+        let size = self.receptor_extent.map(|extent| {
+            let length = 2.0 * (extent + self.ligand_radius + reach);
+            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
+            // a kernel shorter than that window would make too small.
+            let block = 2.0 * extent.max(self.ligand_radius) + (width as f64 + 6.0) * spacing;
+            let count = (length.max(block) / spacing).ceil().max(4.0);
+            points *= count;
+            if count < 1e6 {
+                fast_size(count as usize)
+            } else {
+                0
+            }
+        });
+        if points > 1e11 || size.contains(&0) {
+            return Err(PlanError::TooLarge(points));
+        }
+        Ok(size)
+    }
+}
+
+/// Oversampling of the fine grid against the mode grid. The low-pass takes the modes near the grid's own limit down to
+/// nothing, so far less is needed than the 2 of a transform whose modes all count alike.
+pub(super) fn oversampling(tolerance: f64, band: Option<Band>) -> f64 {
+    match band {
+        // Cut sharply, all modes count alike.
+        Some(Band::Whole) => 2.0,
+        _ if tolerance >= 1e-3 => 1.25,
+        _ => 1.5,
+    }
+}
+
+/// Width of the spreading window in fine cells; `severity` is by how much the largest |G| exceeds the best score more than usual.
+pub(super) fn window_width(tolerance: f64, severity: f64, oversampling: f64) -> usize {
+    // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
+    // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
+    let usual = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
+    let share = usual / severity;
+    SpreadingKernel::<f64>::width_for(share * tolerance, oversampling * 1.2).min(MAX_WIDTH)
+}
+
+/// Grid spacing that keeps all modes of the ranking kernel that count.
+pub(super) fn ranking_spacing(kernel: &RankingKernel, widest: f64, tolerance: f64) -> f64 {
+    let stop = kernel.stop();
+    // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any tolerance.
+    let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
+        stop
+    } else {
+        let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+        (0..100)
+            .map(|i| stop * (1.0 + 0.02 * f64::from(i)))
+            .find(|&f| kernel.leak_beyond(widest, f) <= tolerance * rim)
+            .unwrap_or(2.0 * stop)
+    };
+    0.5 / cut
+}
+
+/// The product kernel for the smallest and largest radii of receptor and ligand, a spacing that keeps the modes that count, and the
+/// distance beyond which a pair stays below the tolerance.
+pub(super) fn product_kernel(
+    options: EngineOptions,
+    band: Band,
+    [r_low, s_low, r_high, s_high]: [f64; 4],
+    chosen: Option<f64>,
+) -> Result<(ProductKernel, f64, f64), PlanError> {
+    let largest = r_high.max(s_high);
+    // No grid is planned finer than an eighth of the smallest ball unasked.
+    let finest = 4.0 / r_low.min(s_low);
+    let w_max = chosen.map_or(finest, |spacing| 0.5 / spacing);
+    let kernel = ProductKernel::new(options.kernel, band, largest, w_max)?;
+    let spacing = chosen.unwrap_or_else(|| match band {
+        Band::LowPass => 0.5 * options.kernel.resolution,
+        Band::Whole => {
+            let (rim, _) = rim_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
+            // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2 to 1e-4).
+            let allowed = 10.0 * options.tolerance * rim;
+            let cut = (1..100)
+                .map(|i| 0.01 * f64::from(i) * finest)
+                .find(|&f| kernel.leak_beyond(r_low, s_low, f) <= allowed)
+                .unwrap_or(finest);
+            0.5 / cut
+        }
+    });
+    let reach = match band {
+        Band::Whole => kernel.reach(r_high, s_high),
+        Band::LowPass => rim_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1,
+    };
+    Ok((kernel, spacing, reach))
+}

@@ -1,0 +1,170 @@
+//! What `knotdock sample` says of a sampled solid.
+
+use knotdock::output::report;
+use knotdock_structures::sampler::hausdorff::Fit;
+use knotdock_structures::sampler::weights::FittedWeights;
+use knotdock_structures::sampler::{Sampling, SetName};
+use serde_json::{Value, json};
+
+/// What is told of a sampled solid, in the file's unit.
+pub(super) struct Told<'a> {
+    pub sampling: &'a Sampling,
+    pub fits: &'a [Fit],
+    /// Length of the sampler's unit in the file's.
+    pub unit: f64,
+    /// Of the solid, in the sampler's unit.
+    pub volume: f64,
+}
+
+impl Told<'_> {
+    fn epsilon(&self) -> f64 {
+        self.sampling.field.grid.epsilon() * self.unit
+    }
+
+    /// For a person.
+    pub fn text(&self) -> String {
+        let grid = self.sampling.field.grid;
+        let n = grid.per_axis();
+        let mut lines = vec![
+            [
+                "set",
+                "balls",
+                "inward",
+                "outward",
+                "missed, %",
+                "outside, %",
+                "seconds",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+        ];
+        for (set, fit) in self.sampling.sets.iter().zip(self.fits) {
+            lines.push(vec![
+                set_name(set.name).to_owned(),
+                set.balls.len().to_string(),
+                format!("{:.6}", fit.hausdorff_inward * self.unit),
+                format!("{:.6}", fit.hausdorff_outward * self.unit),
+                format!("{:.3}", 100.0 * fit.volume_missed / self.volume),
+                format!("{:.3}", 100.0 * fit.volume_outside / self.volume),
+                format!("{:.2}", set.seconds),
+            ]);
+        }
+        let steps = self
+            .sampling
+            .steps
+            .iter()
+            .map(|step| format!("{} {:.2} s", step.name, step.seconds));
+        let steps: Vec<String> = steps.collect();
+        let added = match self.sampling.covering {
+            Some(covering) => format!(
+                "Added to cover the surface: {} balls, and {} inside{}\n",
+                covering.surface_balls,
+                covering.interior_balls,
+                match covering.unreachable {
+                    0 => String::new(),
+                    count =>
+                        format!("; {count} samples of the surface have nothing inside under them"),
+                }
+            ),
+            None => String::new(),
+        };
+        format!(
+            "Grid: {n} x {n} x {n} nodes, {} inside, spacing {:.6}, epsilon {:.6}\n\n{}\n\
+             Inward: the farthest that a point of the solid is from the balls; outward: that a point of the balls is from the solid.\n\
+             {added}Time: {}",
+            self.sampling.inside_nodes,
+            grid.spacing() * self.unit,
+            self.epsilon(),
+            report::align(&lines),
+            steps.join(", ")
+        )
+    }
+
+    /// How a level of detail fits, for a person.
+    pub fn level(&self, balls: usize, fit: &Fit) -> String {
+        format!(
+            "Level of detail: {balls} balls, {:.6} from the solid outward and {:.6} inward",
+            fit.hausdorff_outward * self.unit,
+            fit.hausdorff_inward * self.unit
+        )
+    }
+
+    /// The sampling, for a program.
+    pub fn object(&self) -> Value {
+        json!({
+            "grid": self.grid(),
+            "inside_nodes": self.sampling.inside_nodes,
+            "volume": self.volume * self.unit.powi(3),
+            "sets": self.sets(),
+            "added": self.sampling.covering.map(|covering| json!({
+                "surface_balls": covering.surface_balls,
+                "interior_balls": covering.interior_balls,
+                "unreachable_samples": covering.unreachable,
+            })),
+            "steps": self.sampling.steps,
+        })
+    }
+
+    fn grid(&self) -> Value {
+        let grid = self.sampling.field.grid;
+        json!({
+            "nodes": grid.nodes(),
+            "per_axis": grid.per_axis(),
+            "spacing": grid.spacing() * self.unit,
+            "epsilon": self.epsilon(),
+        })
+    }
+
+    fn sets(&self) -> Vec<Value> {
+        let sets = self.sampling.sets.iter().zip(self.fits);
+        sets.map(|(set, fit)| {
+            let mut object = self.fit(fit);
+            object["set"] = json!(set.name);
+            object["balls"] = json!(set.balls.len());
+            object["inside_nodes"] = json!(self.sampling.inside_nodes);
+            object["epsilon"] = json!(self.epsilon());
+            object["seconds"] = json!(set.seconds);
+            object
+        })
+        .collect()
+    }
+
+    /// How balls fit the solid, for a program.
+    pub fn fit(&self, fit: &Fit) -> Value {
+        let cubed = self.unit.powi(3);
+        json!({
+            "hausdorff_inward": fit.hausdorff_inward * self.unit,
+            "hausdorff_outward": fit.hausdorff_outward * self.unit,
+            "outward_bound": fit.outward_bound * self.unit,
+            "volume_missed": fit.volume_missed * cubed,
+            "volume_outside": fit.volume_outside * cubed,
+            "nodes_missed": fit.nodes_missed,
+        })
+    }
+}
+
+/// A set's name, as `--set` and `--method` have it.
+fn set_name(name: SetName) -> &'static str {
+    match name {
+        SetName::A1 => "a1",
+        SetName::A2 => "a2",
+        SetName::A3 => "a3",
+        SetName::Wz => "wz",
+        SetName::Octree => "octree",
+        SetName::Voxels => "voxels",
+    }
+}
+
+/// What fitting the weights did.
+pub(super) fn weights_text(fitted: &FittedWeights) -> String {
+    format!(
+        "Weights: summed bumps (alpha {}) are off one inside by {:.3} rms with weights of one and by {:.3} with those fitted; their \
+         integral is {:.2} and {:.3} times the volume; {} weights are zero",
+        fitted.alpha,
+        fitted.rms_unit,
+        fitted.rms_fitted,
+        fitted.volume_unit,
+        fitted.volume_fitted,
+        fitted.zeros
+    )
+}

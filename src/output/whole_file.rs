@@ -1,0 +1,135 @@
+//! A file whole or not at all.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+/// Ending of files that are being written.
+pub const PARTIAL: &str = ".partial";
+
+/// Why a file could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The place cannot be made or written to.
+    #[error("cannot write to {}: {source}", path.display())]
+    Unwritable {
+        /// The file or directory.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file could not be written although it could be made: a full disk, for instance.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+impl FileError {
+    /// A place that cannot be written to.
+    pub(super) fn unwritable(path: &Path, source: io::Error) -> Self {
+        Self::Unwritable {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// A file whose writing failed.
+    pub(super) fn writing(path: &Path, source: io::Error) -> Self {
+        Self::Write {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// What the user can do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Unwritable { .. } => "choose with -o a place that you may write to",
+            Self::Write { .. } => "check the free space and the permissions there",
+        }
+    }
+
+    /// The file or directory in question.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Unwritable { path, .. } | Self::Write { path, .. } => path,
+        }
+    }
+
+    /// Whether the request was at fault (exit code 2) and not the writing (exit code 1).
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Unwritable { .. })
+    }
+}
+
+/// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file
+/// (`/dev/stdout`, a pipe) is written to as it stands.
+///
+/// # Errors
+/// [`FileError::Unwritable`] when the file cannot be made, [`FileError::Write`] when writing to it fails.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let in_place = fs::metadata(path).is_ok_and(|found| !found.is_file());
+    let target = if in_place {
+        path.to_owned()
+    } else {
+        let mut name = path.as_os_str().to_owned();
+        name.push(PARTIAL);
+        PathBuf::from(name)
+    };
+    let file = fs::OpenOptions::new()
+        .write(true)
+        .create(!in_place)
+        .truncate(!in_place)
+        .open(&target)
+        .map_err(|source| FileError::unwritable(path, source))?;
+    let mut buffer = io::BufWriter::new(file);
+    let written = fill(&mut buffer).and_then(|()| io::Write::flush(&mut buffer));
+    if in_place {
+        return written.map_err(|source| FileError::writing(path, source));
+    }
+    written
+        .and_then(|()| fs::rename(&target, path))
+        .map_err(|source| {
+            let _ = fs::remove_file(&target);
+            FileError::writing(path, source)
+        })
+}
+
+/// Writes a value as indented JSON with a line end, whole or not at all.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        serde_json::to_writer_pretty(&mut *file, value)?;
+        writeln!(file)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_whose_writing_fails_leaves_the_old_one() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("table.csv");
+        fs::write(&path, "old").unwrap();
+        let failed = write_whole(&path, |file| {
+            file.write_all(b"half")?;
+            Err(io::Error::other("disk full"))
+        });
+        assert!(matches!(failed, Err(FileError::Write { .. })));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+    }
+}
