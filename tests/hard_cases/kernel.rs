@@ -6,7 +6,7 @@
 #![allow(clippy::excessive_precision)]
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_options, some_rotation};
-use knotdock_scoring::kernel::ranking::KernelError;
+use knotdock_scoring::kernel::KernelError;
 use knotdock_scoring::kernel::{Bump, KernelOptions, RankingKernel};
 
 /// alpha, x, psi_alpha(x); 0 where psi is below all doubles.

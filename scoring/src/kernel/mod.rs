@@ -4,6 +4,7 @@
 pub mod bump;
 pub mod cone;
 pub mod low_pass;
+mod options;
 pub mod product;
 pub mod product_sum;
 pub mod radial_filter;
@@ -15,6 +16,7 @@ pub mod table;
 
 pub use bump::Bump;
 pub use cone::{Cone, Trim};
+pub use options::{KernelError, KernelOptions};
 pub use product::{Band, ProductKernel};
 pub use product_sum::ProductScorer;
-pub use ranking::{KernelOptions, RankingKernel};
+pub use ranking::RankingKernel;

@@ -7,112 +7,12 @@
 //!
 //! Both are the work of [`super::radial_filter`].
 
-use super::bump::{AlphaError, Bump};
-use super::cone::{Cone, Trim};
+use super::cone::Cone;
+use super::options::{KernelError, KernelOptions, LONGEST, SMALLEST};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-
-/// What defines the ranking kernel. Lengths in the unit of the knots (Å for molecules).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KernelOptions {
-    /// Weight of overlap against contact, B&I's lambda (dimensionless).
-    pub lambda: f64,
-    /// Skin offset r0 >= 0, in Å.
-    pub offset: f64,
-    /// Exponent alpha of the bump function.
-    pub alpha: f64,
-    /// Resolution in Å: the low-pass stops at 1 / resolution.
-    pub resolution: f64,
-    /// Length in Å whose inverse is the pass frequency, above `resolution`.
-    pub pass_length: f64,
-    /// Trim along the lifted axis.
-    pub trim: Trim,
-}
-
-/// Why a kernel cannot be built.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum KernelError {
-    /// The bump exponent is not above zero.
-    #[error(transparent)]
-    Alpha(#[from] AlphaError),
-    /// A length is negative, zero, NaN or infinite where it may not be.
-    #[error("{name} is {value}; it must be finite and {bound}")]
-    Length {
-        /// Name of the option.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must satisfy.
-        bound: &'static str,
-    },
-    /// The kernel is so long against its resolution that its tables would take hours or all memory.
-    #[error(
-        "the kernel reaches {reach:.3e} at a resolution of {resolution:.3e}, over {LONGEST} times as far; use a coarser resolution, \
-         or a pass length farther from it, smaller radii or a smaller offset"
-    )]
-    TooLong {
-        /// Distance at which the kernel would end, in Å.
-        reach: f64,
-        /// The resolution asked for, in Å.
-        resolution: f64,
-    },
-}
-
-/// Longest reach of a kernel in resolutions: tables take the square of it in time.
-const LONGEST: f64 = 2048.0;
-/// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal numbers.
-const SMALLEST: f64 = 1e-6;
-/// Largest |lambda|: its square times weights and volumes must stay within single precision.
-const LARGEST_LAMBDA: f64 = 1e6;
-
-impl KernelOptions {
-    /// Weights of the slices at rho = 0, r0, 2 r0 in the score: -lambda^2, 2 lambda, -1.
-    ///
-    /// F_S = i (f_{S+B0} - lambda f_S) (B&I eq. 51), and the product of two such functions carries i * i = -1. B&I's eq. (52)-(53)
-    /// conjugate one factor and so lose this sign; their text needs it.
-    pub fn slice_weights(&self) -> [f64; 3] {
-        [-self.lambda * self.lambda, 2.0 * self.lambda, -1.0]
-    }
-
-    /// Offsets rho of the three slices, in Å.
-    pub fn slice_offsets(&self) -> [f64; 3] {
-        [0.0, self.offset, 2.0 * self.offset]
-    }
-
-    pub(super) fn check(&self) -> Result<Bump, KernelError> {
-        let bump = Bump::new(self.alpha)?;
-        let finite = |name, value: f64, ok: bool, bound| {
-            if value.is_finite() && ok {
-                Ok(())
-            } else {
-                Err(KernelError::Length { name, value, bound })
-            }
-        };
-        finite(
-            "lambda",
-            self.lambda,
-            self.lambda.abs() <= LARGEST_LAMBDA,
-            "between -1e6 and 1e6",
-        )?;
-        finite("offset r0", self.offset, self.offset >= 0.0, "not below 0")?;
-        finite(
-            "resolution",
-            self.resolution,
-            self.resolution > 0.0,
-            "above 0",
-        )?;
-        finite(
-            "pass length",
-            self.pass_length,
-            self.pass_length > self.resolution,
-            "above the resolution",
-        )
-        .map(|()| bump)
-    }
-}
 
 /// The ranking kernel for all radius sums in [low, high - 2 r0] and its three slices.
 #[derive(Clone, Debug)]
@@ -299,6 +199,7 @@ impl RankingKernel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::Trim;
     use crate::kernel::radial_transform::sinc;
 
     fn options() -> KernelOptions {

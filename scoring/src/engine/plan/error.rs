@@ -1,6 +1,6 @@
 //! What no plan can be made of.
 
-use crate::kernel::ranking::KernelError;
+use crate::kernel::KernelError;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 

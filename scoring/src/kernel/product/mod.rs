@@ -36,8 +36,8 @@ pub use pairs::rim_and_reach;
 
 use super::bump::Bump;
 use super::low_pass::smooth_step_down;
+use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
-use super::ranking::{KernelError, KernelOptions};
 use super::table::Table;
 use crate::lifted_axis::Fold;
 use serde::{Deserialize, Serialize};
