@@ -63,7 +63,7 @@ enum Command {
 }
 
 fn version() -> &'static str {
-    use knotdock::output::manifest::VERSION_WITH_COMMIT;
+    use knotdock::output::program::VERSION_WITH_COMMIT;
     VERSION_WITH_COMMIT
 }
 

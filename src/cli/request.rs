@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use knotdock::evaluate::Evaluator;
-use knotdock::output::manifest::{COMMIT, Inputs, VERSION, VERSION_WITH_COMMIT, cpu_features};
+use knotdock::output::manifest::Inputs;
+use knotdock::output::program::{COMMIT, VERSION, VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::meshes::GivenLengths;

@@ -10,8 +10,8 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
-use super::manifest::VERSION;
 use super::poses::{PoseRow, number};
+use super::program::VERSION;
 use super::whole_file::{FileError, write_whole};
 
 /// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the rows.

@@ -7,8 +7,8 @@ use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
 
-use super::manifest::VERSION;
 use super::poses::PoseRow;
+use super::program::VERSION;
 use super::whole_file::{FileError, write_whole};
 
 /// Complexes as written.

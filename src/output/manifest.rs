@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::input_record::{InputRecord, NativeRecord};
+use super::program::Program;
 use super::run_options::RunOptions;
 use super::whole_file::{FileError, write_json};
 use crate::evaluate::MatchReport;
@@ -21,20 +22,6 @@ use crate::tradeoff::choice::Chosen;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 1;
-
-/// The program's version.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// The git commit that the program was built from, or `unknown`.
-pub const COMMIT: &str = env!("KNOTDOCK_COMMIT");
-
-/// Version and commit as `--version` shows them.
-pub const VERSION_WITH_COMMIT: &str = concat!(
-    env!("CARGO_PKG_VERSION"),
-    " (",
-    env!("KNOTDOCK_COMMIT"),
-    ")"
-);
 
 /// An input with what its reader made of it.
 #[derive(Clone, Debug, Serialize)]
@@ -147,10 +134,8 @@ struct ErrorRecord {
 #[derive(Debug, Serialize)]
 pub struct Manifest<'a> {
     schema: u32,
-    program: &'static str,
-    version: &'static str,
-    commit: &'static str,
-    cpu_features: String,
+    #[serde(flatten)]
+    program: Program,
     inputs: &'a Inputs,
     options: Map<String, Value>,
     plan: &'a DockPlan,
@@ -196,10 +181,7 @@ impl<'a> Manifest<'a> {
     pub fn new(parts: ManifestParts<'a>) -> serde_json::Result<Self> {
         Ok(Self {
             schema: SCHEMA,
-            program: "knotdock",
-            version: VERSION,
-            commit: COMMIT,
-            cpu_features: cpu_features(),
+            program: Program::this(),
             inputs: parts.inputs,
             options: parts.options.record()?,
             plan: parts.plan,
@@ -225,22 +207,4 @@ impl<'a> Manifest<'a> {
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
         write_json(path, self)
     }
-}
-
-/// The instruction sets on which the transforms' code paths turn, which the last bits of a score can depend on.
-pub fn cpu_features() -> String {
-    #[cfg(target_arch = "x86_64")]
-    let found = [
-        ("sse4.1", std::arch::is_x86_feature_detected!("sse4.1")),
-        ("avx", std::arch::is_x86_feature_detected!("avx")),
-        ("fma", std::arch::is_x86_feature_detected!("fma")),
-        ("avx2", std::arch::is_x86_feature_detected!("avx2")),
-    ];
-    #[cfg(not(target_arch = "x86_64"))]
-    let found: [(&str, bool); 0] = [];
-    let names = found.iter().filter(|(_, on)| *on).map(|(name, _)| *name);
-    std::iter::once(std::env::consts::ARCH)
-        .chain(names)
-        .collect::<Vec<_>>()
-        .join(" ")
 }

@@ -20,6 +20,7 @@ pub mod input_record;
 pub mod manifest;
 pub mod poses;
 pub mod poses_reader;
+pub mod program;
 pub mod quality;
 pub mod recorded_run;
 pub mod report;

@@ -5,8 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
-use super::manifest::{COMMIT, Inputs, Machine, VERSION, cpu_features};
+use super::manifest::{Inputs, Machine};
 use super::poses::number;
+use super::program::Program;
 use super::run_options::RunOptions;
 use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;
@@ -139,10 +140,8 @@ pub fn write_table(tradeoff: &Tradeoff, path: &Path) -> Result<(), FileError> {
 #[derive(Debug, Serialize)]
 pub struct TradeoffRecord<'a> {
     schema: u32,
-    program: &'static str,
-    version: &'static str,
-    commit: &'static str,
-    cpu_features: String,
+    #[serde(flatten)]
+    program: Program,
     inputs: &'a Inputs,
     options: Map<String, Value>,
     agreement_radius: f64,
@@ -181,10 +180,7 @@ impl<'a> TradeoffRecord<'a> {
         options.remove("write_top");
         Ok(Self {
             schema: SCHEMA,
-            program: "knotdock",
-            version: VERSION,
-            commit: COMMIT,
-            cpu_features: cpu_features(),
+            program: Program::this(),
             inputs: parts.inputs,
             options,
             agreement_radius: parts.tradeoff.radius,

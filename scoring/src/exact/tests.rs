@@ -2,20 +2,12 @@
 
 use super::*;
 use crate::affinity::DoubleSkin;
-use crate::kernel::{KernelOptions, Trim};
+use crate::kernel::KernelOptions;
 use crate::test_support::Numbers;
 use num_complex::Complex64;
 
 fn kernel() -> RankingKernel {
-    let options = KernelOptions {
-        lambda: 10.0,
-        offset: 2.0,
-        alpha: 2.0,
-        resolution: 4.0,
-        pass_length: 8.0,
-        trim: Trim::FlatTop,
-    };
-    RankingKernel::new(options, 3.0, 3.8, 1.0).unwrap()
+    RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 1.0).unwrap()
 }
 
 fn cloud(count: usize, spread: f64, seed: u64) -> Knots {

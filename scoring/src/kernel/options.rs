@@ -102,3 +102,16 @@ impl KernelOptions {
         .map(|()| bump)
     }
 }
+
+#[cfg(test)]
+impl KernelOptions {
+    /// Of whole lengths, for unit tests.
+    pub(crate) const TEST: Self = Self {
+        lambda: 10.0,
+        offset: 2.0,
+        alpha: 2.0,
+        resolution: 4.0,
+        pass_length: 8.0,
+        trim: Trim::FlatTop,
+    };
+}

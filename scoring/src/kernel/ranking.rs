@@ -199,23 +199,11 @@ impl RankingKernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Trim;
     use crate::kernel::radial_transform::sinc;
-
-    fn options() -> KernelOptions {
-        KernelOptions {
-            lambda: 10.0,
-            offset: 2.0,
-            alpha: 2.0,
-            resolution: 4.0,
-            pass_length: 8.0,
-            trim: Trim::FlatTop,
-        }
-    }
 
     #[test]
     fn tables_and_definition_agree_in_both_domains() {
-        let kernel = RankingKernel::new(options(), 3.0, 3.8, 2.0).unwrap();
+        let kernel = RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 2.0).unwrap();
         let table = kernel.distance_table(3.4);
         let mut worst: f64 = 0.0;
         for i in 0..300 {
@@ -247,7 +235,7 @@ mod tests {
         let wide = KernelOptions {
             resolution: 0.2,
             pass_length: 0.3,
-            ..options()
+            ..KernelOptions::TEST
         };
         let kernel = RankingKernel::new(wide, 3.0, 3.8, 2.0).unwrap();
         for d in [0.0, 1.0, 2.7, 4.0, 5.3, 6.5] {
@@ -258,8 +246,8 @@ mod tests {
 
     #[test]
     fn leak_falls_with_reach() {
-        let short = RankingKernel::new(options(), 3.0, 3.8, 1.0).unwrap();
-        let long = RankingKernel::new(options(), 3.0, 3.8, 4.0).unwrap();
+        let short = RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 1.0).unwrap();
+        let long = RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 4.0).unwrap();
         let (a, b) = (short.leak_beyond(3.4, 0.25), long.leak_beyond(3.4, 0.25));
         assert!(b < 0.1 * a);
     }
@@ -269,23 +257,23 @@ mod tests {
         for bad in [
             KernelOptions {
                 alpha: 0.0,
-                ..options()
+                ..KernelOptions::TEST
             },
             KernelOptions {
                 offset: -1.0,
-                ..options()
+                ..KernelOptions::TEST
             },
             KernelOptions {
                 lambda: f64::NAN,
-                ..options()
+                ..KernelOptions::TEST
             },
             KernelOptions {
                 resolution: 0.0,
-                ..options()
+                ..KernelOptions::TEST
             },
             KernelOptions {
                 pass_length: 3.0,
-                ..options()
+                ..KernelOptions::TEST
             },
         ] {
             assert!(RankingKernel::new(bad, 3.0, 3.8, 1.0).is_err());

@@ -1,16 +1,8 @@
 use super::*;
-use crate::kernel::{KernelOptions, Trim};
+use crate::kernel::KernelOptions;
 
 fn kernel(low: f64, high: f64) -> RankingKernel {
-    let options = KernelOptions {
-        lambda: 10.0,
-        offset: 2.0,
-        alpha: 2.0,
-        resolution: 4.0,
-        pass_length: 8.0,
-        trim: Trim::FlatTop,
-    };
-    RankingKernel::new(options, low, high, 1.0).unwrap()
+    RankingKernel::new(KernelOptions::TEST, low, high, 1.0).unwrap()
 }
 
 #[test]
