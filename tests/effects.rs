@@ -1,11 +1,13 @@
 //! Effects on demand: what auto turns on, what an effect that is off leaves untouched, and what cannot be forced.
 
 mod molecules;
+mod program;
 
 use std::fs;
 use std::path::Path;
 
 use assert_cmd::cargo::cargo_bin_cmd;
+use program::succeed;
 use serde_json::Value;
 
 fn example(name: &str) -> String {
@@ -17,14 +19,10 @@ fn example(name: &str) -> String {
 
 /// Runs the program in a folder; it must succeed. Returns standard output and standard error.
 fn run(folder: &Path, arguments: &[&str]) -> (String, String) {
-    let output = cargo_bin_cmd!("knotdock")
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{told}");
-    (String::from_utf8(output.stdout).unwrap(), told)
+    let output = succeed(folder, arguments.iter().copied());
+    [output.stdout, output.stderr]
+        .map(|bytes| String::from_utf8(bytes).unwrap())
+        .into()
 }
 
 /// Docks and returns the JSON object with the bytes of the table.

@@ -1,13 +1,14 @@
 //! The JSON object of each command, and who hears what on which stream.
 
 mod molecules;
+mod program;
 
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use assert_cmd::cargo::cargo_bin_cmd;
+use program::succeed;
 use serde_json::Value;
 
 fn place() -> tempfile::TempDir {
@@ -21,17 +22,7 @@ fn place() -> tempfile::TempDir {
 }
 
 fn run(folder: &Path, arguments: &str) -> Output {
-    let output = cargo_bin_cmd!("knotdock")
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{arguments}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    output
+    succeed(folder, arguments.split_whitespace())
 }
 
 fn object(output: &Output) -> Value {

@@ -2,6 +2,8 @@
 
 #[path = "../molecules/mod.rs"]
 mod molecules;
+#[path = "../program/mod.rs"]
+mod program;
 mod run;
 
 mod bodies;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
+
+use crate::program::succeed;
 
 /// A folder with the made-up receptor and ligand.
 pub fn place() -> tempfile::TempDir {
@@ -21,16 +22,7 @@ pub fn place() -> tempfile::TempDir {
 
 /// Runs the program in a folder; it must succeed. Returns standard output.
 pub fn run(folder: &Path, arguments: &str) -> String {
-    let output = cargo_bin_cmd!("knotdock")
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{arguments}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let output = succeed(folder, arguments.split_whitespace());
     String::from_utf8(output.stdout).unwrap()
 }
 
