@@ -17,7 +17,7 @@ pub fn told(outcome: &DockOutcome) -> String {
                 cost.reason, cost.rank, cost.milliseconds_per_rotation
             ),
             (true, effect) => format!(
-                "Effect {effect} ({}): without it {} ranks and {:.2} ms a rotation less",
+                "Effect {effect} ({}): without it the rank is lower by {} and a rotation takes {:.2} ms less",
                 cost.reason, cost.rank, cost.milliseconds_per_rotation
             ),
         });
