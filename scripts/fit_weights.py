@@ -10,7 +10,8 @@ and atom pair potentials that it is rescored with, so its score under others nee
 beside its run (`quality.json`).
 
 Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
-first 1, 10, 100, 1000, as means over turns; then the same for weights chosen for each fold of the pairs on the others, which is what
+first 1, 10, 100, 1000, as means over turns, then over pairs; the mean log rank of the first near-native one; both against the weights of
+the runs; then the same for weights chosen for each fold of the pairs on the others, which is what
 a choice like this is worth on pairs that it has not seen; then a bootstrap interval over pairs of the difference between the two
 best combinations. With --clusters temperatures are compared instead, at the runs' own weights: clusters ordered by
 T ln sum exp(score / T), T a share of the run's best score (0: the best pose alone).
@@ -32,23 +33,29 @@ from whole_file import write
 DEPTHS = (1, 10, 100, 1000)
 NOT_FOUND = 5000
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
+TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair")
+ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(len(FEATURES) + len(TERMS), len(FEATURES) + len(TERMS) + 4)
 TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
 
 def main():
     options = parse_arguments()
-    pooled = {}
+    pooled, weights = {}, set()
     for runs in options.runs:
         for record in sorted(runs.glob("*/seed_*/result.json")):
             pair, seed = record.parent.parent.name, record.parent.name
             if (record.parent / "run/run.json").exists():
-                pooled.setdefault((pair, seed), []).append(load(options, record.parent, pair))
+                rows, own = load(options, record.parent, pair)
+                pooled.setdefault((pair, seed), []).append(rows)
+                weights.add(own)
     decoys = {key: np.concatenate(parts) for key, parts in pooled.items() if len(parts) == len(options.runs)}
     if not decoys:
         raise SystemExit("no pair is in all runs")
-    pairs = sorted({pair for pair, _ in decoys})
-    print(f"{len(pairs)} pairs, {len(decoys)} runs, {sum(map(len, decoys.values()))} poses\n")
-    compare_temperatures(decoys) if options.clusters else compare_weights(options, decoys, pairs)
+    print(f"{len({pair for pair, _ in decoys})} pairs, {len(decoys)} runs, {sum(map(len, decoys.values()))} poses\n")
+    if options.clusters:
+        compare_temperatures(decoys)
+    else:
+        compare_weights(options, decoys, min(weights))
 
 
 def parse_arguments():
@@ -68,71 +75,105 @@ def parse_arguments():
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted electrostatics, contact, fine contact and atom pairs, acceptable (0 or 1), rank score, cluster."""
-    quality = folder / "quality.json"
+    """Rows of slices, unweighted terms, acceptable and near-native (0 or 1), rank score, cluster; and the weights of the run."""
     table = folder / "run/poses.csv"
-    if not quality.exists() or quality.stat().st_mtime < table.stat().st_mtime:
-        native = []
-        for side in ("receptor", "ligand"):
-            paths = (options.folder / pair / f"{side}_bound{ending}" for ending in (".pdb", ".pdb.gz"))
-            native += [f"--native-{side}", str(next(path for path in paths if path.exists()))]
-        command = [options.knotdock, "evaluate", str(folder / "run"), *native, "--json", "--quiet"]
-        answer = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-        near = lambda value, limit: value is not None and value <= limit
-        found = {pose["rank"]: near(pose["lrmsd"], 10.0) or near(pose["irmsd"], 4.0) for pose in answer["poses"]}
-        write(quality, json.dumps(found))
-    found = json.loads(quality.read_text())
-    weights = json.loads((folder / "run/run.json").read_text())["options"]
+    found = qualities(options, folder, pair, table)
+    recorded = json.loads((folder / "run/run.json").read_text())["options"]
     rows = []
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
-            terms = [
-                float(row.get(name) or 0) / (weights.get(f"{name}_weight") or 1.0)
-                for name in ("electrostatics", "contact", "fine_contact", "atom_pair")
-            ]
+            terms = [float(row.get(name) or 0) / (recorded.get(f"{name}_weight") or 1.0) for name in TERMS]
             score = float(row.get("rank_score") or row["score"])
-            rows.append([*(float(row[name]) for name in FEATURES), *terms, found[row["rank"]], score, float(row["cluster"])])
-    return np.array(rows, dtype=float)
+            rows.append([*(float(row[name]) for name in FEATURES), *terms, *found[row["rank"]], score, float(row["cluster"])])
+    weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
+    return np.array(rows, dtype=float), weights
 
 
-def first_rank(scores, acceptable):
-    ranked = np.flatnonzero(acceptable[np.argsort(-scores, kind="stable")])
-    return ranked[0] + 1 if len(ranked) else NOT_FOUND
+def qualities(options, folder, pair, table):
+    """Whether a pose is acceptable and whether it is near-native, by rank: measured once and kept beside the run."""
+    cache = folder / "quality.json"
+    if cache.exists() and cache.stat().st_mtime >= table.stat().st_mtime:
+        found = json.loads(cache.read_text())
+        # Kept by an older version of this script, which did not ask for near-native ones.
+        if all(isinstance(pose, list) for pose in found.values()):
+            return found
+    native = []
+    for side in ("receptor", "ligand"):
+        paths = (options.folder / pair / f"{side}_bound{ending}" for ending in (".pdb", ".pdb.gz"))
+        native += [f"--native-{side}", str(next(path for path in paths if path.exists()))]
+    command = [options.knotdock, "evaluate", str(folder / "run"), *native, "--json", "--quiet"]
+    answer = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    within = lambda value, limit: value is not None and value <= limit
+    found = {
+        str(pose["rank"]): (within(pose["lrmsd"], 10.0) or within(pose["irmsd"], 4.0), within(pose["irmsd"], 2.5))
+        for pose in answer["poses"]
+    }
+    write(cache, json.dumps(found))
+    return found
 
 
-def summary(decoys, ranks):
-    turns = len(decoys) / len({pair for pair, _ in decoys})
-    values = np.array([ranks[key] for key in decoys], dtype=float)
-    found = "  ".join(f"{np.sum(values <= depth) / turns:5.1f}" for depth in DEPTHS)
-    return f"{np.mean(np.log(np.minimum(values, NOT_FOUND))):.3f}  {found}"
+def first_rank(scores, wanted):
+    ranked = np.flatnonzero(wanted[np.argsort(-scores, kind="stable")])
+    return min(ranked[0] + 1, NOT_FOUND) if len(ranked) else NOT_FOUND
 
 
-def compare_weights(options, decoys, pairs):
+def by_pair(ranks, measure):
+    """Mean over the turns of each pair of a measure of its ranks, pairs in order."""
+    values = {}
+    for (pair, _), rank in ranks.items():
+        values.setdefault(pair, []).append(measure(rank))
+    return np.array([np.mean(values[pair]) for pair in sorted(values)])
+
+
+def summary(ranks):
+    """Mean log rank, and pairs with one in the first few, as means over turns."""
+    found = "  ".join(f"{by_pair(ranks, lambda rank: rank <= depth).sum():5.1f}" for depth in DEPTHS)
+    return f"{by_pair(ranks, np.log).mean():.3f}  {found}"
+
+
+def against(ranks, reference):
+    """Difference in mean log rank from others, with its standard error over pairs."""
+    gains = by_pair(ranks, np.log) - by_pair(reference, np.log)
+    error = gains.std(ddof=1) / np.sqrt(len(gains)) if len(gains) > 1 else np.nan
+    return f"{gains.mean():+.3f} ({error:.3f})"
+
+
+def compare_weights(options, decoys, own):
     grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine, options.pairs))
-    ranks = {}
+    if own not in grid:
+        grid.append(own)
+    acceptable, near_native = {}, {}
     for weights in grid:
         strength, *terms = weights
         factors = np.array([-strength * strength, 2 * strength, -1.0, *terms])
-        ranks[weights] = {key: first_rank(rows[:, :7] @ factors, rows[:, 7]) for key, rows in decoys.items()}
-    log = lambda weights, key: np.log(min(ranks[weights][key], NOT_FOUND))
-    mean = lambda weights, keys: np.mean([log(weights, key) for key in keys])
-    order = sorted(grid, key=lambda weights: mean(weights, decoys))
-    print("lambda  electrostatics  contact     fine    pairs   mean log rank, top 1, 10, 100, 1000")
+        scores = {key: rows[:, : len(factors)] @ factors for key, rows in decoys.items()}
+        acceptable[weights] = {key: first_rank(scores[key], rows[:, ACCEPTABLE]) for key, rows in decoys.items()}
+        near_native[weights] = {key: first_rank(scores[key], rows[:, NEAR_NATIVE]) for key, rows in decoys.items()}
+    mean = {weights: by_pair(acceptable[weights], np.log) for weights in grid}
+    order = sorted(grid, key=lambda weights: mean[weights].mean())
+    print("Against: difference from the weights of the runs in mean log rank, with its standard error over pairs.\n")
+    print("lambda  electrostatics  contact     fine    pairs   acceptable: mean log rank, top 1, 10, 100, 1000; against   near-native: mean log rank; against")
+
+    def show(name, ranks, near_ranks):
+        told = f"{by_pair(near_ranks, np.log).mean():.3f}  {against(near_ranks, near_native[own])}"
+        print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {told}")
+
     for weights in order:
-        print(f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}   {summary(decoys, ranks[weights])}")
-    chosen = {}
+        name = f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}"
+        show(name, acceptable[weights], near_native[weights])
+    pairs = sorted({pair for pair, _ in decoys})
+    chosen, chosen_near = {}, {}
     for fold in range(options.folds):
-        inside = {pair for index, pair in enumerate(pairs) if index % options.folds == fold}
-        others = [key for key in decoys if key[0] not in inside]
-        best = min(grid, key=lambda weights: mean(weights, others))
-        chosen.update({key: ranks[best][key] for key in decoys if key[0] in inside})
+        inside = np.arange(len(pairs)) % options.folds == fold
+        best = min(grid, key=lambda weights: mean[weights][~inside].mean())
+        members = {pair for pair, held in zip(pairs, inside) if held}
+        chosen.update({key: rank for key, rank in acceptable[best].items() if key[0] in members})
+        chosen_near.update({key: rank for key, rank in near_native[best].items() if key[0] in members})
         print(f"fold {fold}: {best} chosen on the others")
-    print(f"cross-validated                                     {summary(decoys, chosen)}")
+    show(f"{'cross-validated':>49}", chosen, chosen_near)
     if len(order) > 1:
         source = np.random.default_rng(1)
-        gains = np.array(
-            [np.mean([log(order[1], key) - log(order[0], key) for key in decoys if key[0] == pair]) for pair in pairs]
-        )
+        gains = mean[order[1]] - mean[order[0]]
         draws = source.choice(gains, (10000, len(pairs))).mean(axis=1)
         low, high = np.percentile(draws, [2.5, 97.5])
         print(f"best against second: {gains.mean():.3f} in mean log rank, 95% [{low:.3f}, {high:.3f}]")
@@ -143,7 +184,7 @@ def compare_temperatures(decoys):
     for share in TEMPERATURES:
         ranks = {}
         for key, rows in decoys.items():
-            scores, clusters = rows[:, 8], rows[:, 9]
+            scores, clusters = rows[:, SCORE], rows[:, CLUSTER]
             temperature = share * scores.max()
             values, acceptable = [], []
             for cluster in np.unique(clusters):
@@ -153,9 +194,9 @@ def compare_temperatures(decoys):
                 if temperature > 0:
                     value += temperature * np.log(np.exp((scores[members] - value) / temperature).sum())
                 values.append(value)
-                acceptable.append(rows[best, 7])
+                acceptable.append(rows[best, ACCEPTABLE])
             ranks[key] = first_rank(np.array(values), np.array(acceptable))
-        print(f"{share:8g}   {summary(decoys, ranks)}")
+        print(f"{share:8g}   {summary(ranks)}")
 
 
 if __name__ == "__main__":
