@@ -144,8 +144,11 @@ fn rescoring_orders_poses_and_changes_no_score() {
     }
     // Each term by itself.
     for (off, on) in [("fine-contact", "atom_pair"), ("atom-pair", "fine_contact")] {
-        let option = format!("--{off}-weight");
-        for row in table(&[&option, "0"]) {
+        let options = [
+            format!("--{off}-weight"),
+            format!("--{}-weight", on.replace('_', "-")),
+        ];
+        for row in table(&[&options[0], "0", &options[1], "2"]) {
             assert_eq!(row[&off.replace('-', "_")], "");
             assert_eq!(
                 number(&row, "rank_score"),

@@ -167,21 +167,24 @@ impl KernelArguments {
         Ok(DockOptions {
             contact_potential: read_potential(
                 self.contact_potential.as_deref(),
-                "contact-potential",
+                "contact",
+                self.contact_weight,
                 "contact_potential.py",
                 Potential::parse,
             )?,
             fine_contact_weight: self.fine_contact_weight,
             fine_contact_potential: read_potential(
                 self.fine_contact_potential.as_deref(),
-                "fine-contact-potential",
+                "fine-contact",
+                self.fine_contact_weight,
                 "contact_potential.py --fine",
                 FinePotential::parse,
             )?,
             atom_pair_weight: self.atom_pair_weight,
             atom_pair_potential: read_potential(
                 self.atom_pair_potential.as_deref(),
-                "atom-pair-potential",
+                "atom-pair",
+                self.atom_pair_weight,
                 "atom_pair_potential.py",
                 AtomPairPotential::parse,
             )?,
@@ -248,17 +251,28 @@ fn sample_weights(text: &str) -> Result<SampleWeights, String> {
     }
 }
 
-/// The table that an option names, if it does; `script` writes such tables.
+/// The table that the option of a potential names, if it does; `script` writes such tables. One without a weight would go unused.
 fn read_potential<P>(
     path: Option<&Path>,
-    option: &str,
+    name: &str,
+    weight: f64,
     script: &str,
     parse: fn(&str) -> Result<P, PotentialError>,
 ) -> Result<Option<P>, Failure> {
     let Some(path) = path else {
         return Ok(None);
     };
-    let remedy = format!("give a table as scripts/{script} writes it, or leave --{option} out");
+    if weight == 0.0 {
+        return Err(
+            Failure::input(format!("the {name} potential has no weight"))
+                .at(path)
+                .remedy(format!(
+                    "give --{name}-weight, or leave --{name}-potential out"
+                )),
+        );
+    }
+    let remedy =
+        format!("give a table as scripts/{script} writes it, or leave --{name}-potential out");
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::input(&error).at(path).remedy(&remedy))?;
     let table = parse(&text).map_err(|error| {
