@@ -36,13 +36,14 @@ from reliability_plot import draw
 from whole_file import write
 
 DEPTH = 10
-# Tables that the program carries, used where a run names no other, by potential.
+# Tables that the program carries, used where a run names no other.
 CARRIED = {
-    "contact": "scoring/src/effect/contact_potential.csv",
-    "fine_contact": "scoring/src/rescoring/fine_contact_potential.csv",
-    "atom_pair": "scoring/src/rescoring/atom_pair_potential.csv",
+    "--contact-potential": "scoring/src/effect/contact_potential.csv",
+    "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
+    "--atom-pair-potential": "scoring/src/rescoring/atom_pair_potential.csv",
 }
 COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair")
+POTENTIALS = ("contact", "fine_contact", "atom_pair")
 # Recorded options in which runs may differ.
 FREE = {"contact_potential", "fine_contact_potential", "atom_pair_potential", "every_pose", "write_top"}
 # Of the first ten clusters, best pose each, in order; none depends on the unit of the score.
@@ -58,7 +59,7 @@ FEATURES = {
     # How many did about any.
     "crowding": lambda top, counts: math.log(counts["poses"] / counts["clusters"]),
     # How much of the ten's scores is contact potential, which was made to tell native contacts from others.
-    "contacts": lambda top, counts: sum(sum(row[term] for term in CARRIED) / row["rank_score"] for row in top) / DEPTH,
+    "contacts": lambda top, counts: sum(sum(row[term] for term in POTENTIALS) / row["rank_score"] for row in top) / DEPTH,
 }
 # The first is the base rate. Those with `contacts` joined after a look at the others on 38 of the pairs.
 CANDIDATES = (
@@ -147,9 +148,9 @@ def read_runs(folders, manifest, split, seen):
         here = "eval" if row["split"] == "eval" else "train" if row["near_eval"].strip() else "fit"
         if here != split:
             raise SystemExit(f"{record} is of split {here}, not {split}")
-        run = json.loads((record.parent / "run/run.json").read_text())
         if split == "fit":
-            refuse_leak(pair, result["settings"]["options"], run["options"])
+            refuse_leak(pair, result["settings"]["options"])
+        run = json.loads((record.parent / "run/run.json").read_text())
         for option, value in run["options"].items():
             if option not in FREE and seen.setdefault(option, value) != value:
                 raise SystemExit(f"{record} was docked with {option} {value}, another run with {seen[option]}")
@@ -158,8 +159,7 @@ def read_runs(folders, manifest, split, seen):
             print(f"{pair} is left out: {', '.join(off)} off", file=sys.stderr)
             continue
         with open(record.parent / "run/poses.csv", newline="") as file:
-            # The term of a potential without a weight is empty.
-            rows = [{key: float(row[key] or 0) for key in COLUMNS} for row in csv.DictReader(file)]
+            rows = [{key: float(row[key]) for key in COLUMNS} for row in csv.DictReader(file)]
         # Rows come best first, so the first of a cluster is its best.
         clusters = {}
         for row in rows:
@@ -169,12 +169,9 @@ def read_runs(folders, manifest, split, seen):
         yield pair, features, (result["clusters"]["acceptable"] or math.inf) <= DEPTH
 
 
-def refuse_leak(pair, given, recorded):
-    """Ends where a potential that has a weight was derived from the pair itself."""
-    for name, carried in CARRIED.items():
-        if not recorded[f"{name}_weight"]:
-            continue
-        option = f"--{name.replace('_', '-')}-potential"
+def refuse_leak(pair, given):
+    """Ends where a potential was derived from the pair itself."""
+    for option, carried in CARRIED.items():
         path = Path(given[given.index(option) + 1]) if option in given else Path(__file__).parent.parent / carried
         with open(path) as file:
             if any(pair in line.split() for line in file if line.startswith("#")):

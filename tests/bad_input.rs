@@ -211,19 +211,6 @@ fn options_out_of_range() {
     ] {
         place.refused(&["dock", "receptor.pdb", "ligand.pdb", option[0], option[1]]);
     }
-    // A table that would go unused.
-    let table = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/scoring/src/rescoring/fine_contact_potential.csv"
-    );
-    let dock = [
-        "dock",
-        "receptor.pdb",
-        "ligand.pdb",
-        "--fine-contact-potential",
-        table,
-    ];
-    place.refused(&[&dock[..], &["--fine-contact-weight", "0"]].concat());
     place.refused(&["dock", "receptor.pdb"]);
     place.refused(&["dock"]);
     place.refused(&["fold", "receptor.pdb"]);

@@ -74,14 +74,8 @@ fn an_effect_that_is_off_changes_nothing() {
 fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
-    let fine = ["--fine-contact-weight", "2"];
     let options = ["--rotations", "24", "--poses", "40", "--refine", "5"];
-    let (object, _) = dock(
-        folder.path(),
-        &receptor,
-        &ligand,
-        &[&options[..], &fine].concat(),
-    );
+    let (object, _) = dock(folder.path(), &receptor, &ligand, &options);
     let effects = object["run"]["effects"].as_array().unwrap();
     let names: Vec<&Value> = effects.iter().map(|effect| &effect["effect"]).collect();
     assert_eq!(names, ["shape", "electrostatics", "contact"]);
@@ -100,11 +94,7 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         let pose = pose.join(",");
         let (again, _) = run(
             folder.path(),
-            &[
-                &["score", &receptor, &ligand, "--pose", &pose, "--json"][..],
-                &fine,
-            ]
-            .concat(),
+            &["score", &receptor, &ligand, "--pose", &pose, "--json"],
         );
         let again: Value = serde_json::from_str(&again).unwrap();
         assert!((number(&again["exact"]) - score).abs() < 1e-6 * score.abs());
@@ -152,11 +142,8 @@ fn rescoring_orders_poses_and_changes_no_score() {
             );
         }
     }
-    // By default atom pairs alone.
-    for row in table(&[]) {
-        assert_eq!(row["fine_contact"], "");
-        assert!(number(&row, "atom_pair") != 0.0);
-    }
+    // By default both.
+    assert_eq!(table(&[]), twice);
     // Each term by itself.
     for (off, on) in [("fine-contact", "atom_pair"), ("atom-pair", "fine_contact")] {
         let options = [

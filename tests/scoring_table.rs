@@ -79,11 +79,7 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
 
 /// Which effects were on, the exact score of each pose, and what rescoring adds.
 fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec<Rescored>) {
-    let options = DockOptions {
-        // Off by default.
-        fine_contact_weight: 2.0,
-        ..DockOptions::default()
-    };
+    let options = DockOptions::default();
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
     let rescorer = scene.rescorer(&options);

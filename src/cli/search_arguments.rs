@@ -167,24 +167,21 @@ impl KernelArguments {
         Ok(DockOptions {
             contact_potential: read_potential(
                 self.contact_potential.as_deref(),
-                "contact",
-                self.contact_weight,
+                "contact-potential",
                 "contact_potential.py",
                 Potential::parse,
             )?,
             fine_contact_weight: self.fine_contact_weight,
             fine_contact_potential: read_potential(
                 self.fine_contact_potential.as_deref(),
-                "fine-contact",
-                self.fine_contact_weight,
+                "fine-contact-potential",
                 "contact_potential.py --fine",
                 FinePotential::parse,
             )?,
             atom_pair_weight: self.atom_pair_weight,
             atom_pair_potential: read_potential(
                 self.atom_pair_potential.as_deref(),
-                "atom-pair",
-                self.atom_pair_weight,
+                "atom-pair-potential",
                 "atom_pair_potential.py",
                 AtomPairPotential::parse,
             )?,
@@ -251,28 +248,17 @@ fn sample_weights(text: &str) -> Result<SampleWeights, String> {
     }
 }
 
-/// The table that the option of a potential names, if it does; `script` writes such tables. One without a weight would go unused.
+/// The table that an option names, if it does; `script` writes such tables.
 fn read_potential<P>(
     path: Option<&Path>,
-    name: &str,
-    weight: f64,
+    option: &str,
     script: &str,
     parse: fn(&str) -> Result<P, PotentialError>,
 ) -> Result<Option<P>, Failure> {
     let Some(path) = path else {
         return Ok(None);
     };
-    if weight == 0.0 {
-        return Err(
-            Failure::input(format!("the {name} potential has no weight"))
-                .at(path)
-                .remedy(format!(
-                    "give --{name}-weight, or leave --{name}-potential out"
-                )),
-        );
-    }
-    let remedy =
-        format!("give a table as scripts/{script} writes it, or leave --{name}-potential out");
+    let remedy = format!("give a table as scripts/{script} writes it, or leave --{option} out");
     let text = std::fs::read_to_string(path)
         .map_err(|error| Failure::input(&error).at(path).remedy(&remedy))?;
     let table = parse(&text).map_err(|error| {

@@ -69,7 +69,7 @@ mod tests {
             |options| options.resolution = 6.0,
             |options| options.tolerance = 1e-3,
             |options| options.contact_weight = 1.0,
-            |options| options.fine_contact_weight = 2.0,
+            |options| options.fine_contact_weight = 0.0,
             |options| options.atom_pair_weight = 0.0,
             |options| options.poses = 1000,
             |options| options.refine = Some(300),

@@ -80,7 +80,7 @@ fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
             format!("--{name}-potential {name}.csv")
         })
         .collect();
-    let dock = "dock receptor.pdb ligand.pdb --rotations 20 --fine-contact-weight 2 --quiet";
+    let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";
     run(folder.path(), &format!("{dock} -o own"));
     run(
         folder.path(),

@@ -16,7 +16,7 @@ fn the_table_says_what_its_columns_promise() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --rotations 60 --no-cluster --fine-contact-weight 2 -o run --quiet",
+        "dock receptor.pdb ligand.pdb --rotations 60 --no-cluster -o run --quiet",
     );
     let run = folder.path().join("run");
     let text = fs::read_to_string(run.join("poses.csv")).unwrap();
