@@ -11,7 +11,7 @@ beside its run (`quality.json`).
 
 Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
 first 1, 10, 100, 1000, as means over turns, then over pairs; the mean log rank of the first near-native one; both against the weights of
-the runs; then the same for weights chosen for each fold of the pairs on the others, which is what
+the first run; then the same for weights chosen for each fold of the pairs on the others, which is what
 a choice like this is worth on pairs that it has not seen; then a bootstrap interval over pairs of the difference between the two
 best combinations. With --clusters temperatures are compared instead, at the runs' own weights: clusters ordered by
 T ln sum exp(score / T), T a share of the run's best score (0: the best pose alone).
@@ -40,14 +40,14 @@ TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
 def main():
     options = parse_arguments()
-    pooled, weights = {}, set()
+    pooled, weights = {}, []
     for runs in options.runs:
         for record in sorted(runs.glob("*/seed_*/result.json")):
             pair, seed = record.parent.parent.name, record.parent.name
             if (record.parent / "run/run.json").exists():
                 rows, own = load(options, record.parent, pair)
                 pooled.setdefault((pair, seed), []).append(rows)
-                weights.add(own)
+                weights.append(own)
     decoys = {key: np.concatenate(parts) for key, parts in pooled.items() if len(parts) == len(options.runs)}
     if not decoys:
         raise SystemExit("no pair is in all runs")
@@ -55,7 +55,7 @@ def main():
     if options.clusters:
         compare_temperatures(decoys)
     else:
-        compare_weights(options, decoys, min(weights))
+        compare_weights(options, decoys, weights[0])
 
 
 def parse_arguments():
@@ -151,7 +151,7 @@ def compare_weights(options, decoys, own):
         near_native[weights] = {key: first_rank(scores[key], rows[:, NEAR_NATIVE]) for key, rows in decoys.items()}
     mean = {weights: by_pair(acceptable[weights], np.log) for weights in grid}
     order = sorted(grid, key=lambda weights: mean[weights].mean())
-    print("Against: difference from the weights of the runs in mean log rank, with its standard error over pairs.\n")
+    print("Against: difference from the weights of the first run in mean log rank, with its standard error over pairs.\n")
     print("lambda  electrostatics  contact     fine    pairs   acceptable: mean log rank, top 1, 10, 100, 1000; against   near-native: mean log rank; against")
 
     def show(name, ranks, near_ranks):

@@ -75,14 +75,6 @@ impl StagingError {
             Self::Write(error) => error.path(),
         }
     }
-
-    /// Whether the request was at fault (exit code 2) and not the writing (exit code 1).
-    pub fn is_input(&self) -> bool {
-        match self {
-            Self::ExistingRun(_) | Self::NotARun { .. } => true,
-            Self::Write(error) => error.is_input(),
-        }
-    }
 }
 
 /// A run's directory while the run goes on: files are written under [`Staging::folder`] and appear all together on

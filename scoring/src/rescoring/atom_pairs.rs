@@ -69,6 +69,31 @@ fn between(nodes: &[f32; NODES], distance: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// Every pair of kinds has the table's energy for it, whichever body has which: one atom of each kind, far from one another, meets
+    /// one of each.
+    #[test]
+    fn every_pair_of_kinds_has_its_own_energies() {
+        let potential = AtomPairPotential::default();
+        let kinds = atom_kinds().len();
+        let of = |kinds: std::ops::Range<usize>| {
+            let centers = kinds.clone().map(|kind| [100.0 * kind as f64, 0.0, 0.0]);
+            Knots::new(centers.collect(), vec![1.7; kinds.len()])
+                .unwrap()
+                .with_atom_kinds(kinds.map(|kind| Some(kind as u8)).collect())
+                .unwrap()
+        };
+        let all = of(0..kinds);
+        for b in 0..kinds {
+            let pairs = AtomPairs::new(&all, &of(b..b + 1), &potential, 1.0);
+            for a in 0..kinds {
+                let x = 100.0 * (a as f64 - b as f64) + DISTANCES[2];
+                let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+                let energy = f64::from(potential.energies(a, b)[2]);
+                assert!((pairs.score(&pose) + energy).abs() < 1e-9, "{a} {b}");
+            }
+        }
+    }
+
     /// Two atoms at each of the table's distances have its energy, nearer ones the first; beyond the reach there is none.
     #[test]
     fn one_pair_has_the_energy_of_its_distance() {

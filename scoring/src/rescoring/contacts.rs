@@ -85,6 +85,28 @@ mod tests {
         assert_eq!([at(8.0), at(500.0), at(-1e9)], [0.0; 3]);
     }
 
+    /// Every pair of types has its own energies, whichever body has which.
+    #[test]
+    fn every_pair_of_types_has_its_own_energies() {
+        let potential = FinePotential::default();
+        let one = |kind: usize| {
+            let knots = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
+            knots
+                .with_labels(Vec::new(), vec![Some(kind as u8)])
+                .unwrap()
+        };
+        for a in 0..TYPES.len() {
+            for b in 0..TYPES.len() {
+                let contacts = FineContacts::new(&one(a), &one(b), &potential, 1.0);
+                for (range, x) in [3.0, 4.75, 6.5].into_iter().enumerate() {
+                    let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+                    let energy = potential.ranges[range].energy(a, b);
+                    assert!((contacts.score(&pose) + energy).abs() < 1e-12, "{a} {b}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn no_typed_atom_scores_nothing() {
         let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
