@@ -7,8 +7,11 @@ DIR is a folder as `scripts/benchmark.py` reads it; the unbound proteins of the 
 are the atoms of each amino acid by themselves, those alike by symmetry as one (structures/src/molecule/contact_types.csv). Counted are pairs of
 atoms whose residues stand at least --separation apart in the file, in shells of 0.5 A about the table's distances, the first one down to 0. In
 each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT: n_ab the pairs found, m_ab those of
-a reference state in which kinds are strewn by chance over as many pairs, x_a x_b n with x the share of a kind among all atoms
-(Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726), c a pseudocount. Both counts take a pair from both sides.
+a reference state in which kinds are strewn by chance over as many pairs, p_a p_b n, c a pseudocount. Both counts take a pair from both sides.
+
+p is the share of a kind. Among all atoms (x, the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) it lets
+energies say how buried a kind is beside whom it likes; among all partners of pairs (y, the quasi-chemical approximation, Miyazawa & Jernigan,
+J. Mol. Biol. 256 (1996) 623-644) only the latter. The core of a protein buries more than an interface does, so p goes as x^B y^(1 - B), B the --burial.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -39,7 +42,9 @@ def main():
             positions, types, residues = read_atoms(part(options.folder / pair, f"{side}_unbound"), kinds)
             atoms_of += np.bincount(types, minlength=len(names))
             found += count(positions, types, residues, options.separation, len(names))
-    shares = atoms_of / atoms_of.sum()
+    partners = found.sum(axis=(0, 1))
+    shares = (atoms_of / atoms_of.sum()) ** options.burial * (partners / partners.sum()) ** (1.0 - options.burial)
+    shares /= shares.sum()
     expected = np.outer(shares, shares) * found.sum(axis=(1, 2), keepdims=True)
     energies = -np.log((found + options.pseudocount) / (expected + options.pseudocount))
     write_table(options, pairs, names, energies, found.sum() / 2)
@@ -50,6 +55,7 @@ def parse_arguments():
     pair_arguments(parser)
     parser.add_argument("--separation", type=int, default=10, help="residues between the two atoms' at least (default: 10)")
     parser.add_argument("--pseudocount", type=float, default=30.0, help="expected pairs, counted from both sides (default: 30)")
+    parser.add_argument("--burial", type=float, default=0.5, metavar="B", help="share of burial that energies keep, 0 to 1 (default: 0.5)")
     parser.add_argument(
         "-o", "--output", type=Path, default=ROOT / "scoring/src/rescoring/atom_pair_potential.csv", help="default: the program's own table"
     )
@@ -96,7 +102,7 @@ def write_table(options, used, names, energies, pairs_counted):
     lines = [
         "# Atom pair potential in units of RT, -ln(found / expected) at distances in Angstrom; lower is better.",
         f"# Written by scripts/atom_pair_potential.py on {datetime.date.today()} from {pairs_counted:.0f} pairs of atoms, residues {options.separation} or more "
-        f"apart, of {2 * len(used)} proteins; pseudocount {options.pseudocount:g}.",
+        f"apart, of {2 * len(used)} proteins; pseudocount {options.pseudocount:g}, burial {options.burial:g}.",
         "# Unbound receptors and ligands of Docking Benchmark 5 (BM5-clean, haddocking, Apache-2.0; Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041):",
         f"# {' '.join(used)}",
         "kind,kind," + ",".join(f"{distance:g}" for distance in DISTANCES),

@@ -156,7 +156,7 @@ impl Default for DockOptions {
             contact_potential: None,
             fine_contact_weight: 2.0,
             fine_contact_potential: None,
-            atom_pair_weight: 2.0,
+            atom_pair_weight: 4.0,
             atom_pair_potential: None,
             ph: 7.0,
             per_rotation: 3,

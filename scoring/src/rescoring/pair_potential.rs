@@ -30,8 +30,10 @@ pub fn atom_kinds() -> &'static [&'static str] {
 /// Energies of pairs of atoms by their kinds ([`atom_kinds`]) and distance, in units of RT; lower is better.
 ///
 /// Ours, derived by `scripts/atom_pair_potential.py` from the insides of proteins: minus the logarithm of how often two kinds are found so far apart,
-/// over how often they would be if kinds were strewn over the atoms by chance (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi,
-/// J. Mol. Biol. 267 (1997) 707-726), by distance as in Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916.
+/// over how often they would be by chance, by distance as in Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916. Chance strews kinds by shares halfway, in
+/// logarithms, between those among all atoms (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and those among
+/// all partners (the quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644), which leaves half of what kinds gain by being
+/// buried at all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Energies>", into = "Vec<Energies>")]
 pub struct AtomPairPotential(Vec<Energies>);
