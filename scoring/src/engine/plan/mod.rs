@@ -10,6 +10,7 @@
 
 mod error;
 mod grid;
+mod radii;
 
 use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
@@ -22,6 +23,7 @@ use error::{check_tolerance, checked_spacing};
 use grid::{Extents, oversampling, product_kernel, ranking_spacing, window_width};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
+use radii::Radii;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -163,21 +165,13 @@ impl Plan {
         check_tolerance(options.tolerance)?;
         check_tolerance(kernel_tolerance)?;
         let tolerance = options.tolerance;
-        let (receptor_radii, _) = receptor.radius_classes();
-        let (ligand_radii, _) = ligand.radius_classes();
-        let ends = |radii: &[f64]| match (radii.first(), radii.last()) {
-            (Some(&low), Some(&high)) => (low, high),
-            _ => (0.0, 0.0),
-        };
-        let (r_low, r_high) = ends(&receptor_radii);
-        let (s_low, s_high) = ends(&ligand_radii);
-        // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
+        let radii = Radii::of(receptor, ligand);
         // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors, by lambda.
         let severity = (options.kernel.lambda.abs() / 20.0).max(1.0);
+        // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
         let reach_factor = 1.15 + 0.75 * (1e-2 * severity / kernel_tolerance).log10().max(0.0);
-        let kernel =
-            RankingKernel::new(options.kernel, r_low + s_low, r_high + s_high, reach_factor)?;
-        let chosen = checked_spacing(options.spacing)?;
+        let (least, widest) = radii.sums();
+        let kernel = RankingKernel::new(options.kernel, least, widest, reach_factor)?;
         let effects: Vec<ActiveTerm> = terms
             .into_iter()
             .map(|term| ActiveTerm {
@@ -185,23 +179,16 @@ impl Plan {
                 term,
             })
             .collect();
+        let chosen = checked_spacing(options.spacing)?;
         let (pair, spacing, effective_reach) = match band {
             None => {
-                let widest = r_high + s_high;
-                let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
                 let spacing = chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance));
-                let reach = effects.iter().fold(
-                    kernel.effective_reach(widest, tolerance * rim),
-                    |reach, ActiveTerm { term, kernel }| {
-                        let largest = term.largest().max(f64::MIN_POSITIVE);
-                        reach.max(kernel.effective_reach(tolerance * rim / largest))
-                    },
-                );
+                let reach = longest_reach(&kernel, &effects, widest, tolerance);
                 (PairKernel::Lifted, spacing, reach)
             }
             Some(band) => {
-                let ends = [r_low, s_low, r_high, s_high];
-                let (product, spacing, reach) = product_kernel(options, band, ends, chosen)?;
+                let (product, spacing, reach) =
+                    product_kernel(options, band, radii.ends(), chosen)?;
                 (PairKernel::Product(Box::new(product)), spacing, reach)
             }
         };
@@ -210,35 +197,17 @@ impl Plan {
         let width = window_width(tolerance, severity, ratio);
         let size = extents.grid(effective_reach, width, spacing)?;
         let lengths = size.map(|n| n as f64 * spacing);
-        let modes = Arc::new(ModeSet::new(size, lengths, 0.5 / spacing));
-        let fine = size.map(|n| fast_size((n as f64 * ratio).ceil() as usize));
-        let (axis, basis, axis_error) = match &pair {
-            PairKernel::Lifted => {
-                let (axis, error) = LiftedAxis::for_tolerance(&kernel, 1e-3 * tolerance);
-                let basis = RadiusBasis::choose(&axis, receptor_radii, ligand_radii);
-                (axis, basis, error)
-            }
-            PairKernel::Product(product) => {
-                let cut = 0.5 / spacing;
-                let (basis, error) = RadiusBasis::for_product(
-                    product,
-                    receptor_radii,
-                    ligand_radii,
-                    cut,
-                    1e-3 * tolerance,
-                );
-                (LiftedAxis::new(&kernel, 0), basis, error)
-            }
-        };
+        let cut = 0.5 / spacing;
+        let (axis, basis, axis_error) = radii.meet(&kernel, &pair, cut, 1e-3 * tolerance);
         Ok(Self {
             options,
             pair,
             axis,
             axis_error,
             basis,
-            modes,
+            modes: Arc::new(ModeSet::new(size, lengths, cut)),
             spacing,
-            fine,
+            fine: size.map(|n| fast_size((n as f64 * ratio).ceil() as usize)),
             width,
             effective_reach,
             receptor_center: extents.receptor_center,
@@ -302,4 +271,19 @@ impl Plan {
     pub fn size(&self) -> [usize; 3] {
         self.modes.size
     }
+}
+
+/// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest sum of radii.
+fn longest_reach(
+    kernel: &RankingKernel,
+    effects: &[ActiveTerm],
+    widest: f64,
+    tolerance: f64,
+) -> f64 {
+    let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+    let of_effects = effects.iter().map(|ActiveTerm { term, kernel }| {
+        let largest = term.largest().max(f64::MIN_POSITIVE);
+        kernel.effective_reach(tolerance * rim / largest)
+    });
+    of_effects.fold(kernel.effective_reach(widest, tolerance * rim), f64::max)
 }
