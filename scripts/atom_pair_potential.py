@@ -59,7 +59,10 @@ def parse_arguments():
     parser.add_argument(
         "-o", "--output", type=Path, default=ROOT / "scoring/src/rescoring/atom_pair_potential.csv", help="default: the program's own table"
     )
-    return parser.parse_args()
+    options = parser.parse_args()
+    if not 0.0 <= options.burial <= 1.0:
+        parser.error(f"--burial {options.burial:g} is not between 0 and 1")
+    return options
 
 
 def read_kinds():
