@@ -101,12 +101,15 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {
             assert!((number(&again["terms"][name]) - term).abs() < 1e-6 * score.abs());
         }
-        for name in ["fine_contact", "atom_pair", "rank_score"] {
+        for name in ["fine_contact", "atom_pair", "relaxed", "rank_score"] {
             assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
         }
         assert_eq!(
             number(&row["rank_score"]),
-            score + (number(&row["fine_contact"]) + number(&row["atom_pair"]))
+            score
+                + (number(&row["fine_contact"])
+                    + number(&row["atom_pair"])
+                    + number(&row["relaxed"]))
         );
     }
 }
@@ -129,35 +132,37 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
         row[name].parse().unwrap()
     };
-    let (plain, once, twice) = (
-        table(&["--fine-contact-weight", "0", "--atom-pair-weight", "0"]),
-        table(&["--fine-contact-weight", "1", "--atom-pair-weight", "1"]),
-        table(&["--fine-contact-weight", "2", "--atom-pair-weight", "2"]),
-    );
+    const TERMS: [(&str, &str); 3] = [
+        ("--fine-contact-weight", "fine_contact"),
+        ("--atom-pair-weight", "atom_pair"),
+        ("--relaxed-weight", "relaxed"),
+    ];
+    let weighed = |weights: [&str; 3]| {
+        let options = TERMS.iter().zip(weights);
+        let options = options.flat_map(|((option, _), weight)| [*option, weight]);
+        table(&options.collect::<Vec<_>>())
+    };
+    let (plain, once, twice) = (weighed(["0"; 3]), weighed(["1"; 3]), weighed(["2"; 3]));
     for row in plain.iter().chain(&table(&["--effects", "shape"])) {
-        for term in ["fine_contact", "atom_pair"] {
+        for (_, term) in TERMS {
             assert_eq!(
                 (row[term].as_str(), &row["rank_score"]),
                 ("", &row["score"])
             );
         }
     }
-    // By default both.
-    assert_eq!(
-        table(&[]),
-        table(&["--fine-contact-weight", "2", "--atom-pair-weight", "4"])
-    );
+    // By default all.
+    assert_eq!(table(&[]), weighed(["2", "1", "3"]));
     // Each term by itself.
-    for (off, on) in [("fine-contact", "atom_pair"), ("atom-pair", "fine_contact")] {
-        let options = [
-            format!("--{off}-weight"),
-            format!("--{}-weight", on.replace('_', "-")),
-        ];
-        for row in table(&[&options[0], "0", &options[1], "2"]) {
-            assert_eq!(row[&off.replace('-', "_")], "");
+    for (on, (_, only)) in TERMS.iter().enumerate() {
+        let weights = std::array::from_fn(|term| if term == on { "2" } else { "0" });
+        for row in weighed(weights) {
+            for (term, (_, name)) in TERMS.iter().enumerate() {
+                assert_eq!(row[*name].is_empty(), term != on);
+            }
             assert_eq!(
                 number(&row, "rank_score"),
-                number(&row, "score") + number(&row, on)
+                number(&row, "score") + number(&row, only)
             );
         }
     }
@@ -174,13 +179,13 @@ fn rescoring_orders_poses_and_changes_no_score() {
         );
         assert_eq!(before["score"], row["score"]);
         moved += usize::from(before["rank"] != row["rank"]);
-        let mut both = 0.0;
-        for term in ["fine_contact", "atom_pair"] {
+        let mut all = 0.0;
+        for (_, term) in TERMS {
             let (one, two) = (number(half, term), number(row, term));
             assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
-            both += two;
+            all += two;
         }
-        assert_eq!(number(row, "rank_score"), number(row, "score") + both);
+        assert_eq!(number(row, "rank_score"), number(row, "score") + all);
     }
     assert!(moved > 0, "rescoring must matter");
     assert!(

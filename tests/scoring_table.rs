@@ -15,6 +15,7 @@ use knotdock::search::{self, DockOptions, Effect, Progress, Scene};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::rescoring::Rescored;
+use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
@@ -29,7 +30,7 @@ const SEARCHED: usize = 5;
 /// Cases that are searched: those without ties.
 const SEARCHES: [&str; 3] = ["helices", "charged_helices", "nucleic"];
 
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 11] = [
     "score",
     "shape",
     "electrostatics",
@@ -40,6 +41,7 @@ const COLUMNS: [&str; 10] = [
     "unfiltered",
     "fine_contact",
     "atom_pair",
+    "relaxed",
 ];
 
 fn folder() -> PathBuf {
@@ -83,7 +85,10 @@ fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
     let rescorer = scene.rescorer(&options);
-    let rescored = |pose| rescorer.as_ref().map(|terms| terms.score(pose));
+    let rescored = |pose| {
+        let workspace = &mut Workspace::default();
+        rescorer.as_ref().map(|terms| terms.score(pose, workspace))
+    };
     let rescored = poses
         .iter()
         .map(|(_, pose)| rescored(pose).unwrap_or_default())
@@ -247,7 +252,7 @@ fn scores_terms_slices_and_ranks_of_poses() {
             ];
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
-            values.extend([rescored.fine_contact, rescored.atom_pair]);
+            values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
             found.insert((case.clone(), *number), values);
         }
     }

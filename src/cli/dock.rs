@@ -72,7 +72,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 43] = [
+const RECORDED: [&str; 44] = [
     "receptor",
     "ligand",
     "waters",
@@ -103,6 +103,7 @@ const RECORDED: [&str; 43] = [
     "fine_contact_weight",
     "fine_contact_potential",
     "atom_pair_weight",
+    "relaxed_weight",
     "atom_pair_potential",
     "ph",
     "per_rotation",

@@ -34,17 +34,17 @@ pub fn told(outcome: &DockOutcome) -> String {
     }
     let row = outcome.poses.first();
     let terms = [
-        ("fine contact", row.and_then(|row| row.fine_contact)),
-        ("atom pair", row.and_then(|row| row.atom_pair)),
+        ("fine contacts", row.and_then(|row| row.fine_contact)),
+        ("atom pairs", row.and_then(|row| row.atom_pair)),
+        ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
     ];
     let terms = terms.iter().filter(|(_, value)| value.is_some());
     let names: Vec<&str> = terms.map(|(name, _)| *name).collect();
     let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
     if let (false, Some(stage)) = (names.is_empty(), stage) {
         lines.push(format!(
-            "Rescored by the {} potential{} in {:.2} s",
-            names.join(" and the "),
-            if names.len() > 1 { "s" } else { "" },
+            "Rescored by {} in {:.2} s",
+            listed(&names),
             stage.wall_seconds
         ));
     }
@@ -62,6 +62,15 @@ pub fn told(outcome: &DockOutcome) -> String {
         outcome.poses_kept, outcome.clusters
     ));
     lines.join("\n")
+}
+
+/// Names with commas between them, and the last after an "and".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [name] => (*name).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
 }
 
 /// The chance that a ranking holds what is looked for, and what it rests on.

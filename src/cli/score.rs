@@ -5,6 +5,7 @@ use knotdock::output::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
 use knotdock::search::{Scene, SearchError};
+use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::ModeOrder;
 
@@ -80,13 +81,14 @@ impl Score {
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
         let rescorer = scene.rescorer(&dock);
-        let rescored = rescorer.map(|rescorer| rescorer.score(&pose));
+        let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
         let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
         if let Some(rescored) = rescored {
             let terms = [
                 ("Fine contacts", rescored.fine_contact),
                 ("atom pairs", rescored.atom_pair),
+                ("relaxed", rescored.relaxed),
             ];
             let told = terms
                 .iter()
@@ -116,6 +118,7 @@ impl Score {
             for (name, value) in [
                 ("fine_contact", rescored.fine_contact),
                 ("atom_pair", rescored.atom_pair),
+                ("relaxed", rescored.relaxed),
             ] {
                 object.insert(name.to_owned(), serde_json::json!(value));
             }

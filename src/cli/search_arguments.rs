@@ -104,6 +104,10 @@ pub struct KernelArguments {
     /// Weight of the atom pair potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().atom_pair_weight, help_heading = SCORE)]
     atom_pair_weight: f64,
+    /// Weight of the atom pair potential where the pose comes to rest within 2 Å once atoms must not overlap, score per RT, by which poses are rescored
+    /// where the contact effect is on; 0 for none.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().relaxed_weight, help_heading = SCORE)]
+    relaxed_weight: f64,
     /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     atom_pair_potential: Option<PathBuf>,
@@ -179,6 +183,7 @@ impl KernelArguments {
                 FinePotential::parse,
             )?,
             atom_pair_weight: self.atom_pair_weight,
+            relaxed_weight: self.relaxed_weight,
             atom_pair_potential: read_potential(
                 self.atom_pair_potential.as_deref(),
                 "atom-pair-potential",

@@ -106,6 +106,7 @@ mod tests {
             slices: [0.0; 3],
             fine_contact: None,
             atom_pair: None,
+            relaxed: None,
             rank_score: score,
             z_score: None,
         }

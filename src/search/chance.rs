@@ -64,13 +64,14 @@ mod tests {
             on[effect] = false;
             assert_eq!(chance(&default(), &on, 1000), None);
         }
-        let changes: [fn(&mut DockOptions); 11] = [
+        let changes: [fn(&mut DockOptions); 12] = [
             |options| options.rotations = 7200,
             |options| options.resolution = 6.0,
             |options| options.tolerance = 1e-3,
             |options| options.contact_weight = 1.0,
             |options| options.fine_contact_weight = 0.0,
             |options| options.atom_pair_weight = 0.0,
+            |options| options.relaxed_weight = 0.0,
             |options| options.poses = 1000,
             |options| options.refine = Some(300),
             |options| options.cluster_radius = 4.0,

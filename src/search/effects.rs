@@ -3,7 +3,7 @@
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
-use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Rescorer};
+use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Relaxation, Rescorer};
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::{Deserialize, Serialize};
@@ -249,13 +249,13 @@ impl Scene {
         })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or both weights are 0.
+    /// What poses are rescored with; `None` where the contact effect is off or all weights are 0.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
         rescorer(&self.decisions, &self.receptor, &self.ligand, options)
     }
 }
 
-/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or both weights are 0.
+/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or all weights are 0.
 pub(super) fn rescorer(
     decisions: &[Decision],
     receptor: &Knots,
@@ -264,16 +264,18 @@ pub(super) fn rescorer(
 ) -> Option<Rescorer> {
     let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
     let (fine, pairs) = (options.fine_contact_weight, options.atom_pair_weight);
+    let relaxed = options.relaxed_weight;
+    let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
     let asked = decisions.iter().any(contact) && options.asks_rescoring();
     asked.then(|| Rescorer {
         fine_contacts: (fine > 0.0).then(|| {
             let potential = options.fine_contact_potential.clone().unwrap_or_default();
             FineContacts::new(receptor, ligand, &potential, fine)
         }),
-        atom_pairs: (pairs > 0.0).then(|| {
-            let potential = options.atom_pair_potential.clone().unwrap_or_default();
-            AtomPairs::new(receptor, ligand, &potential, pairs)
-        }),
+        atom_pairs: (pairs > 0.0)
+            .then(|| AtomPairs::new(receptor, ligand, &pair_potential(), pairs)),
+        relaxation: (relaxed > 0.0)
+            .then(|| Relaxation::new(receptor, ligand, &pair_potential(), relaxed)),
     })
 }
 

@@ -58,6 +58,9 @@ pub struct DockOptions {
     /// Weight of the atom pair potential, by which poses are rescored likewise: score per RT; 0: without it, as were runs before there was one.
     #[serde(default)]
     pub atom_pair_weight: f64,
+    /// Weight of what a pose is worth once relaxed, by which poses are rescored likewise: score per RT; 0: without it, as were runs before there was one.
+    #[serde(default)]
+    pub relaxed_weight: f64,
     /// The atom pair potential; `None`: the one that the program carries.
     #[serde(default)]
     pub atom_pair_potential: Option<AtomPairPotential>,
@@ -156,7 +159,8 @@ impl Default for DockOptions {
             contact_potential: None,
             fine_contact_weight: 2.0,
             fine_contact_potential: None,
-            atom_pair_weight: 4.0,
+            atom_pair_weight: 1.0,
+            relaxed_weight: 3.0,
             atom_pair_potential: None,
             ph: 7.0,
             per_rotation: 3,
@@ -190,7 +194,7 @@ impl DockOptions {
 
     /// Whether the weights ask for rescoring, which the contact effect's types then make possible.
     pub(crate) fn asks_rescoring(&self) -> bool {
-        self.fine_contact_weight > 0.0 || self.atom_pair_weight > 0.0
+        self.fine_contact_weight > 0.0 || self.atom_pair_weight > 0.0 || self.relaxed_weight > 0.0
     }
 
     /// Refuses weights and a pH that mean nothing.
@@ -201,6 +205,7 @@ impl DockOptions {
             ("contact-weight", self.contact_weight, 1e6),
             ("fine-contact-weight", self.fine_contact_weight, 1e6),
             ("atom-pair-weight", self.atom_pair_weight, 1e6),
+            ("relaxed-weight", self.relaxed_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

@@ -36,7 +36,9 @@ pub struct RankedPose {
     pub fine_contact: Option<f64>,
     /// Weighted atom pair potential there; `None` likewise.
     pub atom_pair: Option<f64>,
-    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact` and `atom_pair` besides.
+    /// Weighted energy there once the pose has given way; `None` likewise.
+    pub relaxed: Option<f64>,
+    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact`, `atom_pair` and `relaxed` besides.
     pub rank_score: f64,
     /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,

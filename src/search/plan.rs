@@ -264,7 +264,7 @@ impl DockPlan {
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or both weights are 0.
+    /// What poses are rescored with; `None` where the contact effect is off or all weights are 0.
     pub(super) fn rescorer(&self) -> Option<Rescorer> {
         rescorer(&self.decisions, &self.receptor, &self.ligand, &self.options)
     }

@@ -16,7 +16,7 @@ use super::peaks::Peak;
 use super::run::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::{Rescored, Rescorer};
+use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
@@ -74,36 +74,39 @@ pub(super) fn candidates(
         .par_iter()
         .zip(grid_poses)
         .enumerate()
-        .map(|(index, (peak, grid_pose))| {
-            let score_grid = peak.score;
-            let candidate = Candidate {
-                pose: *grid_pose,
-                score: score_grid,
-                rescored: Rescored::default(),
-                grid_pose: *grid_pose,
-                terms: at_grid.get(index).copied(),
-                refined: false,
-                rotation: peak.rotation as usize,
-                score_grid,
-            };
-            let candidate = match refined.get(index) {
-                Some(&(pose, score)) if score > score_grid => Candidate {
-                    pose,
-                    score,
-                    refined: true,
+        .map_init(
+            Workspace::default,
+            |workspace, (index, (peak, grid_pose))| {
+                let score_grid = peak.score;
+                let candidate = Candidate {
+                    pose: *grid_pose,
+                    score: score_grid,
+                    rescored: Rescored::default(),
+                    grid_pose: *grid_pose,
+                    terms: at_grid.get(index).copied(),
+                    refined: false,
+                    rotation: peak.rotation as usize,
+                    score_grid,
+                };
+                let candidate = match refined.get(index) {
+                    Some(&(pose, score)) if score > score_grid => Candidate {
+                        pose,
+                        score,
+                        refined: true,
+                        ..candidate
+                    },
+                    _ => candidate,
+                };
+                let rescored = rescorer
+                    .map(|rescorer| rescorer.score(&candidate.pose, workspace))
+                    .unwrap_or_default();
+                Candidate {
+                    score: candidate.score + rescored.sum(),
+                    rescored,
                     ..candidate
-                },
-                _ => candidate,
-            };
-            let rescored = rescorer
-                .map(|rescorer| rescorer.score(&candidate.pose))
-                .unwrap_or_default();
-            Candidate {
-                score: candidate.score + rescored.sum(),
-                rescored,
-                ..candidate
-            }
-        })
+                }
+            },
+        )
         .filter(|candidate| candidate.score.is_finite())
         .collect();
     // The list comes in the order of the grid's scores, which breaks ties.
@@ -270,13 +273,16 @@ impl Candidate {
         };
         let rescored = match rescorer {
             // An undone climb leaves another pose than was rescored.
-            Some(rescorer) if refined != self.refined => rescorer.score(&pose),
+            Some(rescorer) if refined != self.refined => {
+                rescorer.score(&pose, &mut Workspace::default())
+            }
             _ => self.rescored,
         };
         RankedPose {
             pose,
             fine_contact: rescored.fine_contact,
             atom_pair: rescored.atom_pair,
+            relaxed: rescored.relaxed,
             rank_score: terms.score + rescored.sum(),
             z_score: None,
             score: terms.score,

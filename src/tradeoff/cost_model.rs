@@ -70,7 +70,7 @@ impl CostModel {
         field: 9e-11,
         prepare: 4.5e-6,
         pair: 1.6e-8,
-        rescore: 8e-7,
+        rescore: 3e-6,
         climb: 3.5e-5,
         rotation: 1.2e-5,
         covering: 0.05,

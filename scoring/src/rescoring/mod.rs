@@ -4,7 +4,7 @@
 //! poses that it keeps, more can be asked. [`FineContacts`] asks which atoms meet at which distance: a potential of three
 //! ranges over all pairs of the types of [`crate::effect::contact`], summed over the atoms themselves; it was learnt from interfaces. [`AtomPairs`] asks
 //! the same of every atom of every residue by itself, in finer steps; so much cannot be learnt from interfaces, and comes from the insides
-//! of proteins. [`Rescorer`] holds both.
+//! of proteins. [`Relaxation`] asks it once more, of the pose that the two bodies come to rest in when atoms must not overlap. [`Rescorer`] holds all three.
 //!
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
@@ -14,10 +14,12 @@ mod cells;
 mod contacts;
 mod pair_potential;
 mod potential;
+mod relaxation;
 mod rescorer;
 
 pub use atom_pairs::AtomPairs;
 pub use contacts::FineContacts;
 pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use potential::{FinePotential, RANGES};
+pub use relaxation::{Relaxation, Relaxed, Workspace};
 pub use rescorer::{Rescored, Rescorer};

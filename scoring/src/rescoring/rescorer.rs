@@ -1,6 +1,6 @@
 //! All that poses are rescored with.
 
-use super::{AtomPairs, FineContacts};
+use super::{AtomPairs, FineContacts, Relaxation, Workspace};
 use crate::se3::Pose;
 
 /// Terms that are asked of a pose beside its score.
@@ -9,6 +9,8 @@ pub struct Rescorer {
     pub fine_contacts: Option<FineContacts>,
     /// The atom pair potential.
     pub atom_pairs: Option<AtomPairs>,
+    /// The same with atoms that must not overlap, where the pose comes to rest.
+    pub relaxation: Option<Relaxation>,
 }
 
 /// What they say of a pose, weighted; higher is better. `None` where the term is left out.
@@ -18,14 +20,20 @@ pub struct Rescored {
     pub fine_contact: Option<f64>,
     /// The atom pair potential.
     pub atom_pair: Option<f64>,
+    /// What the pose is worth once relaxed.
+    pub relaxed: Option<f64>,
 }
 
 impl Rescorer {
     /// What is added to a pose's score.
-    pub fn score(&self, pose: &Pose) -> Rescored {
+    pub fn score(&self, pose: &Pose, workspace: &mut Workspace) -> Rescored {
         Rescored {
             fine_contact: self.fine_contacts.as_ref().map(|terms| terms.score(pose)),
             atom_pair: self.atom_pairs.as_ref().map(|terms| terms.score(pose)),
+            relaxed: self
+                .relaxation
+                .as_ref()
+                .map(|relaxation| relaxation.score(pose, workspace)),
         }
     }
 }
@@ -33,6 +41,8 @@ impl Rescorer {
 impl Rescored {
     /// All terms together.
     pub fn sum(&self) -> f64 {
-        self.fine_contact.unwrap_or(0.0) + self.atom_pair.unwrap_or(0.0)
+        self.fine_contact.unwrap_or(0.0)
+            + self.atom_pair.unwrap_or(0.0)
+            + self.relaxed.unwrap_or(0.0)
     }
 }

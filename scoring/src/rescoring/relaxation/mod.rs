@@ -1,0 +1,287 @@
+//! What a pose is worth once its two bodies may give way to each other: the least energy of atoms that must not overlap, over small rigid moves.
+//!
+//! Unbound surfaces laid on each other at the places of a grid overlap here and miss each other there, natively or not, so an energy that
+//! asks atoms to keep apart says little of a pose as it stands. Half an Ångström to the side it may. [`Relaxation`] looks for that place, as rigid-body
+//! minimisation does before poses are ranked by force fields (Li, Chen & Weng, Proteins 53 (2003) 693-707), by steepest descent with a step that
+//! grows while it helps.
+
+mod descent;
+#[cfg(test)]
+mod tests;
+
+use self::descent::{FARTHEST, Slope, descend};
+use super::cells::{Atom, Cells};
+use super::pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+use crate::exact::center;
+use crate::se3::Pose;
+use crate::vectorized::vectorized;
+use knotdock_structures::Knots;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// Distance in Å from which two kinds count nothing: a step beyond the last that the table has.
+const PAIR_REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
+/// Energies of a pair of kinds in memory: those of the table, then zeros.
+const NODES: usize = 8;
+/// What atoms may come closer than their radii add up to, in Å.
+const OVERLAP: f64 = 0.1;
+/// What overlapping further costs, RT per Å²: a cushion, not a wall, for atoms of unbound surfaces stand where the other body's will be.
+const STIFFNESS: f64 = 0.8;
+/// The same while the pose gives way: softer, so that single overlaps do not hold back what the whole interface gains.
+const YIELDING: f64 = 0.2;
+/// Radius in Å up to which an atom is a hydrogen, which reaches into what it is bonded to by: where hydrogens are kept they take no part.
+const HYDROGEN: f64 = 1.15;
+
+/// Pairs that may come within reach are listed once, a little farther out than the move goes.
+const SLACK: f64 = FARTHEST + 0.6;
+/// Least radius in Å about which an interface turns.
+const LEAST_RADIUS: f64 = 3.0;
+
+/// Two bodies prepared for relaxing poses.
+///
+/// The energy of a pose, in RT, is the sum over pairs of atoms of the atom pair potential (as [`super::AtomPairs`] reads it) and of 0.8 RT/Å² times the square
+/// of what they lack of touching, the sum of their radii less 0.1 Å. Atoms without a kind only push. The pose descends by at most 2 Å on a like energy with a quarter of that
+/// stiffness, and scores minus the weight times its energy where it comes to rest.
+pub struct Relaxation {
+    /// Atoms of the receptor, each with its number in `sites` for a kind.
+    receptor: Cells,
+    receptor_center: Vector3<f64>,
+    sites: Vec<Site>,
+    ligand: Vec<(Vector3<f64>, Site)>,
+    ligand_center: Vector3<f64>,
+    /// Energies, `[receptor kind][ligand kind]`, and none for atoms without a kind.
+    energies: Vec<[f32; NODES]>,
+    kinds: usize,
+    reach: f64,
+    weight: f64,
+}
+
+/// An atom as the sums need it: its place relative to the receptor's middle (of a ligand's atom unused), radius and kind.
+#[derive(Clone, Copy)]
+struct Site {
+    position: Vector3<f64>,
+    radius: f64,
+    kind: usize,
+}
+
+/// A ligand atom with receptor atoms in its neighbourhood.
+struct Mobile {
+    /// Relative to the middle of the interface, Å.
+    arm: Vector3<f64>,
+    site: Site,
+    /// The last of its neighbours in the list, which begin where those of the atom before end.
+    end: usize,
+}
+
+/// Buffers of a relaxation, which keep their size from one pose to the next.
+#[derive(Default)]
+pub struct Workspace {
+    mobile: Vec<Mobile>,
+    neighbours: Vec<Site>,
+}
+
+/// A pose that gave way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relaxed {
+    /// Where the energy is least of what was found.
+    pub pose: Pose,
+    /// Energy there in RT; lower is better.
+    pub energy: f64,
+}
+
+impl Relaxation {
+    /// Prepares two sets of knots with kinds of atoms; `weight` is score per RT.
+    pub fn new(
+        receptor: &Knots,
+        ligand: &Knots,
+        potential: &AtomPairPotential,
+        weight: f64,
+    ) -> Self {
+        let kinds = atom_kinds().len() + 1;
+        let mut energies = vec![[0.0; NODES]; kinds * kinds];
+        for a in 0..kinds - 1 {
+            for b in 0..kinds - 1 {
+                energies[a * kinds + b][..DISTANCES.len()]
+                    .copy_from_slice(potential.energies(a, b));
+            }
+        }
+        let (receptor_center, ligand_center) = (center(receptor), center(ligand));
+        let bodies = [(receptor, receptor_center), (ligand, ligand_center)];
+        let [receptor, ligand] = bodies.map(|(knots, middle)| sites(knots, middle, kinds - 1));
+        let widest = |body: &[(Vector3<f64>, Site)]| {
+            let radii = body.iter().map(|(_, site)| site.radius);
+            radii.fold(0.0, f64::max)
+        };
+        let atoms = receptor.iter().enumerate();
+        let atoms = atoms.map(|(kind, &(position, _))| Atom { position, kind });
+        Self {
+            receptor: Cells::new(atoms.collect()),
+            receptor_center,
+            reach: PAIR_REACH.max(widest(&receptor) + widest(&ligand)),
+            sites: receptor.iter().map(|(_, site)| *site).collect(),
+            ligand,
+            ligand_center,
+            energies,
+            kinds,
+            weight,
+        }
+    }
+
+    /// What a pose of the ligand is worth once relaxed; higher is better.
+    pub fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
+        -self.weight * self.relax(pose, workspace).energy
+    }
+
+    /// Energy of a pose as it stands, in RT: the double sum, in double precision.
+    pub fn energy(&self, pose: &Pose) -> f64 {
+        let matrix = pose.rotation.to_rotation_matrix();
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let mut total = 0.0;
+        for (position, site) in &self.ligand {
+            let mut sum = 0.0;
+            let near = matrix * position + place;
+            self.receptor.near(near, self.reach, |atom, square| {
+                let other = &self.sites[atom.kind];
+                let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
+                sum += energy;
+            });
+            total += sum;
+        }
+        total
+    }
+
+    /// Where a pose comes to rest, and its energy there: never above that of the pose itself.
+    pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
+        let start = Relaxed {
+            pose: *pose,
+            energy: self.energy(pose),
+        };
+        let Some((middle, radius)) = self.list(pose, workspace) else {
+            return start;
+        };
+        let (turn, shift) = descend(radius, |turn, shift| {
+            vectorized(
+                #[inline(always)]
+                || self.slope(workspace, &turn.to_rotation_matrix(), &(middle + shift)),
+            )
+        });
+        // About the interface's middle, in the receptor's file frame.
+        let about = middle + self.receptor_center;
+        let pose = Pose {
+            rotation: turn * pose.rotation,
+            translation: turn * (pose.translation - about) + about + shift,
+        };
+        let energy = self.energy(&pose);
+        if energy < start.energy {
+            Relaxed { pose, energy }
+        } else {
+            start
+        }
+    }
+
+    /// Lists what may come within reach at a pose. Middle and root mean square radius of the ligand's interface, relative to the receptor's middle; `None` where
+    /// nothing is within reach.
+    fn list(&self, pose: &Pose, workspace: &mut Workspace) -> Option<(Vector3<f64>, f64)> {
+        let Workspace { mobile, neighbours } = workspace;
+        mobile.clear();
+        neighbours.clear();
+        let matrix = pose.rotation.to_rotation_matrix();
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), 0.0);
+        for &(position, site) in &self.ligand {
+            let position = matrix * position + place;
+            let mut nearest = f64::INFINITY;
+            self.receptor
+                .near(position, self.reach + SLACK, |atom, square| {
+                    nearest = nearest.min(square);
+                    neighbours.push(self.sites[atom.kind]);
+                });
+            if nearest < f64::INFINITY {
+                let end = neighbours.len();
+                let arm = position;
+                mobile.push(Mobile { arm, site, end });
+            }
+            if nearest < self.reach * self.reach {
+                count += 1.0;
+                sum += position;
+                squares += position.norm_squared();
+            }
+        }
+        if count == 0.0 {
+            return None;
+        }
+        let middle = sum / count;
+        for atom in mobile.iter_mut() {
+            atom.arm -= middle;
+        }
+        let spread = (squares / count - middle.norm_squared()).max(0.0);
+        Some((middle, spread.sqrt().max(LEAST_RADIUS)))
+    }
+
+    /// Energy and gradient over the listed pairs, the arms turned and laid at a place.
+    #[inline(always)]
+    fn slope(&self, workspace: &Workspace, turn: &Rotation3<f64>, place: &Vector3<f64>) -> Slope {
+        let turn: &Matrix3<f64> = turn.matrix();
+        let mut slope = Slope {
+            energy: 0.0,
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+        };
+        let limit = self.reach * self.reach;
+        let mut from = 0;
+        for atom in &workspace.mobile {
+            let arm = turn * atom.arm;
+            let position = arm + place;
+            let (mut energy, mut force) = (0.0, Vector3::zeros());
+            for other in &workspace.neighbours[from..atom.end] {
+                let apart = position - other.position;
+                let square = apart.norm_squared();
+                if square < limit {
+                    let distance = square.sqrt();
+                    let (value, rise) = self.pair(other, &atom.site, distance, YIELDING);
+                    energy += value;
+                    force += rise / distance.max(1e-6) * apart;
+                }
+            }
+            from = atom.end;
+            slope.energy += energy;
+            slope.force += force;
+            slope.torque += arm.cross(&force);
+        }
+        slope
+    }
+
+    /// Energy of two atoms in RT and its derivative by their distance in Å, with a stiffness.
+    #[inline(always)]
+    fn pair(&self, receptor: &Site, ligand: &Site, distance: f64, stiffness: f64) -> (f64, f64) {
+        let nodes = &self.energies[receptor.kind * self.kinds + ligand.kind];
+        let place = ((distance - DISTANCES[0]) / STEP).clamp(0.0, (NODES - 1) as f64);
+        let node = (place as usize).min(NODES - 2);
+        let (low, high) = (f64::from(nodes[node]), f64::from(nodes[node + 1]));
+        let rise = if place > 0.0 { high - low } else { 0.0 };
+        let energy = low + (place - node as f64) * rise;
+        let lack = (receptor.radius + ligand.radius - OVERLAP - distance).max(0.0);
+        (
+            energy + stiffness * lack * lack,
+            rise / STEP - 2.0 * stiffness * lack,
+        )
+    }
+}
+
+/// The atoms of a set of knots that take part, relative to its middle; `unknown` is the kind of those without one.
+fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f64>, Site)> {
+    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
+    let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
+    atoms
+        .map(|(index, (&x, &radius))| {
+            let position = Vector3::from(x) - middle;
+            let kind = knots.atom_kinds.get(index).copied().flatten();
+            let kind = kind.map_or(unknown, |kind| usize::from(kind).min(unknown));
+            let site = Site {
+                position,
+                radius,
+                kind,
+            };
+            (position, site)
+        })
+        .collect()
+}
