@@ -42,12 +42,16 @@ def main():
             positions, types, residues = read_atoms(part(options.folder / pair, f"{side}_unbound"), kinds)
             atoms_of += np.bincount(types, minlength=len(names))
             found += count(positions, types, residues, options.separation, len(names))
+    write_table(options, pairs, names, energies_of(found, atoms_of, options.burial, options.pseudocount), found.sum() / 2)
+
+
+def energies_of(found, atoms_of, burial, pseudocount):
+    """Energies in RT by shell and kinds, from pairs found (by shell and kinds, each from both sides) and atoms of each kind."""
     partners = found.sum(axis=(0, 1))
-    shares = (atoms_of / atoms_of.sum()) ** options.burial * (partners / partners.sum()) ** (1.0 - options.burial)
+    shares = (atoms_of / atoms_of.sum()) ** burial * (partners / partners.sum()) ** (1.0 - burial)
     shares /= shares.sum()
     expected = np.outer(shares, shares) * found.sum(axis=(1, 2), keepdims=True)
-    energies = -np.log((found + options.pseudocount) / (expected + options.pseudocount))
-    write_table(options, pairs, names, energies, found.sum() / 2)
+    return -np.log((found + pseudocount) / (expected + pseudocount))
 
 
 def parse_arguments():

@@ -42,8 +42,8 @@ CARRIED = {
     "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
     "--atom-pair-potential": "scoring/src/rescoring/atom_pair_potential.csv",
 }
-COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair")
-POTENTIALS = ("contact", "fine_contact", "atom_pair")
+COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair", "relaxed")
+POTENTIALS = ("contact", "fine_contact", "atom_pair", "relaxed")
 # Recorded options in which runs may differ.
 FREE = {"contact_potential", "fine_contact_potential", "atom_pair_potential", "every_pose", "write_top"}
 # Of the first ten clusters, best pose each, in order; none depends on the unit of the score.

@@ -2,11 +2,11 @@
 """Ranks the poses of benchmark runs again with other weights, and chooses weights by cross-validation over pairs.
 
     python3 scripts/fit_weights.py DIR RUNS [RUNS ...] [--knotdock PROGRAM] [--lambdas 8,9,10] [--electrostatics 0,16,24,32] [--contact 0,1,2,3]
-                                   [--fine 0,1,2,3] [--pairs 0,1,2,3]
+                                   [--fine 0,1,2,3] [--pairs 0,1,2,3] [--relaxed 0,3]
 
 DIR is the benchmark folder; each RUNS is the --out folder of a `scripts/benchmark.py` run on training pairs, best without refinement
-(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so are the fine contact
-and atom pair potentials that it is rescored with, so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
+(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so are the terms that it is rescored with
+(fine contacts, atom pairs, atom pairs once relaxed), so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
 beside its run (`quality.json`).
 
 Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
@@ -33,7 +33,7 @@ from whole_file import write
 DEPTHS = (1, 10, 100, 1000)
 NOT_FOUND = 5000
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
-TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair")
+TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair", "relaxed")
 ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(len(FEATURES) + len(TERMS), len(FEATURES) + len(TERMS) + 4)
 TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
@@ -69,6 +69,7 @@ def parse_arguments():
     parser.add_argument("--contact", type=numbers, default=[0.0, 0.8, 1.5, 2.0, 2.5, 3.0])
     parser.add_argument("--fine", type=numbers, default=[0.0, 1.0, 2.0, 3.0])
     parser.add_argument("--pairs", type=numbers, default=[0.0, 1.0, 2.0, 3.0])
+    parser.add_argument("--relaxed", type=numbers, default=[0.0, 2.0, 3.0, 4.0])
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--clusters", action="store_true", help="compare temperatures of clusters")
     return parser.parse_args()
@@ -139,7 +140,7 @@ def against(ranks, reference):
 
 
 def compare_weights(options, decoys, own):
-    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine, options.pairs))
+    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine, options.pairs, options.relaxed))
     if own not in grid:
         grid.append(own)
     acceptable, near_native = {}, {}
@@ -152,14 +153,14 @@ def compare_weights(options, decoys, own):
     mean = {weights: by_pair(acceptable[weights], np.log) for weights in grid}
     order = sorted(grid, key=lambda weights: mean[weights].mean())
     print("Against: difference from the weights of the first run in mean log rank, with its standard error over pairs.\n")
-    print("lambda  electrostatics  contact     fine    pairs   acceptable: mean log rank, top 1, 10, 100, 1000; against   near-native: mean log rank; against")
+    print("lambda  electrostatics  contact     fine    pairs  relaxed   acceptable: mean log rank, top 1, 10, 100, 1000; against   near-native: mean log rank; against")
 
     def show(name, ranks, near_ranks):
         told = f"{by_pair(near_ranks, np.log).mean():.3f}  {against(near_ranks, near_native[own])}"
         print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {told}")
 
     for weights in order:
-        name = f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}"
+        name = f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}  {weights[5]:7g}"
         show(name, acceptable[weights], near_native[weights])
     pairs = sorted({pair for pair, _ in decoys})
     chosen, chosen_near = {}, {}
@@ -170,7 +171,7 @@ def compare_weights(options, decoys, own):
         chosen.update({key: rank for key, rank in acceptable[best].items() if key[0] in members})
         chosen_near.update({key: rank for key, rank in near_native[best].items() if key[0] in members})
         print(f"fold {fold}: {best} chosen on the others")
-    show(f"{'cross-validated':>49}", chosen, chosen_near)
+    show(f"{'cross-validated':>58}", chosen, chosen_near)
     if len(order) > 1:
         source = np.random.default_rng(1)
         gains = mean[order[1]] - mean[order[0]]

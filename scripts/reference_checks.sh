@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks against other programs, by Python in virtual environments of their own under target/. Needs python3 with venv.
+# Checks against other programs and by hand, by Python in virtual environments of their own under target/. Needs python3 with venv.
 set -euo pipefail
 shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -22,6 +22,7 @@ example=structures/examples/1ppe
 "$(python dockq)" scripts/check_dockq.py "$target/debug/knotdock" \
     "${example}_receptor_unbound.pdb" "${example}_ligand_unbound.pdb" \
     "${example}_receptor_bound.pdb" "${example}_ligand_bound.pdb"
+"$(python dockq)" scripts/check_atom_pairs.py
 "$(python rdkit)" scripts/check_rdkit.py "$target/debug/knotdock" structures/examples
 # The full set of files, five times as many, goes without --few.
 "$(python gemmi)" scripts/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few

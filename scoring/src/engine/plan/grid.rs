@@ -2,6 +2,7 @@
 
 use super::EngineOptions;
 use super::error::PlanError;
+use crate::effect::ActiveTerm;
 use crate::exact::center;
 use crate::kernel::product::rim_and_reach;
 use crate::kernel::{Band, ProductKernel, RankingKernel};
@@ -80,6 +81,21 @@ pub(super) fn window_width(tolerance: f64, severity: f64, oversampling: f64) -> 
     let usual = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
     let share = usual / severity;
     SpreadingKernel::<f64>::width_for(share * tolerance, oversampling * 1.2).min(MAX_WIDTH)
+}
+
+/// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest sum of radii.
+pub(super) fn longest_reach(
+    kernel: &RankingKernel,
+    effects: &[ActiveTerm],
+    widest: f64,
+    tolerance: f64,
+) -> f64 {
+    let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+    let of_effects = effects.iter().map(|ActiveTerm { term, kernel }| {
+        let largest = term.largest().max(f64::MIN_POSITIVE);
+        kernel.effective_reach(tolerance * rim / largest)
+    });
+    of_effects.fold(kernel.effective_reach(widest, tolerance * rim), f64::max)
 }
 
 /// Grid spacing that keeps all modes of the ranking kernel that count.

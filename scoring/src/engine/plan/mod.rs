@@ -20,7 +20,7 @@ use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_tolerance, checked_spacing};
-use grid::{Extents, oversampling, product_kernel, ranking_spacing, window_width};
+use grid::{Extents, longest_reach, oversampling, product_kernel, ranking_spacing, window_width};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use radii::Radii;
@@ -271,19 +271,4 @@ impl Plan {
     pub fn size(&self) -> [usize; 3] {
         self.modes.size
     }
-}
-
-/// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest sum of radii.
-fn longest_reach(
-    kernel: &RankingKernel,
-    effects: &[ActiveTerm],
-    widest: f64,
-    tolerance: f64,
-) -> f64 {
-    let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
-    let of_effects = effects.iter().map(|ActiveTerm { term, kernel }| {
-        let largest = term.largest().max(f64::MIN_POSITIVE);
-        kernel.effective_reach(tolerance * rim / largest)
-    });
-    of_effects.fold(kernel.effective_reach(widest, tolerance * rim), f64::max)
 }
