@@ -16,7 +16,7 @@ use crate::exact::center;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// Distance in Å from which two kinds count nothing: a step beyond the last that the table has.
 const PAIR_REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
@@ -33,6 +33,8 @@ const HYDROGEN: f64 = 1.15;
 
 /// Pairs that may come within reach are listed once, a little farther out than the move goes.
 const SLACK: f64 = FARTHEST + 0.6;
+/// Listed atoms that are sorted by distance at a time.
+const CHUNK: usize = 64;
 /// Least radius in Å about which an interface turns.
 const LEAST_RADIUS: f64 = 3.0;
 
@@ -151,19 +153,31 @@ impl Relaxation {
 
     /// Where a pose comes to rest, and its energy there: never above that of the pose itself.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
-        let start = Relaxed {
-            pose: *pose,
-            energy: self.energy(pose),
-        };
         let Some((middle, radius)) = self.list(pose, workspace) else {
-            return start;
+            return Relaxed {
+                pose: *pose,
+                energy: 0.0,
+            };
         };
-        let (turn, shift) = descend(radius, |turn, shift| {
+        let slope = |turn: &UnitQuaternion<f64>, shift: &Vector3<f64>, stiffness: f64| {
             vectorized(
                 #[inline(always)]
-                || self.slope(workspace, &turn.to_rotation_matrix(), &(middle + shift)),
+                || {
+                    self.slope(
+                        workspace,
+                        &turn.to_rotation_matrix(),
+                        &(middle + shift),
+                        stiffness,
+                    )
+                },
             )
-        });
+        };
+        // Where nothing has moved the list has all that is within reach.
+        let start = Relaxed {
+            pose: *pose,
+            energy: slope(&UnitQuaternion::identity(), &Vector3::zeros(), STIFFNESS).energy,
+        };
+        let (turn, shift) = descend(radius, |turn, shift| slope(turn, shift, YIELDING));
         // About the interface's middle, in the receptor's file frame.
         let about = middle + self.receptor_center;
         let pose = Pose {
@@ -219,7 +233,13 @@ impl Relaxation {
 
     /// Energy and gradient over the listed pairs, the arms turned and laid at a place.
     #[inline(always)]
-    fn slope(&self, workspace: &Workspace, turn: &Rotation3<f64>, place: &Vector3<f64>) -> Slope {
+    fn slope(
+        &self,
+        workspace: &Workspace,
+        turn: &Rotation3<f64>,
+        place: &Vector3<f64>,
+        stiffness: f64,
+    ) -> Slope {
         let turn: &Matrix3<f64> = turn.matrix();
         let mut slope = Slope {
             energy: 0.0,
@@ -232,14 +252,20 @@ impl Relaxation {
             let arm = turn * atom.arm;
             let position = arm + place;
             let (mut energy, mut force) = (0.0, Vector3::zeros());
-            for other in &workspace.neighbours[from..atom.end] {
-                let apart = position - other.position;
-                let square = apart.norm_squared();
-                if square < limit {
-                    let distance = square.sqrt();
-                    let (value, rise) = self.pair(other, &atom.site, distance, YIELDING);
+            for listed in workspace.neighbours[from..atom.end].chunks(CHUNK) {
+                // Without a branch: a third of the pairs is within reach, in no order that could be foreseen.
+                let mut within = [(0, 0.0); CHUNK];
+                let mut count = 0;
+                for (index, other) in listed.iter().enumerate() {
+                    let square = (position - other.position).norm_squared();
+                    within[count] = (index, square);
+                    count += usize::from(square < limit);
+                }
+                for &(index, square) in &within[..count] {
+                    let (other, distance) = (&listed[index], square.sqrt());
+                    let (value, rise) = self.pair(other, &atom.site, distance, stiffness);
                     energy += value;
-                    force += rise / distance.max(1e-6) * apart;
+                    force += rise / distance.max(1e-6) * (position - other.position);
                 }
             }
             from = atom.end;
