@@ -1,14 +1,10 @@
 //! The sum of the atom pair potential over two bodies.
 
 use super::bodies::Bodies;
-use super::pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+use super::energy_table::{EnergyTable, REACH};
+use super::pair_potential::AtomPairPotential;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
-
-/// Distance in Å from which nothing counts: a step beyond the last that the table has.
-const REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
-/// Energies of a pair of kinds in memory: those of the table, then zeros.
-const NODES: usize = 8;
 
 /// Two bodies prepared for the sum of minus the weighted atom pair potential.
 ///
@@ -16,9 +12,7 @@ const NODES: usize = 8;
 /// from the last one falling to 0 over one step. Atoms without a kind take no part.
 pub struct AtomPairs {
     bodies: Bodies,
-    /// Energies, `[receptor kind][ligand kind]`: one half of a cache line a pair.
-    energies: Vec<[f32; NODES]>,
-    kinds: usize,
+    energies: EnergyTable,
     weight: f64,
 }
 
@@ -30,19 +24,15 @@ impl AtomPairs {
         potential: &AtomPairPotential,
         weight: f64,
     ) -> Self {
-        let kinds = atom_kinds().len();
-        let energies = (0..kinds)
-            .flat_map(|a| (0..kinds).map(move |b| (a, b)))
-            .map(|(a, b)| {
-                let mut nodes = [0.0; NODES];
-                nodes[..DISTANCES.len()].copy_from_slice(potential.energies(a, b));
-                nodes
-            })
-            .collect();
+        let energies = EnergyTable::new(potential);
         Self {
-            bodies: Bodies::new(receptor, ligand, |knots| &knots.atom_kinds, kinds),
+            bodies: Bodies::new(
+                receptor,
+                ligand,
+                |knots| &knots.atom_kinds,
+                energies.unknown(),
+            ),
             energies,
-            kinds,
             weight,
         }
     }
@@ -50,24 +40,16 @@ impl AtomPairs {
     /// The weighted sum at a pose of the ligand; higher is better.
     pub fn score(&self, pose: &Pose) -> f64 {
         let sum = self.bodies.sum(pose, REACH, |a, b, distance| {
-            between(&self.energies[a * self.kinds + b], distance)
+            self.energies.at(a, b, distance).0
         });
         -self.weight * sum
     }
 }
 
-/// The energy at a distance below the reach, in RT.
-#[inline]
-fn between(nodes: &[f32; NODES], distance: f64) -> f64 {
-    let place = ((distance - DISTANCES[0]) / STEP).max(0.0);
-    let node = (place as usize).min(NODES - 2);
-    let (low, high) = (f64::from(nodes[node]), f64::from(nodes[node + 1]));
-    low + (place - node as f64) * (high - low)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rescoring::{DISTANCES, STEP, atom_kinds};
 
     /// Every pair of kinds has the table's energy for it, whichever body has which: one atom of each kind, far from one another, meets
     /// one of each.

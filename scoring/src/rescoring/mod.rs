@@ -12,6 +12,7 @@ mod atom_pairs;
 mod bodies;
 mod cells;
 mod contacts;
+mod energy_table;
 mod pair_potential;
 mod potential;
 mod relaxation;

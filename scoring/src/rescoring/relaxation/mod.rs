@@ -1,4 +1,4 @@
-//! What a pose is worth once its two bodies may give way to each other: the least energy of atoms that must not overlap, over small rigid moves.
+//! What a pose is worth once its two bodies may give way to each other: the energy of atoms that must not overlap, where small rigid moves bring it down.
 //!
 //! Unbound surfaces laid on each other at the places of a grid overlap here and miss each other there, natively or not, so an energy that
 //! asks atoms to keep apart says little of a pose as it stands. Half an Ångström to the side it may. [`Relaxation`] looks for that place, as rigid-body
@@ -11,17 +11,14 @@ mod tests;
 
 use self::descent::{FARTHEST, Slope, descend};
 use super::cells::{Atom, Cells};
-use super::pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+use super::energy_table::{EnergyTable, REACH};
+use super::pair_potential::AtomPairPotential;
 use crate::exact::center;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// Distance in Å from which two kinds count nothing: a step beyond the last that the table has.
-const PAIR_REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
-/// Energies of a pair of kinds in memory: those of the table, then zeros.
-const NODES: usize = 8;
 /// What atoms may come closer than their radii add up to, in Å.
 const OVERLAP: f64 = 0.1;
 /// What overlapping further costs, RT per Å²: a cushion, not a wall, for atoms of unbound surfaces stand where the other body's will be.
@@ -31,7 +28,8 @@ const YIELDING: f64 = 0.2;
 /// Radius in Å up to which an atom is a hydrogen, which reaches into what it is bonded to by: where hydrogens are kept they take no part.
 const HYDROGEN: f64 = 1.15;
 
-/// Pairs that may come within reach are listed once, a little farther out than the move goes.
+/// Pairs that may come within reach are listed once, a little farther out than the interface is moved. A descent may miss some that a long arm brings near; the
+/// energy told of where it ends is the whole sum.
 const SLACK: f64 = FARTHEST + 0.6;
 /// Listed atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
@@ -50,9 +48,7 @@ pub struct Relaxation {
     sites: Vec<Site>,
     ligand: Vec<(Vector3<f64>, Site)>,
     ligand_center: Vector3<f64>,
-    /// Energies, `[receptor kind][ligand kind]`, and none for atoms without a kind.
-    energies: Vec<[f32; NODES]>,
-    kinds: usize,
+    energies: EnergyTable,
     reach: f64,
     weight: f64,
 }
@@ -84,7 +80,7 @@ pub struct Workspace {
 /// A pose that gave way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxed {
-    /// Where the energy is least of what was found.
+    /// Where it came to rest, or where it stood if that is no worse.
     pub pose: Pose,
     /// Energy there in RT; lower is better.
     pub energy: f64,
@@ -98,17 +94,11 @@ impl Relaxation {
         potential: &AtomPairPotential,
         weight: f64,
     ) -> Self {
-        let kinds = atom_kinds().len() + 1;
-        let mut energies = vec![[0.0; NODES]; kinds * kinds];
-        for a in 0..kinds - 1 {
-            for b in 0..kinds - 1 {
-                energies[a * kinds + b][..DISTANCES.len()]
-                    .copy_from_slice(potential.energies(a, b));
-            }
-        }
+        let energies = EnergyTable::new(potential);
         let (receptor_center, ligand_center) = (center(receptor), center(ligand));
         let bodies = [(receptor, receptor_center), (ligand, ligand_center)];
-        let [receptor, ligand] = bodies.map(|(knots, middle)| sites(knots, middle, kinds - 1));
+        let [receptor, ligand] =
+            bodies.map(|(knots, middle)| sites(knots, middle, energies.unknown()));
         let widest = |body: &[(Vector3<f64>, Site)]| {
             let radii = body.iter().map(|(_, site)| site.radius);
             radii.fold(0.0, f64::max)
@@ -118,12 +108,11 @@ impl Relaxation {
         Self {
             receptor: Cells::new(atoms.collect()),
             receptor_center,
-            reach: PAIR_REACH.max(widest(&receptor) + widest(&ligand)),
+            reach: REACH.max(widest(&receptor) + widest(&ligand)),
             sites: receptor.iter().map(|(_, site)| *site).collect(),
             ligand,
             ligand_center,
             energies,
-            kinds,
             weight,
         }
     }
@@ -279,16 +268,11 @@ impl Relaxation {
     /// Energy of two atoms in RT and its derivative by their distance in Å, with a stiffness.
     #[inline(always)]
     fn pair(&self, receptor: &Site, ligand: &Site, distance: f64, stiffness: f64) -> (f64, f64) {
-        let nodes = &self.energies[receptor.kind * self.kinds + ligand.kind];
-        let place = ((distance - DISTANCES[0]) / STEP).clamp(0.0, (NODES - 1) as f64);
-        let node = (place as usize).min(NODES - 2);
-        let (low, high) = (f64::from(nodes[node]), f64::from(nodes[node + 1]));
-        let rise = if place > 0.0 { high - low } else { 0.0 };
-        let energy = low + (place - node as f64) * rise;
+        let (energy, rise) = self.energies.at(receptor.kind, ligand.kind, distance);
         let lack = (receptor.radius + ligand.radius - OVERLAP - distance).max(0.0);
         (
             energy + stiffness * lack * lack,
-            rise / STEP - 2.0 * stiffness * lack,
+            rise - 2.0 * stiffness * lack,
         )
     }
 }

@@ -98,6 +98,25 @@ fn the_slope_is_that_of_the_energy() {
     }
 }
 
+/// Before anything moves, the list holds every pair that counts.
+#[test]
+fn the_listed_pairs_add_up_to_the_energy() {
+    let (_, _, relaxation) = bodies(0.0);
+    let mut workspace = Workspace::default();
+    let mut touching = 0;
+    for pose in poses(0.0) {
+        let energy = relaxation.energy(&pose);
+        let Some((middle, _)) = relaxation.list(&pose, &mut workspace) else {
+            assert_eq!(energy, 0.0);
+            continue;
+        };
+        let listed = relaxation.slope(&workspace, &Rotation3::identity(), &middle, STIFFNESS);
+        assert!((listed.energy - energy).abs() < 1e-9 * energy.abs().max(1.0));
+        touching += 1;
+    }
+    assert!(touching > 30, "{touching}");
+}
+
 /// A relaxed pose has the energy told, never more than before, and the interface within its bounds; most gain.
 #[test]
 fn poses_come_to_rest_nearby_and_lower() {
