@@ -34,7 +34,9 @@ DEPTHS = (1, 10, 100, 1000)
 NOT_FOUND = 5000
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
 TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair", "relaxed")
-ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(len(FEATURES) + len(TERMS), len(FEATURES) + len(TERMS) + 4)
+HELD = ("restraint",)  # at the weights of their runs
+SUMMED = len(FEATURES) + len(TERMS) + len(HELD)
+ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(SUMMED, SUMMED + 4)
 TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
 
@@ -76,7 +78,7 @@ def parse_arguments():
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted terms, acceptable and near-native (0 or 1), rank score, cluster; and the weights of the run."""
+    """Rows of slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), rank score, cluster; and the weights of the run."""
     table = folder / "run/poses.csv"
     found = qualities(options, folder, pair, table)
     recorded = json.loads((folder / "run/run.json").read_text())["options"]
@@ -84,6 +86,7 @@ def load(options, folder, pair):
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
             terms = [float(row.get(name) or 0) / (recorded.get(f"{name}_weight") or 1.0) for name in TERMS]
+            terms += [float(row.get(name) or 0) for name in HELD]
             score = float(row.get("rank_score") or row["score"])
             rows.append([*(float(row[name]) for name in FEATURES), *terms, *found[row["rank"]], score, float(row["cluster"])])
     weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
@@ -146,7 +149,7 @@ def compare_weights(options, decoys, own):
     acceptable, near_native = {}, {}
     for weights in grid:
         strength, *terms = weights
-        factors = np.array([-strength * strength, 2 * strength, -1.0, *terms])
+        factors = np.array([-strength * strength, 2 * strength, -1.0, *terms, *(1.0 for _ in HELD)])
         scores = {key: rows[:, : len(factors)] @ factors for key, rows in decoys.items()}
         acceptable[weights] = {key: first_rank(scores[key], rows[:, ACCEPTABLE]) for key, rows in decoys.items()}
         near_native[weights] = {key: first_rank(scores[key], rows[:, NEAR_NATIVE]) for key, rows in decoys.items()}

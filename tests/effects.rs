@@ -7,6 +7,11 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock::search::{DockOptions, Effect, Scene};
+use knotdock_scoring::engine::Plan;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use program::succeed;
 use serde_json::Value;
 
@@ -78,8 +83,11 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
     let (object, _) = dock(folder.path(), &receptor, &ligand, &options);
     let effects = object["run"]["effects"].as_array().unwrap();
     let names: Vec<&Value> = effects.iter().map(|effect| &effect["effect"]).collect();
-    assert_eq!(names, ["shape", "electrostatics", "contact"]);
-    assert!(effects.iter().all(|effect| effect["on"] == true));
+    assert_eq!(names, ["shape", "electrostatics", "contact", "restraint"]);
+    // Neither is an antibody.
+    for effect in effects {
+        assert_eq!(effect["on"], effect["effect"] != "restraint", "{effect}");
+    }
     // Bovine trypsin has 14 lysines and 2 arginines against 6 aspartates and 4 glutamates; its ends cancel.
     assert_eq!(object["run"]["plan"]["labels"][0]["net_charge"], 6.0);
     let number = |value: &Value| value.as_f64().unwrap();
@@ -216,10 +224,10 @@ fn what_the_inputs_cannot_feed_is_off_and_cannot_be_forced() {
     let options = ["--rotations", "8", "--poses", "10", "--refine", "0"];
     let (object, _) = dock(folder.path(), "receptor.pdb", "helix.pdb", &options);
     for effect in object["run"]["effects"].as_array().unwrap() {
-        assert_eq!(effect["on"], true, "{effect}");
+        assert_eq!(effect["on"], effect["effect"] != "restraint", "{effect}");
     }
     let (object, _) = dock(folder.path(), "receptor.pdb", "ring.pdb", &options);
-    for effect in &object["run"]["effects"].as_array().unwrap()[1..] {
+    for effect in &object["run"]["effects"].as_array().unwrap()[1..3] {
         assert_eq!(effect["on"], false);
         assert!(
             effect["reason"].as_str().unwrap().contains("ligand"),
@@ -242,5 +250,80 @@ fn what_the_inputs_cannot_feed_is_off_and_cannot_be_forced() {
             "{message}"
         );
         assert!(!folder.path().join("forced").exists());
+    }
+}
+
+/// Blocked residues cost what touches them, in the search, in the table and in `score`; what cannot be blocked is an error.
+#[test]
+fn blocked_residues_are_kept_free() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let rows = |options: &[&str]| {
+        let mut all = vec!["--rotations", "48", "--poses", "40"];
+        all.extend(options);
+        let (object, _) = dock(folder.path(), &receptor, &ligand, &all);
+        object["best"].as_array().unwrap().clone()
+    };
+    let number = |value: &Value| value.as_f64().unwrap();
+    // Trypsin's loops about its active site, where the inhibitor goes: what they cost an interface if it touches them.
+    let sites = "A:57,A:95-99,A:189-195,A:214-220";
+    let options = DockOptions {
+        block_receptor: Some(sites.parse().unwrap()),
+        ..DockOptions::default()
+    };
+    let [own, other] = [&receptor, &ligand].map(|path| {
+        let input = InputSpec::parse(path).unwrap();
+        read(&input, &ReadOptions::default()).unwrap()
+    });
+    let scene = Scene::new(&own, &other, &options).unwrap();
+    let (engine, terms) = (options.engine(), scene.terms.clone());
+    let plan = Plan::with_effects(
+        &scene.receptor,
+        &scene.ligand,
+        engine,
+        engine.tolerance,
+        terms,
+    )
+    .unwrap();
+    let scorer =
+        ExactScorer::with_effects(&plan.kernel, &scene.receptor, &scene.ligand, &plan.effects)
+            .unwrap();
+    let cost = |row: &Value| {
+        let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(&row[part]));
+        let translation = ["tx", "ty", "tz"].map(|part| number(&row[part]));
+        let exact = scorer.score(&Pose::from_parts(quaternion, translation));
+        exact.terms[Effect::Restraint as usize]
+    };
+    let free = rows(&[]);
+    let blocked = rows(&["--block-receptor", sites]);
+    assert!(free.iter().all(|row| row["restraint"].is_null()));
+    for row in &blocked {
+        let own = number(&row["restraint"]);
+        assert!((cost(row) - own).abs() < 1e-6 * number(&row["score"]).abs());
+    }
+    let mean = |rows: &[Value]| rows.iter().map(&cost).sum::<f64>() / rows.len() as f64;
+    let (before, after) = (mean(&free), mean(&blocked));
+    assert!(after > 0.4 * before && before < -100.0, "{before} {after}");
+
+    for (options, said) in [
+        (&["--block-ligand", "Z:1"][..], "block-ligand is Z:1"),
+        (&["--block-receptor", "A:9000"], "among A:"),
+        (&["--effects", "restraint"], "there can be no restraint"),
+        (
+            &["--effects", "shape", "--block-receptor", sites],
+            "name restraint too",
+        ),
+    ] {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["dock", &receptor, &ligand, "-o", "refused", "--json"])
+            .args(options)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let error: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let message = error["error"]["message"].as_str().unwrap();
+        assert!(message.contains(said), "{message}");
+        assert!(!folder.path().join("refused").exists());
     }
 }

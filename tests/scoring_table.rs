@@ -80,7 +80,10 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
 }
 
 /// Which effects were on, the exact score of each pose, and what rescoring adds.
-fn scored(case: &str, poses: &[(u32, Pose)]) -> ([bool; 3], Vec<ExactScore>, Vec<Rescored>) {
+fn scored(
+    case: &str,
+    poses: &[(u32, Pose)],
+) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<Rescored>) {
     let options = DockOptions::default();
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();

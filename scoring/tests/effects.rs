@@ -2,7 +2,7 @@
 //! whose answer is known.
 
 use knotdock_scoring::effect::contact::{self, Potential};
-use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics};
+use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::field::ReceptorField;
@@ -58,16 +58,32 @@ fn cloud(count: usize, size: f64, seed: u64) -> Knots {
         .unwrap()
 }
 
-fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
+/// The terms of labelled knots of which none is blocked.
+fn free_terms(a: &Knots, b: &Knots) -> Vec<Term> {
     vec![
         electrostatics::term(a, b, 8.0),
         contact::term(a, b, 0.7, &Potential::default()),
     ]
 }
 
-fn plan(a: &Knots, b: &Knots, tolerance: f64) -> Arc<Plan> {
+/// The same, every fourth knot of the receptor and every fifth of the ligand blocked.
+fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
+    let every = |knots: &Knots, step: usize| -> Vec<bool> {
+        (1..=knots.len()).map(|count| count % step == 0).collect()
+    };
+    let mut terms = free_terms(a, b);
+    let blocked = [&every(a, 4)[..], &every(b, 5)];
+    terms.push(restraint::term(a, b, blocked, 0.9));
+    terms
+}
+
+fn planned(a: &Knots, b: &Knots, tolerance: f64, terms: Vec<Term>) -> Arc<Plan> {
     let options = options(tolerance);
-    Arc::new(Plan::with_effects(a, b, options, tolerance, terms(a, b)).unwrap())
+    Arc::new(Plan::with_effects(a, b, options, tolerance, terms).unwrap())
+}
+
+fn plan(a: &Knots, b: &Knots, tolerance: f64) -> Arc<Plan> {
+    planned(a, b, tolerance, terms(a, b))
 }
 
 fn scorer(plan: &Plan, a: &Knots, b: &Knots) -> ExactScorer {
@@ -78,7 +94,8 @@ fn turn() -> UnitQuaternion<f64> {
     Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
 }
 
-/// Largest error over the grid's best and a sweep of it, as a share of the largest exact value there, of `effect` alone or of all.
+/// Largest error over the grid's best and a sweep of it, as a share of the largest exact value there (of a restraint, which is nowhere above 0, the
+/// largest magnitude), of `effect` alone or of all.
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) -> f64 {
     let plan = plan(a, b, tolerance);
     let scorer = scorer(&plan, a, b);
@@ -100,7 +117,10 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) 
         let exact = scorer.score(&Pose::about(turn(), plan.ligand_center, place));
         let value = effect.map_or(exact.score, |effect| exact.terms[effect as usize]);
         error = error.max((value - work.grid[voxel].wide()).abs());
-        best = best.max(value);
+        best = best.max(match effect {
+            Some(Effect::Restraint) => value.abs(),
+            _ => value,
+        });
     }
     error / best
 }
@@ -108,7 +128,8 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) 
 #[test]
 fn each_term_alone_and_all_together_meet_the_tolerance_asked() {
     let (a, b) = (cloud(160, 12.0, 1), cloud(60, 8.0, 2));
-    for effect in [Some(Effect::Electrostatics), Some(Effect::Contact), None] {
+    let alone = Effect::ALL.into_iter().skip(1).map(Some);
+    for effect in alone.chain([None]) {
         for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
             let error = worst::<f64>(&a, &b, tolerance, effect);
             assert!(error <= tolerance, "{effect:?} at {tolerance:e}: {error:e}");
@@ -226,13 +247,14 @@ fn an_effect_that_is_off_changes_not_one_bit() {
     let whole = Folded::<f32>::new(&plan, &a, &b, Fold::Score);
     let without = whole
         .without(Effect::Contact)
+        .without(Effect::Restraint)
         .without(Effect::Electrostatics);
     assert!(whole.full_rank() > rank);
     assert_eq!(without.full_rank(), rank);
 }
 
 /// One knot on each side, at some distance along x.
-fn pair(charges: [f64; 2], types: [&str; 2], distance: f64) -> [f64; 3] {
+fn pair(charges: [f64; 2], types: [&str; 2], distance: f64) -> [f64; Effect::ALL.len()] {
     let kind = |name: &str| {
         contact::TYPES
             .iter()
@@ -246,7 +268,7 @@ fn pair(charges: [f64; 2], types: [&str; 2], distance: f64) -> [f64; 3] {
             .unwrap()
     };
     let (a, b) = (knot(charges[0], types[0]), knot(charges[1], types[1]));
-    let plan = plan(&a, &b, 1e-2);
+    let plan = planned(&a, &b, 1e-2, free_terms(&a, &b));
     let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [distance, 0.0, 0.0]);
     scorer(&plan, &a, &b).score(&pose).terms
 }
@@ -308,8 +330,8 @@ fn patched(charge: [f64; 2], types: [&str; 2], patch: f64) -> Knots {
 }
 
 /// The direction from the receptor's centre in which the best voxel of a correlation lies.
-fn best_direction(a: &Knots, b: &Knots) -> Vector3<f64> {
-    let plan = plan(a, b, 1e-2);
+fn best_direction(a: &Knots, b: &Knots, terms: Vec<Term>) -> Vector3<f64> {
+    let plan = planned(a, b, 1e-2, terms);
     let folded = Folded::<f32>::new(&plan, a, b, Fold::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
@@ -320,16 +342,19 @@ fn best_direction(a: &Knots, b: &Knots) -> Vector3<f64> {
     engine.position(best).normalize()
 }
 
+/// A ball of half the body's size, of one label.
+fn ball(charge: f64, name: &str) -> Knots {
+    let mut ball = patched([charge; 2], [name; 2], 0.0);
+    for x in &mut ball.centers {
+        *x = x.map(|x| 0.5 * x);
+    }
+    ball
+}
+
 /// Round bodies fit alike from everywhere: it is the effect that finds the patch.
 #[test]
 fn a_ball_finds_the_patch_that_is_made_for_it() {
-    let ball = |charge: f64, name: &str| {
-        let mut ball = patched([charge; 2], [name; 2], 0.0);
-        for x in &mut ball.centers {
-            *x = x.map(|x| 0.5 * x);
-        }
-        ball
-    };
+    let best_direction = |a: &Knots, b: &Knots| best_direction(a, b, free_terms(a, b));
     // A greasy patch on a polar body, and a greasy ball.
     let body = patched([0.0; 2], ["DOD", "LCD"], 8.0);
     let found = best_direction(&body, &ball(0.0, "LCD"));
@@ -342,4 +367,27 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
     );
     assert!(found[0] > 0.9, "{found}");
     assert!(elsewhere[0] < 0.5, "{elsewhere}");
+}
+
+/// A ball touches the body where nothing is blocked, whichever of the two the blocked atoms belong to; where its patch is blocked, and
+/// where its patch is all that is not.
+#[test]
+fn a_ball_goes_where_nothing_is_blocked() {
+    let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));
+    let patch: Vec<bool> = body.centers.iter().map(|x| x[0] > 6.0).collect();
+    let rest: Vec<bool> = patch.iter().map(|patch| !patch).collect();
+    let found = |blocked: &[bool]| {
+        let by_receptor = restraint::term(&body, &ball, [blocked, &[]], 2.0);
+        let by_ligand = restraint::term(&ball, &body, [&[], blocked], 2.0);
+        [
+            best_direction(&body, &ball, vec![by_receptor]),
+            -best_direction(&ball, &body, vec![by_ligand]),
+        ]
+    };
+    for place in found(&rest) {
+        assert!(place[0] > 0.9, "{place}");
+    }
+    for place in found(&patch) {
+        assert!(place[0] < 0.5, "{place}");
+    }
 }

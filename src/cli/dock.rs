@@ -72,7 +72,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 44] = [
+const RECORDED: [&str; 48] = [
     "receptor",
     "ligand",
     "waters",
@@ -105,6 +105,10 @@ const RECORDED: [&str; 44] = [
     "atom_pair_weight",
     "relaxed_weight",
     "atom_pair_potential",
+    "restraint_weight",
+    "antibody",
+    "block_receptor",
+    "block_ligand",
     "ph",
     "per_rotation",
     "poses",

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use knotdock::output::atom_table;
 use knotdock::search::DockOptions;
+use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
-use knotdock_structures::molecule::{InputSpec, LabelReport, read_listed};
+use knotdock_structures::molecule::{Antibody, InputSpec, LabelReport, read_listed};
 use serde_json::json;
 
 use super::arguments::not_negative;
@@ -53,11 +54,12 @@ impl Inspect {
             .accessible_areas(surface_points(molecule.atoms.len()))
             .iter()
             .sum();
+        let antibody = molecule.antibody();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(&labels, self.ph, area, volume)
+            told(&labels, self.ph, area, volume, antibody.as_ref())
         ));
         if let Some(path) = &self.atoms {
             let (_, listed) = read_listed(&InputSpec::parse(&self.file)?, &reading)?;
@@ -67,6 +69,7 @@ impl Inspect {
         console.result(&json!({
             "input": input.entry()?,
             "labels": labels,
+            "antibody": antibody.map(|antibody| antibody.domains),
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,
@@ -76,7 +79,13 @@ impl Inspect {
 }
 
 /// The labels in words.
-fn told(labels: &LabelReport, ph: f64, area: f64, volume: Volume) -> String {
+fn told(
+    labels: &LabelReport,
+    ph: f64,
+    area: f64,
+    volume: Volume,
+    antibody: Option<&Antibody>,
+) -> String {
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
             .iter()
@@ -99,6 +108,25 @@ fn told(labels: &LabelReport, ph: f64, area: f64, volume: Volume) -> String {
             volume.value, volume.error
         ),
     ];
+    if let Some(antibody) = antibody {
+        lines.push(format!(
+            "Variable domains of an antibody: {}",
+            domains_told(antibody)
+        ));
+        for domain in &antibody.domains {
+            let cdrs = domain.cdrs.iter().map(|cdr| match cdr.as_slice() {
+                [] => "none".to_owned(),
+                [only] => only.clone(),
+                [first, .., last] => format!("{first}-{last}"),
+            });
+            lines.push(format!(
+                "CDRs of {} {}: {}",
+                domain.kind.name(),
+                domain.chain,
+                cdrs.collect::<Vec<_>>().join(", ")
+            ));
+        }
+    }
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(
             "No charges known, counted as none: {}",

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
 use knotdock::search::options::{PASS_RATIO, Precision, REFINED_BY_SHAPE};
-use knotdock::search::{DockOptions, EffectChoice};
+use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+
+use knotdock_structures::molecule::ResidueSelection;
 
 use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
@@ -82,7 +84,7 @@ pub struct KernelArguments {
     /// Error of the fast path that is allowed, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
-    /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics and contact, with commas
+    /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics, contact and restraint, with commas
     /// between them (shape is always on).
     #[arg(long, value_name = "NAMES", default_value = "auto", help_heading = SCORE)]
     effects: EffectChoice,
@@ -111,6 +113,19 @@ pub struct KernelArguments {
     /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     atom_pair_potential: Option<PathBuf>,
+    /// Weight of a contact that a blocked atom makes: score.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().restraint_weight, help_heading = SCORE)]
+    restraint_weight: f64,
+    /// What may touch of an antibody, which is told by its sequence: cdrs, its complementarity-determining regions and what lies within 5 Å of them, or
+    /// whole, all of it.
+    #[arg(long, value_name = "cdrs|whole", default_value = DockOptions::default().antibody.name(), help_heading = SCORE)]
+    antibody: AntibodySurface,
+    /// Residues of the receptor to keep free of contact: H:1-50,H:52A,L for a range, an inserted residue and a chain.
+    #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
+    block_receptor: Option<ResidueSelection>,
+    /// Residues of the ligand to keep free of contact, likewise.
+    #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
+    block_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -201,6 +216,10 @@ impl KernelArguments {
             effects: self.effects.clone(),
             electrostatics_weight: self.electrostatics_weight,
             contact_weight: self.contact_weight,
+            restraint_weight: self.restraint_weight,
+            antibody: self.antibody,
+            block_receptor: self.block_receptor.clone(),
+            block_ligand: self.block_ligand.clone(),
             ph: self.ph,
             ..default
         })

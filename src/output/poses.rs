@@ -16,7 +16,7 @@ use super::whole_file::{FileError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 27] = [
+pub const COLUMNS: [&str; 28] = [
     "rank",
     "score",
     "cluster",
@@ -44,6 +44,7 @@ pub const COLUMNS: [&str; 27] = [
     "z_score",
     "atom_pair",
     "relaxed",
+    "restraint",
 ];
 
 /// A column to append: its name and one field a row.
@@ -102,6 +103,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         row.z_score.map_or(String::new(), number),
         row.atom_pair.map_or(String::new(), number),
         row.relaxed.map_or(String::new(), number),
+        term(Effect::Restraint),
     ]
 }
 
@@ -233,7 +235,7 @@ mod tests {
             rotation: 17,
             score_grid: f64::NAN,
             score_unfiltered: 1e-7,
-            terms: [Some(0.1), None, Some(-3.0)],
+            terms: [Some(0.1), None, Some(-3.0), None],
             slices: [-0.0, 2.0, 1e21],
             fine_contact: None,
             atom_pair: Some(-7.0),

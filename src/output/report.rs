@@ -102,7 +102,7 @@ mod tests {
             rotation: 0,
             score_grid: score,
             score_unfiltered: score,
-            terms: [Some(score), None, None],
+            terms: [Some(score), None, None, None],
             slices: [0.0; 3],
             fine_contact: None,
             atom_pair: None,

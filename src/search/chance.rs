@@ -5,6 +5,7 @@
 //! successes itself, so the chance is that share and the same for all runs that it was taken of. docs/ranking.md has the figures.
 
 use super::options::DockOptions;
+use knotdock_scoring::effect::Effect;
 
 /// Clusters that the chance speaks of.
 pub const DEPTH: usize = 10;
@@ -13,12 +14,20 @@ pub const DEPTH: usize = 10;
 /// potentials derived without them.
 pub const SHARE: f64 = 0.349;
 
-/// The chance of a run with some options in which shape, electrostatics and contact were on or off, and which found so many clusters.
+/// The effects that were on in all runs that the share was taken of: none of their pairs has an antibody.
+const ON: [Effect; 3] = [Effect::Shape, Effect::Electrostatics, Effect::Contact];
+
+/// The chance of a run with some options in which these effects were on (by `Effect as usize`), and which found so many clusters.
 ///
-/// `None` where it was not calibrated: of a run without all three effects (as of meshes), with any option that searches, ranks or lists
-/// poses otherwise than by default (effects may be named that are on by default), or with fewer than ten clusters.
-pub fn chance(options: &DockOptions, effects_on: &[bool], clusters: usize) -> Option<f64> {
-    let calibrated = is_default(options) && effects_on.iter().all(|&on| on) && clusters >= DEPTH;
+/// `None` where it was not calibrated: of a run with other effects than shape, electrostatics and contact (as of meshes and antibodies), with any
+/// option that searches, ranks or lists poses otherwise than by default (effects may be named that are on by default), or with fewer than ten clusters.
+pub fn chance(
+    options: &DockOptions,
+    on: [bool; Effect::ALL.len()],
+    clusters: usize,
+) -> Option<f64> {
+    let effects = Effect::ALL.map(|effect| ON.contains(&effect));
+    let calibrated = is_default(options) && on == effects && clusters >= DEPTH;
     calibrated.then_some(SHARE)
 }
 
@@ -38,33 +47,33 @@ fn is_default(options: &DockOptions) -> bool {
 mod tests {
     use super::*;
     use crate::search::EffectChoice;
-    use knotdock_scoring::effect::Effect;
 
-    const ALL: [bool; Effect::ALL.len()] = [true; Effect::ALL.len()];
+    /// As `auto` has them for two proteins.
+    const AUTO: [bool; Effect::ALL.len()] = [true, true, true, false];
 
     /// What does not move the ranking does not matter, nor that effects were named which `auto` would have taken.
     #[test]
     fn default_rankings_have_one_whatever_threads_memory_and_names() {
-        assert_eq!(chance(&DockOptions::default(), &ALL, 10), Some(SHARE));
+        assert_eq!(chance(&DockOptions::default(), AUTO, 10), Some(SHARE));
         let options = DockOptions {
             threads: 2,
             memory: Some(1 << 30),
-            effects: EffectChoice::Only(Effect::ALL.to_vec()),
+            effects: EffectChoice::Only(ON.to_vec()),
             ..DockOptions::default()
         };
-        assert_eq!(chance(&options, &ALL, 1000), Some(SHARE));
+        assert_eq!(chance(&options, AUTO, 1000), Some(SHARE));
     }
 
     #[test]
     fn there_is_none_for_what_it_was_not_calibrated_on() {
         let default = DockOptions::default;
-        assert_eq!(chance(&default(), &ALL, 9), None);
-        for effect in 0..ALL.len() {
-            let mut on = ALL;
-            on[effect] = false;
-            assert_eq!(chance(&default(), &on, 1000), None);
+        assert_eq!(chance(&default(), AUTO, 9), None);
+        for effect in 0..AUTO.len() {
+            let mut on = AUTO;
+            on[effect] = !on[effect];
+            assert_eq!(chance(&default(), on, 1000), None);
         }
-        let changes: [fn(&mut DockOptions); 12] = [
+        let changes: [fn(&mut DockOptions); 13] = [
             |options| options.rotations = 7200,
             |options| options.resolution = 6.0,
             |options| options.tolerance = 1e-3,
@@ -72,6 +81,7 @@ mod tests {
             |options| options.fine_contact_weight = 0.0,
             |options| options.atom_pair_weight = 0.0,
             |options| options.relaxed_weight = 0.0,
+            |options| options.restraint_weight = 2.0,
             |options| options.poses = 1000,
             |options| options.refine = Some(300),
             |options| options.cluster_radius = 4.0,
@@ -81,7 +91,7 @@ mod tests {
         for change in changes {
             let mut options = default();
             change(&mut options);
-            assert_eq!(chance(&options, &ALL, 1000), None, "{options:?}");
+            assert_eq!(chance(&options, AUTO, 1000), None, "{options:?}");
         }
     }
 }

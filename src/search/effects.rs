@@ -2,7 +2,8 @@
 
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
-use knotdock_scoring::effect::{Effect, Term, contact, electrostatics};
+use super::restraints::Restraints;
+use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Relaxation, Rescorer};
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
@@ -127,7 +128,12 @@ impl Scene {
         options.check_effects()?;
         let molecules = [receptor, ligand];
         let labels = molecules.map(|molecule| molecule.labels(options.ph));
+        let restraints = Restraints::new(molecules, options)?;
         let why_not = |effect: Effect| {
+            if effect == Effect::Restraint {
+                let none = "neither is an antibody, and no residue is blocked";
+                return (!restraints.any()).then(|| none.to_owned());
+            }
             let sides = ["receptor", "ligand"]
                 .into_iter()
                 .zip(molecules)
@@ -144,10 +150,18 @@ impl Scene {
             };
             let (on, reason) = match (effect, asked, why_not(effect)) {
                 (Effect::Shape, ..) => (true, "always on".to_owned()),
+                (Effect::Restraint, Some(false), _) if options.blocks_residues() => {
+                    return Err(SearchError::Option {
+                        name: "effects",
+                        value: options.effects.clone().into(),
+                        bound: "auto or name restraint too, since residues are blocked".to_owned(),
+                    });
+                }
                 (_, Some(false), _) => (false, "not asked for".to_owned()),
                 (_, Some(true), Some(reason)) => {
                     return Err(SearchError::Effect { effect, reason });
                 }
+                (Effect::Restraint, _, None) => (true, restraints.reason.clone()),
                 (_, Some(true), None) => (true, "asked for".to_owned()),
                 (_, None, Some(reason)) => (false, reason),
                 (Effect::Electrostatics, None, None) => {
@@ -194,6 +208,15 @@ impl Scene {
                 &potential,
             ));
         }
+        if on(Effect::Restraint) {
+            let [own, other] = &restraints.blocked;
+            terms.push(restraint::term(
+                &receptor,
+                &ligand,
+                [own, other],
+                options.restraint_weight,
+            ));
+        }
         // Terms count atoms; how much a buried one weighs is a matter of shape.
         let [receptor, ligand] =
             [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
@@ -224,8 +247,10 @@ impl Scene {
                 Effect::Shape => "always on",
                 Effect::Electrostatics => "meshes carry no charges",
                 Effect::Contact => "meshes have no atom types",
+                Effect::Restraint => "meshes have no residues",
             };
-            let asked = matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
+            let asked = (effect == Effect::Restraint && options.blocks_residues())
+                || matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
             if asked && effect != Effect::Shape {
                 let reason = reason.to_owned();
                 return Err(SearchError::Effect { effect, reason });
@@ -317,7 +342,7 @@ fn lacking(
                 )
             })
         }
-        Effect::Shape | Effect::Electrostatics => None,
+        Effect::Shape | Effect::Electrostatics | Effect::Restraint => None,
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::effects::EffectChoice;
 use super::meshes::SampleWeights;
+use super::restraints::AntibodySurface;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 use knotdock_structures::knots::KnotsError;
+use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 /// Options of a docking run. Lengths in Å, or in the files' unit where meshes are docked.
@@ -64,6 +66,18 @@ pub struct DockOptions {
     /// The atom pair potential; `None`: the one that the program carries.
     #[serde(default)]
     pub atom_pair_potential: Option<AtomPairPotential>,
+    /// Weight of a contact that a blocked atom makes: score.
+    #[serde(default = "default_restraint_weight")]
+    pub restraint_weight: f64,
+    /// What part of an antibody may touch.
+    #[serde(default = "AntibodySurface::of_old")]
+    pub antibody: AntibodySurface,
+    /// Residues of the receptor that are to stay free of contact.
+    #[serde(default)]
+    pub block_receptor: Option<ResidueSelection>,
+    /// Residues of the ligand that are to stay free of contact.
+    #[serde(default)]
+    pub block_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -134,6 +148,11 @@ fn default_fine_share() -> f64 {
     0.05
 }
 
+/// Score that a blocked atom's contact costs, about what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
+fn default_restraint_weight() -> f64 {
+    1.0
+}
+
 impl Default for DockOptions {
     /// Resolution, offset, lambda, the weights of effects and that nothing is refined were chosen on training pairs; the rest is the
     /// literature's or this project's first measured setting.
@@ -162,6 +181,10 @@ impl Default for DockOptions {
             atom_pair_weight: 1.0,
             relaxed_weight: 3.0,
             atom_pair_potential: None,
+            restraint_weight: default_restraint_weight(),
+            antibody: AntibodySurface::default(),
+            block_receptor: None,
+            block_ligand: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -192,6 +215,11 @@ impl DockOptions {
         }
     }
 
+    /// Whether residues are named that are to stay free of contact.
+    pub(super) fn blocks_residues(&self) -> bool {
+        self.block_receptor.is_some() || self.block_ligand.is_some()
+    }
+
     /// Whether the weights ask for rescoring, which the contact effect's types then make possible.
     pub(crate) fn asks_rescoring(&self) -> bool {
         self.fine_contact_weight > 0.0 || self.atom_pair_weight > 0.0 || self.relaxed_weight > 0.0
@@ -206,6 +234,7 @@ impl DockOptions {
             ("fine-contact-weight", self.fine_contact_weight, 1e6),
             ("atom-pair-weight", self.atom_pair_weight, 1e6),
             ("relaxed-weight", self.relaxed_weight, 1e6),
+            ("restraint-weight", self.restraint_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

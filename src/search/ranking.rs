@@ -372,7 +372,7 @@ mod tests {
             let judge = Judge {
                 scorer: &scorer,
                 rescorer: None,
-                on: [true, false, false],
+                on: [true, false, false, false],
             };
             let ranking = report(judge, &candidates, &[0], true, 0.0, &Silent);
             ranking.poses[0].clone()
@@ -382,6 +382,6 @@ mod tests {
         assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
         let stands = climbed(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
-        assert_eq!(stands.terms[1..], [None, None]);
+        assert_eq!(stands.terms[1..], [None; 3]);
     }
 }

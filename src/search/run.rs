@@ -210,7 +210,7 @@ fn dock_in<T: Real>(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
-        chance: chance(options, &on, ranking.clusters),
+        chance: chance(options, on, ranking.clusters),
         error,
         rank_error,
         rank: engine.rank(),

@@ -130,7 +130,7 @@ fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchEr
     })
 }
 
-/// Two balls of labelled knots, with every effect on.
+/// Two balls of labelled knots, with every effect on that a pair of proteins calls for.
 fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     let [receptor, ligand] = BODIES.map(body);
     let (receptor, ligand) = (receptor?, ligand?);
@@ -145,7 +145,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     ];
     let decisions = Effect::ALL.map(|effect| Decision {
         effect,
-        on: true,
+        on: effect != Effect::Restraint,
         reason: "calibration".to_owned(),
     });
     Ok(Scene {

@@ -243,6 +243,7 @@ fn expected_rank(plan: &DockPlan) -> f64 {
         (Effect::Shape, if alike { 1.0 } else { 2.0 }),
         (Effect::Electrostatics, 2.0),
         (Effect::Contact, 3.0),
+        (Effect::Restraint, 1.0),
     ];
     let fields: f64 = at_default
         .into_iter()

@@ -10,11 +10,12 @@
 //! so a term needs no grid, no modes and no cell list of its own. In the Fourier domain it adds functions of the ligand to those of shape
 //! (one for each class), which the engine compresses together with them; a term that is absent adds none.
 //!
-//! [`electrostatics`] and [`contact`] say their labels, radial functions and class matrices.
+//! [`electrostatics`], [`contact`] and [`restraint`] say their labels, radial functions and class matrices.
 
 pub mod contact;
 pub mod electrostatics;
 mod kernel;
+pub mod restraint;
 
 pub use kernel::EffectKernel;
 
@@ -30,11 +31,18 @@ pub enum Effect {
     Electrostatics,
     /// Contact potential over atom types.
     Contact,
+    /// Contacts of atoms that should have none.
+    Restraint,
 }
 
 impl Effect {
     /// All effects, in the order of their columns.
-    pub const ALL: [Self; 3] = [Self::Shape, Self::Electrostatics, Self::Contact];
+    pub const ALL: [Self; 4] = [
+        Self::Shape,
+        Self::Electrostatics,
+        Self::Contact,
+        Self::Restraint,
+    ];
 
     /// Name on the command line, in tables and in JSON.
     pub fn name(self) -> &'static str {
@@ -42,6 +50,7 @@ impl Effect {
             Self::Shape => "shape",
             Self::Electrostatics => "electrostatics",
             Self::Contact => "contact",
+            Self::Restraint => "restraint",
         }
     }
 }

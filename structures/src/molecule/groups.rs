@@ -106,6 +106,29 @@ pub(super) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
         .collect()
 }
 
+/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers begin again, residues
+/// that share a key stay apart.
+pub(super) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
+    let mut runs = Vec::new();
+    let mut first = 0;
+    for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
+        let last = first + run.len();
+        if let Some(atom) = run.first() {
+            runs.push(Residue {
+                key: residue_key(atom),
+                atoms: (first..last).collect(),
+                kind: kind(
+                    &atom.residue_name,
+                    run.iter()
+                        .map(|atom| (atom.name.as_str(), atom.element.as_str())),
+                ),
+            });
+        }
+        first = last;
+    }
+    runs
+}
+
 /// The kind of a residue from its name and its atoms' names and elements.
 pub(super) fn kind<'a>(
     residue_name: &str,

@@ -19,6 +19,7 @@ use serde::Serialize;
 mod accessible;
 mod additives;
 mod alternate;
+mod antibody;
 mod buried;
 mod charge_table;
 mod completeness;
@@ -33,6 +34,7 @@ mod policy;
 mod radii;
 mod read;
 mod report;
+mod residue_selection;
 mod residues;
 mod select;
 mod sieve;
@@ -40,6 +42,7 @@ mod source;
 mod write;
 
 pub use accessible::PROBE;
+pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
 pub use contact_types::{CONTACT_TYPES, atom_kinds};
 pub use error::ReadError;
 pub use groups::GroupKind;
@@ -48,6 +51,7 @@ pub use labels::{LabelReport, Labels};
 pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
 pub use read::{Listed, read, read_listed};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
+pub use residue_selection::{ResidueSelection, UnknownResidues};
 pub use write::{
     ChainMap, ChainName, Partner, WriteError, complex_format, write_complex, write_molecule,
 };

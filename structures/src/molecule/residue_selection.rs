@@ -1,0 +1,221 @@
+//! Residues as a user picks them: `H:1-50,H:52A,L`.
+
+use super::Molecule;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Residues by chain and number, as the files' authors name them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct ResidueSelection(Vec<Part>);
+
+/// One part of a selection: a chain, and which of its residues.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Part {
+    chain: String,
+    residues: Range,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Range {
+    /// The whole chain.
+    Chain,
+    /// Numbers from the first to the last, whatever their insertion codes.
+    Numbers(i64, i64),
+    /// One number with one insertion code.
+    Inserted(i64, char),
+}
+
+impl std::fmt::Display for Part {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let chain = &self.chain;
+        match self.residues {
+            Range::Chain => write!(f, "{chain}"),
+            Range::Numbers(first, last) if first == last => write!(f, "{chain}:{first}"),
+            Range::Numbers(first, last) => write!(f, "{chain}:{first}-{last}"),
+            Range::Inserted(number, insertion) => write!(f, "{chain}:{number}{insertion}"),
+        }
+    }
+}
+
+impl std::str::FromStr for ResidueSelection {
+    type Err = String;
+
+    /// Reads parts with commas between them: `H` for a chain, `H:12` for a residue with all that is inserted after it, `H:52A` for an inserted
+    /// one, `H:1-50` for a range of numbers; `:12` where chains have no name.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split(',').map(|part| {
+            let (chain, residues) = match part.trim().split_once(':') {
+                Some((chain, residues)) => (chain, range(residues)),
+                None => (part.trim(), Some(Range::Chain)),
+            };
+            let empty = chain.is_empty() && residues == Some(Range::Chain);
+            match residues {
+                Some(residues) if !empty => Ok(Part {
+                    chain: chain.to_owned(),
+                    residues,
+                }),
+                _ => Err(format!(
+                    "`{part}` names no residues; a chain is needed, or residues as in H:12, H:52A or H:1-50"
+                )),
+            }
+        });
+        Ok(Self(parts.collect::<Result<_, _>>()?))
+    }
+}
+
+impl TryFrom<String> for ResidueSelection {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<ResidueSelection> for String {
+    fn from(selection: ResidueSelection) -> Self {
+        let parts = selection.0.iter().map(Part::to_string);
+        parts.collect::<Vec<_>>().join(",")
+    }
+}
+
+/// `12`, `52A`, `-3`, `1-50` or `-5--2`.
+fn range(text: &str) -> Option<Range> {
+    if let Ok(number) = text.parse() {
+        return Some(Range::Numbers(number, number));
+    }
+    // A minus that is not the first character parts two numbers.
+    let dash = text.char_indices().skip(1).find(|(_, c)| *c == '-');
+    if let Some((dash, _)) = dash {
+        let (first, last) = (text[..dash].parse().ok()?, text[dash + 1..].parse().ok()?);
+        return (first <= last).then_some(Range::Numbers(first, last));
+    }
+    let insertion = text.chars().last().filter(char::is_ascii_alphabetic)?;
+    let number = text.strip_suffix(insertion)?.parse().ok()?;
+    Some(Range::Inserted(number, insertion))
+}
+
+impl Molecule {
+    /// Whether each atom is of a selected residue.
+    ///
+    /// # Errors
+    /// The first part that no atom belongs to, with the chains and numbers that there are.
+    pub fn selected(&self, selection: &ResidueSelection) -> Result<Vec<bool>, UnknownResidues> {
+        let mut chosen = vec![false; self.atoms.len()];
+        for part in &selection.0 {
+            let mut found = false;
+            for (atom, chosen) in self.atoms.iter().zip(&mut chosen) {
+                let number = atom.residue_number;
+                let meant = atom.chain == part.chain
+                    && match part.residues {
+                        Range::Chain => true,
+                        Range::Numbers(first, last) => (first..=last).contains(&number),
+                        Range::Inserted(own, insertion) => {
+                            (own, Some(insertion)) == (number, atom.insertion_code)
+                        }
+                    };
+                found |= meant;
+                *chosen |= meant;
+            }
+            if !found {
+                return Err(UnknownResidues {
+                    part: part.to_string(),
+                    present: self.numbers_by_chain(),
+                });
+            }
+        }
+        Ok(chosen)
+    }
+
+    /// Smallest and largest residue number of each chain.
+    fn numbers_by_chain(&self) -> BTreeMap<String, [i64; 2]> {
+        let mut chains = BTreeMap::new();
+        for atom in &self.atoms {
+            let number = atom.residue_number;
+            let [first, last] = chains.entry(atom.chain.clone()).or_insert([number, number]);
+            *first = number.min(*first);
+            *last = number.max(*last);
+        }
+        chains
+    }
+}
+
+/// Residues were asked for that a molecule does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownResidues {
+    /// What no atom belongs to, as `H:1-50`.
+    pub part: String,
+    /// Smallest and largest residue number of each chain.
+    pub present: BTreeMap<String, [i64; 2]>,
+}
+
+impl UnknownResidues {
+    /// The chains and numbers that there are, in words.
+    pub fn present(&self) -> String {
+        let chains = self.present.iter();
+        let chains = chains.map(|(chain, [first, last])| format!("{chain}:{first}-{last}"));
+        chains.collect::<Vec<_>>().join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::molecule::{Atom, Format};
+
+    fn molecule() -> Molecule {
+        let residues = [
+            ("H", 51, None),
+            ("H", 52, None),
+            ("H", 52, Some('A')),
+            ("H", 53, None),
+            ("L", -2, None),
+            ("", 7, None),
+        ];
+        let atom = |(chain, residue_number, insertion_code): (&str, i64, Option<char>)| Atom {
+            name: "CA".to_owned(),
+            residue_name: "GLY".to_owned(),
+            chain: chain.to_owned(),
+            residue_number,
+            insertion_code,
+            alternate_location: None,
+            element: "C".to_owned(),
+            position: [0.0; 3],
+            occupancy: 1.0,
+            b_factor: 0.0,
+            hetero: false,
+            radius: 1.9,
+            line: 1,
+        };
+        Molecule::new(residues.into_iter().map(atom).collect(), Format::Pdb)
+    }
+
+    fn chosen(text: &str) -> Result<Vec<usize>, String> {
+        let selection: ResidueSelection = text.parse()?;
+        assert_eq!(String::from(selection.clone()), text);
+        let chosen = molecule()
+            .selected(&selection)
+            .map_err(|unknown| format!("{} of {}", unknown.part, unknown.present()))?;
+        Ok((0..chosen.len()).filter(|&index| chosen[index]).collect())
+    }
+
+    #[test]
+    fn parts_pick_what_they_name() {
+        assert_eq!(chosen("H"), Ok(vec![0, 1, 2, 3]));
+        assert_eq!(chosen("H:52"), Ok(vec![1, 2]));
+        assert_eq!(chosen("H:52A"), Ok(vec![2]));
+        assert_eq!(chosen("H:40-51,L:-2"), Ok(vec![0, 4]));
+        assert_eq!(chosen("L:-5--2"), Ok(vec![4]));
+        assert_eq!(chosen(":7"), Ok(vec![5]));
+    }
+
+    #[test]
+    fn what_is_not_there_is_named() {
+        let present = ":7-7, H:51-53, L:-2--2";
+        assert_eq!(chosen("H:52B"), Err(format!("H:52B of {present}")));
+        assert_eq!(chosen("H:51,K"), Err(format!("K of {present}")));
+        for bad in ["", "H:", "H:x", "H:5-3", "H:5-", "H:5A-7", "H,", "H:1é"] {
+            assert!(bad.parse::<ResidueSelection>().is_err(), "{bad}");
+        }
+    }
+}
