@@ -31,13 +31,12 @@ fn object(output: &Output) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
+/// Names of an object's entries, in alphabetical order.
 fn keys(object: &Value) -> Vec<&str> {
-    object
-        .as_object()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect()
+    let entries = object.as_object().unwrap().keys();
+    let mut names: Vec<&str> = entries.map(String::as_str).collect();
+    names.sort_unstable();
+    names
 }
 
 #[test]
@@ -218,6 +217,7 @@ fn inspect_tells_what_was_read_and_assumed() {
         keys(&object),
         [
             "accessible_area",
+            "antibody",
             "input",
             "labels",
             "volume",

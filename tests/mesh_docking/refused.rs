@@ -97,6 +97,8 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--offset", "0.6"], "coarse"),
         (["--effects", "electrostatics"], "charges"),
         (["--effects", "contact"], "atom types"),
+        (["--effects", "restraint"], "residues"),
+        (["--block-ligand", "A:1"], "residues"),
         (["--core-weight", "2"], "buried"),
         (["--resolution", "0"], "above zero"),
         (["--alpha", "0"], "above zero"),
