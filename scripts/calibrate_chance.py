@@ -43,6 +43,7 @@ CARRIED = {
     "--atom-pair-potential": "scoring/src/rescoring/atom_pair_potential.csv",
 }
 COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair", "relaxed")
+ON = {"shape", "electrostatics", "contact"}  # as src/search/chance.rs has it
 POTENTIALS = ("contact", "fine_contact", "atom_pair", "relaxed")
 # Recorded options in which runs may differ.
 FREE = {"contact_potential", "fine_contact_potential", "atom_pair_potential", "every_pose", "write_top"}
@@ -154,9 +155,9 @@ def read_runs(folders, manifest, split, seen):
         for option, value in run["options"].items():
             if option not in FREE and seen.setdefault(option, value) != value:
                 raise SystemExit(f"{record} was docked with {option} {value}, another run with {seen[option]}")
-        off = [effect["effect"] for effect in run["effects"] if not effect["on"]]
-        if off:
-            print(f"{pair} is left out: {', '.join(off)} off", file=sys.stderr)
+        on = {effect["effect"] for effect in run["effects"] if effect["on"]}
+        if on != ON:
+            print(f"{pair} is left out: {', '.join(sorted(on ^ ON))} on or off where the others are not", file=sys.stderr)
             continue
         with open(record.parent / "run/poses.csv", newline="") as file:
             rows = [{key: float(row[key]) for key in COLUMNS} for row in csv.DictReader(file)]
