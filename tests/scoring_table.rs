@@ -1,4 +1,4 @@
-//! Scores, terms, slices and ranks of the example and of five small cases against committed tables.
+//! Scores, terms, slices and ranks of the example and of six small cases against committed tables.
 //!
 //! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose among its case's;
 //! `search.csv` the first poses of a small search. These are regression tables, our own output of the day they were blessed; what
@@ -28,9 +28,11 @@ const FAST_TOLERANCE: f64 = 1e-4;
 const ROTATIONS: usize = 60;
 const SEARCHED: usize = 5;
 /// Cases that are searched: those without ties.
-const SEARCHES: [&str; 3] = ["helices", "charged_helices", "nucleic"];
+const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
+/// The helices once more, at the same poses, with residues of both sides blocked.
+const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "score",
     "shape",
     "electrostatics",
@@ -42,13 +44,25 @@ const COLUMNS: [&str; 11] = [
     "fine_contact",
     "atom_pair",
     "relaxed",
+    "restraint",
 ];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table")
 }
 
+/// The options that a case is scored and searched with: the defaults but for what is blocked.
+fn options(case: &str) -> DockOptions {
+    let blocked = |residues: &str| (case == BLOCKED).then(|| residues.parse().unwrap());
+    DockOptions {
+        block_receptor: blocked("A:1-8"),
+        block_ligand: blocked("A:6"),
+        ..DockOptions::default()
+    }
+}
+
 fn molecules(case: &str) -> [Molecule; 2] {
+    let case = if case == BLOCKED { "helices" } else { case };
     ["receptor", "ligand"].map(|side| {
         let path = if case == "example" {
             folder().join(format!("../../structures/examples/1ppe_{side}_unbound.pdb"))
@@ -76,6 +90,9 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
         let (_, poses) = cases.last_mut().unwrap();
         poses.push((record[1].parse().unwrap(), pose));
     }
+    let helices = cases.iter().find(|(case, _)| case == "helices");
+    let blocked = (BLOCKED.to_owned(), helices.unwrap().1.clone());
+    cases.push(blocked);
     cases
 }
 
@@ -84,7 +101,7 @@ fn scored(
     case: &str,
     poses: &[(u32, Pose)],
 ) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<Rescored>) {
-    let options = DockOptions::default();
+    let options = options(case);
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
     let rescorer = scene.rescorer(&options);
@@ -256,6 +273,7 @@ fn scores_terms_slices_and_ranks_of_poses() {
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
             values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
+            values.push(term(Effect::Restraint));
             found.insert((case.clone(), *number), values);
         }
     }
@@ -282,7 +300,7 @@ fn first_poses_of_small_searches() {
             rotations: ROTATIONS,
             every_pose: true,
             threads: 1,
-            ..DockOptions::default()
+            ..options(case)
         };
         let plan = search::plan(&receptor, &ligand, &options).unwrap();
         let points = search::molecule_points(&ligand);
@@ -345,7 +363,7 @@ fn two_atoms_score_the_closed_form() {
 }
 
 /// Not from a table: terms add up to the score, weighted slices to shape; a pose out of reach scores nothing at all; unlike charges
-/// attract.
+/// attract; and what is blocked only costs, other terms left as they are.
 #[test]
 fn what_every_row_must_satisfy() {
     let weights = DockOptions::default().engine().kernel.slice_weights();
@@ -369,6 +387,24 @@ fn what_every_row_must_satisfy() {
             if pose.translation.norm() > 250.0 {
                 assert_eq!(*exact, ExactScore::default(), "{case} {number}");
             }
+        }
+        if case == BLOCKED {
+            let (_, free, _) = scored("helices", &poses);
+            let mut paid = 0;
+            for (exact, free) in scores.iter().zip(&free) {
+                let restraint = exact.terms[Effect::Restraint as usize];
+                // The low-pass leaves ripples about the contact's function.
+                assert!(restraint < 1.0, "{restraint}");
+                paid += usize::from(restraint < -10.0);
+                for effect in [Effect::Shape, Effect::Electrostatics, Effect::Contact] {
+                    let [own, before] = [exact, free].map(|exact| exact.terms[effect as usize]);
+                    assert!(
+                        (own - before).abs() <= 1e-9 * (before.abs() + 1.0),
+                        "{effect}"
+                    );
+                }
+            }
+            assert!(paid > 0, "no pose touches what is blocked");
         }
         if case == "salt_bridge" {
             assert!(on[Effect::Electrostatics as usize]);
