@@ -8,7 +8,7 @@
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
-//! twentieth to a fifth ranked better than the best pose alone (docs/effects.md).
+//! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
 
 use super::cluster::{RigidBody, greedy};
 use super::outcome::RankedPose;
