@@ -31,11 +31,16 @@ impl RunOptions {
         Ok(options)
     }
 
-    /// Options from a record. Those of the machine take their defaults.
+    /// Options from a record. Those of the machine take their defaults; what an older record does not name is as it was before there was a choice.
     pub(super) fn from_record(record: &Map<String, Value>) -> Result<Self, String> {
-        let mut dock = object(
+        let known_to_dock = object(
             serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?,
         );
+        let of_machine = known_to_dock.iter();
+        let of_machine = of_machine.filter(|(name, _)| MACHINE_OPTIONS.contains(&name.as_str()));
+        let mut dock: Map<String, Value> = of_machine
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect();
         let mut reading = object(
             serde_json::to_value(ReadOptions::default()).map_err(|error| error.to_string())?,
         );
@@ -48,7 +53,7 @@ impl RunOptions {
                         .and_then(|count| usize::try_from(count).ok())
                         .ok_or_else(|| format!("option `{name}` cannot be {value}"))?;
                 }
-                known if dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
+                known if known_to_dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
                     dock.insert(name.clone(), value.clone());
                 }
                 known if reading.contains_key(known) => {
@@ -76,6 +81,7 @@ fn object(value: Value) -> Map<String, Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::search::AntibodySurface;
     use knotdock_structures::molecule::{AlternateLocation, Hetatm};
 
     #[test]
@@ -114,12 +120,47 @@ mod tests {
         }
     }
 
+    /// The record of a run with all options at their defaults.
+    fn default_record() -> Map<String, Value> {
+        let options = RunOptions {
+            reading: ReadOptions::default(),
+            dock: DockOptions::default(),
+            write_top: 10,
+        };
+        options.record().unwrap()
+    }
+
+    /// A run from before poses were relaxed, atoms paired, antibodies told and residues blocked is repeated without all that.
+    #[test]
+    fn what_an_older_record_does_not_name_is_as_it_was() {
+        let mut record = default_record();
+        for name in [
+            "atom_pair_weight",
+            "atom_pair_potential",
+            "relaxed_weight",
+            "restraint_weight",
+            "antibody",
+            "block_receptor",
+            "block_ligand",
+        ] {
+            record.remove(name).unwrap();
+        }
+        let dock = RunOptions::from_record(&record).unwrap().dock;
+        let expected = DockOptions {
+            atom_pair_weight: 0.0,
+            relaxed_weight: 0.0,
+            antibody: AntibodySurface::Whole,
+            ..DockOptions::default()
+        };
+        assert_eq!(dock, expected);
+        record.remove("lambda");
+        let lacking = RunOptions::from_record(&record).unwrap_err();
+        assert!(lacking.contains("lambda"), "{lacking}");
+    }
+
     #[test]
     fn an_option_of_a_later_version_is_refused_not_ignored() {
-        let mut record = RunOptions::from_record(&Map::new())
-            .unwrap()
-            .record()
-            .unwrap();
+        let mut record = default_record();
         record.insert("charges".to_owned(), true.into());
         assert!(
             RunOptions::from_record(&record)

@@ -2,7 +2,7 @@
 
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
-use super::restraints::Restraints;
+use super::restraints::{AntibodySurface, Restraints};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Relaxation, Rescorer};
 use knotdock_structures::Knots;
@@ -131,7 +131,12 @@ impl Scene {
         let restraints = Restraints::new(molecules, options)?;
         let why_not = |effect: Effect| {
             if effect == Effect::Restraint {
-                let none = "neither is an antibody, and no residue is blocked";
+                let none = match options.antibody {
+                    AntibodySurface::Cdrs => "neither is an antibody, and no residue is blocked",
+                    AntibodySurface::Whole => {
+                        "no residue is blocked, and all of an antibody may touch"
+                    }
+                };
                 return (!restraints.any()).then(|| none.to_owned());
             }
             let sides = ["receptor", "ligand"]
