@@ -33,14 +33,10 @@ impl RunOptions {
 
     /// Options from a record. Those of the machine take their defaults; what an older record does not name is as it was before there was a choice.
     pub(super) fn from_record(record: &Map<String, Value>) -> Result<Self, String> {
-        let known_to_dock = object(
-            serde_json::to_value(DockOptions::default()).map_err(|error| error.to_string())?,
+        let mut dock = object(
+            serde_json::to_value(DockOptions::of_first_version())
+                .map_err(|error| error.to_string())?,
         );
-        let of_machine = known_to_dock.iter();
-        let of_machine = of_machine.filter(|(name, _)| MACHINE_OPTIONS.contains(&name.as_str()));
-        let mut dock: Map<String, Value> = of_machine
-            .map(|(name, value)| (name.clone(), value.clone()))
-            .collect();
         let mut reading = object(
             serde_json::to_value(ReadOptions::default()).map_err(|error| error.to_string())?,
         );
@@ -53,7 +49,7 @@ impl RunOptions {
                         .and_then(|count| usize::try_from(count).ok())
                         .ok_or_else(|| format!("option `{name}` cannot be {value}"))?;
                 }
-                known if known_to_dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
+                known if dock.contains_key(known) && !MACHINE_OPTIONS.contains(&known) => {
                     dock.insert(name.clone(), value.clone());
                 }
                 known if reading.contains_key(known) => {
@@ -130,11 +126,13 @@ mod tests {
         options.record().unwrap()
     }
 
-    /// A run from before poses were relaxed, atoms paired, antibodies told and residues blocked is repeated without all that.
+    /// A run from before poses were rescored and relaxed, antibodies told and residues blocked is repeated without all that.
     #[test]
     fn what_an_older_record_does_not_name_is_as_it_was() {
         let mut record = default_record();
         for name in [
+            "fine_contact_weight",
+            "fine_contact_potential",
             "atom_pair_weight",
             "atom_pair_potential",
             "relaxed_weight",
@@ -147,15 +145,13 @@ mod tests {
         }
         let dock = RunOptions::from_record(&record).unwrap().dock;
         let expected = DockOptions {
+            fine_contact_weight: 0.0,
             atom_pair_weight: 0.0,
             relaxed_weight: 0.0,
             antibody: AntibodySurface::Whole,
             ..DockOptions::default()
         };
         assert_eq!(dock, expected);
-        record.remove("lambda");
-        let lacking = RunOptions::from_record(&record).unwrap_err();
-        assert!(lacking.contains("lambda"), "{lacking}");
     }
 
     #[test]

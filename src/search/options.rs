@@ -20,7 +20,6 @@ pub struct DockOptions {
     /// Size of the finer set of rotations that is searched about the best; `None`: no finer search.
     pub fine_rotations: Option<usize>,
     /// Share of the finer set that is searched.
-    #[serde(default = "default_fine_share")]
     pub fine_share: f64,
     /// Resolution: the ranking kernel's low-pass stops at 1 / resolution.
     pub resolution: f64,
@@ -39,7 +38,6 @@ pub struct DockOptions {
     /// Error of the fast path aimed at, relative to the best score.
     pub tolerance: f64,
     /// Floating-point type of the fast path.
-    #[serde(default)]
     pub precision: Precision,
     /// Nodes along each edge of the grids that meshes are sampled on; `None` for molecules.
     pub sample_grid: Option<usize>,
@@ -57,26 +55,19 @@ pub struct DockOptions {
     pub fine_contact_weight: f64,
     /// The fine contact potential; `None`: the one that the program carries.
     pub fine_contact_potential: Option<FinePotential>,
-    /// Weight of the atom pair potential, by which poses are rescored likewise: score per RT; 0: without it, as were runs before there was one.
-    #[serde(default)]
+    /// Weight of the atom pair potential, by which poses are rescored likewise: score per RT; 0: without it.
     pub atom_pair_weight: f64,
-    /// Weight of what a pose is worth once relaxed, by which poses are rescored likewise: score per RT; 0: without it, as were runs before there was one.
-    #[serde(default)]
+    /// Weight of what a pose is worth once relaxed, by which poses are rescored likewise: score per RT; 0: without it.
     pub relaxed_weight: f64,
     /// The atom pair potential; `None`: the one that the program carries.
-    #[serde(default)]
     pub atom_pair_potential: Option<AtomPairPotential>,
     /// Weight of a contact that a blocked atom makes: score.
-    #[serde(default = "default_restraint_weight")]
     pub restraint_weight: f64,
     /// What part of an antibody may touch.
-    #[serde(default = "AntibodySurface::of_old")]
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
-    #[serde(default)]
     pub block_receptor: Option<ResidueSelection>,
     /// Residues of the ligand that are to stay free of contact.
-    #[serde(default)]
     pub block_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     pub ph: f64,
@@ -143,16 +134,6 @@ pub const REFINED_BY_SHAPE: usize = 300;
 /// Default pass length as a multiple of the resolution.
 pub const PASS_RATIO: f64 = 2.0;
 
-/// Share of a finer set of rotations that is searched.
-fn default_fine_share() -> f64 {
-    0.05
-}
-
-/// Score that a blocked atom's contact costs, about what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
-fn default_restraint_weight() -> f64 {
-    1.0
-}
-
 impl Default for DockOptions {
     /// Resolution, offset, lambda, the weights of effects and that nothing is refined were chosen on training pairs; the rest is the
     /// literature's or this project's first measured setting.
@@ -160,7 +141,7 @@ impl Default for DockOptions {
         Self {
             rotations: 3600,
             fine_rotations: None,
-            fine_share: default_fine_share(),
+            fine_share: 0.05,
             resolution: 4.5,
             pass_length: None,
             spacing: None,
@@ -181,7 +162,8 @@ impl Default for DockOptions {
             atom_pair_weight: 1.0,
             relaxed_weight: 3.0,
             atom_pair_potential: None,
-            restraint_weight: default_restraint_weight(),
+            // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
+            restraint_weight: 1.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
@@ -198,6 +180,17 @@ impl Default for DockOptions {
 }
 
 impl DockOptions {
+    /// What the first version would have made of no options at all: the defaults, less all that came later and moves the ranking.
+    pub fn of_first_version() -> Self {
+        Self {
+            fine_contact_weight: 0.0,
+            atom_pair_weight: 0.0,
+            relaxed_weight: 0.0,
+            antibody: AntibodySurface::Whole,
+            ..Self::default()
+        }
+    }
+
     /// The engine's part of the options.
     pub fn engine(&self) -> EngineOptions {
         EngineOptions {

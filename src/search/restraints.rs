@@ -23,11 +23,6 @@ impl AntibodySurface {
             Self::Whole => "whole",
         }
     }
-
-    /// What runs asked for that did not say, from before there was a choice.
-    pub(super) fn of_old() -> Self {
-        Self::Whole
-    }
 }
 
 impl std::str::FromStr for AntibodySurface {
