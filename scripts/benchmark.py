@@ -16,6 +16,9 @@ and `clusters.csv` (a row for each pair and seed) and `poses.md` and `clusters.m
 succeed among the first 1, 10, 100 and 1000, as the mean over the seeds). Runs that are done are kept and not repeated
 unless the program, its options or the input change. A pair that fails is named and costs no other.
 
+With --attract N each docking is told N residues of either side that are in contact in the answer, drawn by the pair's id and the seed, as an experiment
+might tell them.
+
 Needs Python 3.9 or later and nothing else.
 """
 
@@ -36,6 +39,7 @@ import threading
 import time
 from pathlib import Path
 
+from known_residues import attraction
 from whole_file import write
 
 ACCEPTABLE_LIGAND_RMSD = 10.0  # A
@@ -110,6 +114,7 @@ def parse_arguments():
     parser.add_argument("--knotdock", default="knotdock", help="the program (default: the one on the path)")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default: 1; a run uses all cores)")
     parser.add_argument("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
+    parser.add_argument("--attract", type=int, default=0, metavar="N", help="residues of either side that each docking is told (default: 0)")
     options = parser.parse_args(arguments)
     for owned in ("-o", "--output", "--force", "--from", "--native", "--native-receptor", "--native-ligand"):
         if owned in dock_options:
@@ -161,6 +166,8 @@ def run_one(options, program, pair, seed):
     folder = options.out / pair["id"] / f"seed_{seed}"
     record = folder / "result.json"
     settings = {"program": program, "options": options.dock_options, "seed": seed}
+    if options.attract:
+        settings["attract"] = options.attract
     try:
         files = {part: find_part(options.folder / pair["id"], part) for part in PARTS}
         settings["inputs"] = {part: hashlib.sha256(path.read_bytes()).hexdigest() for part, path in files.items()}
@@ -200,6 +207,9 @@ def dock_and_measure(options, folder, files, name, seed):
     for option, value in (("--no-cluster", []), ("--write-top", ["0"])):
         if option not in options.dock_options:
             command += [option, *value]
+    if options.attract:
+        texts = {part: read_text(path) for part, path in files.items()}
+        command += attraction(texts, name, seed, options.attract)
     cost = measured(command + options.dock_options, folder / "dock.log")
     # The system's figure for a child can be that of this script before it became the child; the program's own is not.
     own_peak = json.loads((run / "run.json").read_text())["timing"]["peak_memory_bytes"]
@@ -316,7 +326,8 @@ def write_csv(options, pairs, results, ranking):
 
 def markdown(options, pairs, results, ranking, program):
     with_megadock = ranking == "poses" and MEGADOCK["acceptable"] in pairs[0]
-    ran = f"`{program['version']}`, options `{' '.join(options.dock_options) or 'default'}`"
+    told = f", told {options.attract} residues of either side" if options.attract else ""
+    ran = f"`{program['version']}`, options `{' '.join(options.dock_options) or 'default'}`{told}"
     seeds = ", ".join(map(str, options.seeds))
     lines = [f"# Ranking of {ranking}", "", f"{ran}; split `{options.split}`, {len(pairs)} pairs, seeds {seeds}.", ""]
     lines += [

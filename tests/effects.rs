@@ -10,6 +10,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock::search::{DockOptions, Effect, Scene};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use program::succeed;
@@ -253,9 +254,9 @@ fn what_the_inputs_cannot_feed_is_off_and_cannot_be_forced() {
     }
 }
 
-/// Blocked residues cost what touches them, in the search, in the table and in `score`; what cannot be blocked is an error.
+/// Blocked residues cost what touches them, attracted ones draw poses, in the search, in the table and in `score`; what cannot be named is an error.
 #[test]
-fn blocked_residues_are_kept_free() {
+fn named_residues_are_kept_free_or_touched() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let rows = |options: &[&str]| {
@@ -288,12 +289,14 @@ fn blocked_residues_are_kept_free() {
     let scorer =
         ExactScorer::with_effects(&plan.kernel, &scene.receptor, &scene.ligand, &plan.effects)
             .unwrap();
-    let cost = |row: &Value| {
+    let pose = |row: &Value| {
         let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(&row[part]));
-        let translation = ["tx", "ty", "tz"].map(|part| number(&row[part]));
-        let exact = scorer.score(&Pose::from_parts(quaternion, translation));
-        exact.terms[Effect::Restraint as usize]
+        Pose::from_parts(
+            quaternion,
+            ["tx", "ty", "tz"].map(|part| number(&row[part])),
+        )
     };
+    let cost = |row: &Value| scorer.score(&pose(row)).terms[Effect::Restraint as usize];
     let free = rows(&[]);
     let blocked = rows(&["--block-receptor", sites]);
     assert!(free.iter().all(|row| row["restraint"].is_null()));
@@ -305,8 +308,31 @@ fn blocked_residues_are_kept_free() {
     let (before, after) = (mean(&free), mean(&blocked));
     assert!(after > 0.4 * before && before < -100.0, "{before} {after}");
 
+    // Fourteen residues attract, which the inhibitor cannot all reach.
+    let drawn = rows(&["--attract-receptor", sites, "--attraction-weight", "4000"]);
+    let attracting = DockOptions {
+        attract_receptor: options.block_receptor.clone(),
+        attraction_weight: 1.0,
+        ..DockOptions::default()
+    };
+    let scene = Scene::new(&own, &other, &attracting).unwrap();
+    let rescorer = scene.rescorer(&attracting).unwrap();
+    let met = |row: &Value| {
+        let rescored = rescorer.score(&pose(row), &mut Workspace::default());
+        rescored.attraction.unwrap()
+    };
+    for row in &drawn {
+        assert!((4000.0 * met(row) - number(&row["attraction"])).abs() < 1e-9);
+        assert!(number(&row["restraint"]) > 0.0);
+    }
+    assert!(free.iter().all(|row| row["attraction"].is_null()));
+    let mean = |rows: &[Value]| rows.iter().map(&met).sum::<f64>() / rows.len() as f64;
+    let (before, after) = (mean(&free), mean(&drawn));
+    assert!(after > 0.6 && after > before + 0.1, "{before} {after}");
+
     for (options, said) in [
         (&["--block-ligand", "Z:1"][..], "block-ligand is Z:1"),
+        (&["--attract-ligand", "Z:1"], "attract-ligand is Z:1"),
         (&["--block-receptor", "A:9000"], "among A:"),
         (&["--effects", "restraint"], "there can be no restraint"),
         (

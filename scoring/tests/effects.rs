@@ -2,6 +2,7 @@
 //! whose answer is known.
 
 use knotdock_scoring::effect::contact::{self, Potential};
+use knotdock_scoring::effect::restraint::{Mark, Weights};
 use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -66,14 +67,24 @@ fn free_terms(a: &Knots, b: &Knots) -> Vec<Term> {
     ]
 }
 
-/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as the defaults have it.
+/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as the defaults have it,
+/// and as many attracted.
 fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
-    let every = |knots: &Knots, step: usize| -> Vec<bool> {
-        (1..=knots.len()).map(|count| count % step == 0).collect()
+    let every = |knots: &Knots, step: usize| -> Vec<Mark> {
+        let mark = |count: usize| match count % step {
+            0 => Mark::Blocked,
+            1 => Mark::Attracted,
+            _ => Mark::Free,
+        };
+        (1..=knots.len()).map(mark).collect()
     };
     let mut terms = free_terms(a, b);
-    let blocked = [&every(a, 4)[..], &every(b, 5)];
-    terms.push(restraint::term(a, b, blocked, 0.35));
+    let marks = [&every(a, 4)[..], &every(b, 5)];
+    let weights = Weights {
+        blocked: 0.35,
+        attracted: 0.2,
+    };
+    terms.push(restraint::term(a, b, marks, weights));
     terms
 }
 
@@ -369,25 +380,36 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
     assert!(elsewhere[0] < 0.5, "{elsewhere}");
 }
 
-/// A ball touches the body where nothing is blocked, whichever of the two the blocked atoms belong to; where its patch is blocked, and
-/// where its patch is all that is not.
+/// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to: where its patch is all that is not, away from
+/// a patch that is, and where a patch attracts it.
 #[test]
-fn a_ball_goes_where_nothing_is_blocked() {
+fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
     let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));
-    let patch: Vec<bool> = body.centers.iter().map(|x| x[0] > 6.0).collect();
-    let rest: Vec<bool> = patch.iter().map(|patch| !patch).collect();
-    let found = |blocked: &[bool]| {
-        let by_receptor = restraint::term(&body, &ball, [blocked, &[]], 2.0);
-        let by_ligand = restraint::term(&ball, &body, [&[], blocked], 2.0);
+    let marked = |inside: Mark, outside: Mark| -> Vec<Mark> {
+        let inside = |x: &[f64; 3]| if x[0] > 6.0 { inside } else { outside };
+        body.centers.iter().map(inside).collect()
+    };
+    let weights = Weights {
+        blocked: 2.0,
+        attracted: 2.0,
+    };
+    let found = |marks: &[Mark]| {
+        let by_receptor = restraint::term(&body, &ball, [marks, &[]], weights);
+        let by_ligand = restraint::term(&ball, &body, [&[], marks], weights);
         [
             best_direction(&body, &ball, vec![by_receptor]),
             -best_direction(&ball, &body, vec![by_ligand]),
         ]
     };
-    for place in found(&rest) {
-        assert!(place[0] > 0.9, "{place}");
+    for marks in [
+        marked(Mark::Free, Mark::Blocked),
+        marked(Mark::Attracted, Mark::Free),
+    ] {
+        for place in found(&marks) {
+            assert!(place[0] > 0.9, "{place}");
+        }
     }
-    for place in found(&patch) {
+    for place in found(&marked(Mark::Blocked, Mark::Free)) {
         assert!(place[0] < 0.5, "{place}");
     }
 }

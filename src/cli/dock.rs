@@ -72,7 +72,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 48] = [
+const RECORDED: [&str; 51] = [
     "receptor",
     "ligand",
     "waters",
@@ -109,6 +109,9 @@ const RECORDED: [&str; 48] = [
     "antibody",
     "block_receptor",
     "block_ligand",
+    "attraction_weight",
+    "attract_receptor",
+    "attract_ligand",
     "ph",
     "per_rotation",
     "poses",

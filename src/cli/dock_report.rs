@@ -37,6 +37,7 @@ pub fn told(outcome: &DockOutcome) -> String {
         ("fine contacts", row.and_then(|row| row.fine_contact)),
         ("atom pairs", row.and_then(|row| row.atom_pair)),
         ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
+        ("attracted residues", row.and_then(|row| row.attraction)),
     ];
     let terms = terms.iter().filter(|(_, value)| value.is_some());
     let names: Vec<&str> = terms.map(|(name, _)| *name).collect();

@@ -89,6 +89,7 @@ impl Score {
                 ("Fine contacts", rescored.fine_contact),
                 ("atom pairs", rescored.atom_pair),
                 ("relaxed", rescored.relaxed),
+                ("attraction", rescored.attraction),
             ];
             let told = terms
                 .iter()
@@ -119,6 +120,7 @@ impl Score {
                 ("fine_contact", rescored.fine_contact),
                 ("atom_pair", rescored.atom_pair),
                 ("relaxed", rescored.relaxed),
+                ("attraction", rescored.attraction),
             ] {
                 object.insert(name.to_owned(), serde_json::json!(value));
             }

@@ -113,7 +113,7 @@ pub struct KernelArguments {
     /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", help_heading = SCORE)]
     atom_pair_potential: Option<PathBuf>,
-    /// Weight of a contact that a blocked atom makes: score.
+    /// What a contact costs that a blocked atom makes: score.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().restraint_weight, help_heading = SCORE)]
     restraint_weight: f64,
     /// What may touch of an antibody, which is told by its sequence: cdrs, its complementarity-determining regions and what lies within 5 Å of them, or
@@ -126,6 +126,16 @@ pub struct KernelArguments {
     /// Residues of the ligand to keep free of contact, likewise.
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
     block_ligand: Option<ResidueSelection>,
+    /// What a pose earns in which all attracted residues touch, else the share of them that does: score. In the search each contact of theirs earns a
+    /// thousandth.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().attraction_weight, help_heading = SCORE)]
+    attraction_weight: f64,
+    /// Residues of the receptor thought to be in contact, likewise: poses that touch them rank higher.
+    #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
+    attract_receptor: Option<ResidueSelection>,
+    /// Residues of the ligand thought to be in contact, likewise.
+    #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
+    attract_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -220,6 +230,9 @@ impl KernelArguments {
             antibody: self.antibody,
             block_receptor: self.block_receptor.clone(),
             block_ligand: self.block_ligand.clone(),
+            attraction_weight: self.attraction_weight,
+            attract_receptor: self.attract_receptor.clone(),
+            attract_ligand: self.attract_ligand.clone(),
             ph: self.ph,
             ..default
         })

@@ -107,6 +107,7 @@ mod tests {
             fine_contact: None,
             atom_pair: None,
             relaxed: None,
+            attraction: None,
             rank_score: score,
             z_score: None,
         }

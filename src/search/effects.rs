@@ -4,7 +4,7 @@ use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
 use super::restraints::{AntibodySurface, Restraints};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
-use knotdock_scoring::rescoring::{AtomPairs, FineContacts, Relaxation, Rescorer};
+use knotdock_scoring::rescoring::{AtomPairs, Attraction, FineContacts, Relaxation, Rescorer};
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::{Deserialize, Serialize};
@@ -110,7 +110,13 @@ pub struct Scene {
     pub decisions: Vec<Decision>,
     /// What was assumed in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
+    /// The attracted residues of receptor and ligand, each as the places of its knots.
+    pub attracted: [Vec<Vec<usize>>; 2],
 }
+
+/// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch: a residue that
+/// touches has some 70.
+const PULL: f64 = 1e-3;
 
 /// Share of a molecule's heavy atoms that must have contact types for the contact potential to speak for it.
 const TYPED_SHARE: f64 = 0.5;
@@ -132,9 +138,11 @@ impl Scene {
         let why_not = |effect: Effect| {
             if effect == Effect::Restraint {
                 let none = match options.antibody {
-                    AntibodySurface::Cdrs => "neither is an antibody, and no residue is blocked",
+                    AntibodySurface::Cdrs => {
+                        "neither is an antibody, and no residue is blocked or attracted"
+                    }
                     AntibodySurface::Whole => {
-                        "no residue is blocked, and all of an antibody may touch"
+                        "no residue is blocked or attracted, and all of an antibody may touch"
                     }
                 };
                 return (!restraints.any()).then(|| none.to_owned());
@@ -155,11 +163,13 @@ impl Scene {
             };
             let (on, reason) = match (effect, asked, why_not(effect)) {
                 (Effect::Shape, ..) => (true, "always on".to_owned()),
-                (Effect::Restraint, Some(false), _) if options.blocks_residues() => {
+                (Effect::Restraint, Some(false), _) if options.names_residues() => {
                     return Err(SearchError::Option {
                         name: "effects",
                         value: options.effects.clone().into(),
-                        bound: "auto or name restraint too, since residues are blocked".to_owned(),
+                        bound:
+                            "auto or name restraint too, since residues are blocked or attracted"
+                                .to_owned(),
                     });
                 }
                 (_, Some(false), _) => (false, "not asked for".to_owned()),
@@ -214,13 +224,12 @@ impl Scene {
             ));
         }
         if on(Effect::Restraint) {
-            let [own, other] = &restraints.blocked;
-            terms.push(restraint::term(
-                &receptor,
-                &ligand,
-                [own, other],
-                options.restraint_weight,
-            ));
+            let [own, other] = &restraints.marks;
+            let weights = restraint::Weights {
+                blocked: options.restraint_weight,
+                attracted: PULL * options.attraction_weight,
+            };
+            terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
         // Terms count atoms; how much a buried one weighs is a matter of shape.
         let [receptor, ligand] =
@@ -239,6 +248,7 @@ impl Scene {
             terms,
             decisions,
             labels: [receptor_report, ligand_report],
+            attracted: restraints.attracted,
         })
     }
 
@@ -254,7 +264,7 @@ impl Scene {
                 Effect::Contact => "meshes have no atom types",
                 Effect::Restraint => "meshes have no residues",
             };
-            let asked = (effect == Effect::Restraint && options.blocks_residues())
+            let asked = (effect == Effect::Restraint && options.names_residues())
                 || matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
             if asked && effect != Effect::Shape {
                 let reason = reason.to_owned();
@@ -276,27 +286,42 @@ impl Scene {
             terms: Vec::new(),
             decisions: decisions.collect::<Result<_, _>>()?,
             labels: [LabelReport::default(), LabelReport::default()],
+            attracted: Default::default(),
         })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or all weights are 0.
+    /// What poses are rescored with; `None` where there is nothing to ask.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
-        rescorer(&self.decisions, &self.receptor, &self.ligand, options)
+        rescorer(
+            &self.decisions,
+            [&self.receptor, &self.ligand],
+            &self.attracted,
+            options,
+        )
     }
 }
 
-/// What poses of two labelled bodies are rescored with; `None` where the contact effect is off or all weights are 0.
+/// What poses of two labelled bodies are rescored with: potentials where the contact effect is on, and attracted residues where there are some;
+/// `None` where there is nothing to ask or all weights are 0.
 pub(super) fn rescorer(
     decisions: &[Decision],
-    receptor: &Knots,
-    ligand: &Knots,
+    [receptor, ligand]: [&Knots; 2],
+    attracted: &[Vec<Vec<usize>>; 2],
     options: &DockOptions,
 ) -> Option<Rescorer> {
     let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
-    let (fine, pairs) = (options.fine_contact_weight, options.atom_pair_weight);
-    let relaxed = options.relaxed_weight;
+    let weight = |weight: f64| {
+        let typed = decisions.iter().any(contact);
+        if typed { weight } else { 0.0 }
+    };
+    let (fine, pairs) = (
+        weight(options.fine_contact_weight),
+        weight(options.atom_pair_weight),
+    );
+    let relaxed = weight(options.relaxed_weight);
+    let attracts = attracted.iter().any(|side| !side.is_empty()) && options.attraction_weight > 0.0;
     let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
-    let asked = decisions.iter().any(contact) && options.asks_rescoring();
+    let asked = fine > 0.0 || pairs > 0.0 || relaxed > 0.0 || attracts;
     asked.then(|| Rescorer {
         fine_contacts: (fine > 0.0).then(|| {
             let potential = options.fine_contact_potential.clone().unwrap_or_default();
@@ -306,6 +331,8 @@ pub(super) fn rescorer(
             .then(|| AtomPairs::new(receptor, ligand, &pair_potential(), pairs)),
         relaxation: (relaxed > 0.0)
             .then(|| Relaxation::new(receptor, ligand, &pair_potential(), relaxed)),
+        attraction: attracts
+            .then(|| Attraction::new(receptor, ligand, attracted, options.attraction_weight)),
     })
 }
 

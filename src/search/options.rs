@@ -61,14 +61,20 @@ pub struct DockOptions {
     pub relaxed_weight: f64,
     /// The atom pair potential; `None`: the one that the program carries.
     pub atom_pair_potential: Option<AtomPairPotential>,
-    /// Weight of a contact that a blocked atom makes: score.
+    /// What a contact costs that a blocked atom makes: score.
     pub restraint_weight: f64,
+    /// What a pose earns in which all attracted residues touch: score.
+    pub attraction_weight: f64,
     /// What part of an antibody may touch.
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
     pub block_receptor: Option<ResidueSelection>,
     /// Residues of the ligand that are to stay free of contact.
     pub block_ligand: Option<ResidueSelection>,
+    /// Residues of the receptor that are to be in contact.
+    pub attract_receptor: Option<ResidueSelection>,
+    /// Residues of the ligand that are to be in contact.
+    pub attract_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -164,9 +170,12 @@ impl Default for DockOptions {
             atom_pair_potential: None,
             // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
             restraint_weight: 1.0,
+            attraction_weight: 2000.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
+            attract_receptor: None,
+            attract_ligand: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -208,9 +217,15 @@ impl DockOptions {
         }
     }
 
-    /// Whether residues are named that are to stay free of contact.
-    pub(super) fn blocks_residues(&self) -> bool {
-        self.block_receptor.is_some() || self.block_ligand.is_some()
+    /// Whether residues are named that are to stay free of contact, or to be in contact.
+    pub(super) fn names_residues(&self) -> bool {
+        let named = [
+            &self.block_receptor,
+            &self.block_ligand,
+            &self.attract_receptor,
+            &self.attract_ligand,
+        ];
+        named.into_iter().any(Option::is_some)
     }
 
     /// Whether the weights ask for rescoring, which the contact effect's types then make possible.
@@ -228,6 +243,7 @@ impl DockOptions {
             ("atom-pair-weight", self.atom_pair_weight, 1e6),
             ("relaxed-weight", self.relaxed_weight, 1e6),
             ("restraint-weight", self.restraint_weight, 1e6),
+            ("attraction-weight", self.attraction_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

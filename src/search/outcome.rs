@@ -38,7 +38,9 @@ pub struct RankedPose {
     pub atom_pair: Option<f64>,
     /// Weighted energy there once the pose has given way; `None` likewise.
     pub relaxed: Option<f64>,
-    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact`, `atom_pair` and `relaxed` besides.
+    /// What the residues earn that touch of those that are attracted; `None` where none are.
+    pub attraction: Option<f64>,
+    /// What rows are ranked by: `score`, and where poses are rescored `fine_contact`, `atom_pair`, `relaxed` and `attraction` besides.
     pub rank_score: f64,
     /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,

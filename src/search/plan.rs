@@ -65,6 +65,8 @@ pub struct DockPlan {
     /// Which effects are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
+    /// The attracted residues of receptor and ligand, each as the places of its knots.
+    pub(super) attracted: [Vec<Vec<usize>>; 2],
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
     #[serde(skip)]
@@ -110,6 +112,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         terms,
         decisions,
         labels,
+        attracted,
     } = scene;
     let planned = |options: &DockOptions| {
         Plan::with_effects(
@@ -198,6 +201,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         fixed_bytes: fixed,
         bytes_in_flight: per_rotation,
         decisions,
+        attracted,
         labels,
         engine: Arc::new(engine),
         options: options.clone(),
@@ -264,9 +268,10 @@ impl DockPlan {
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
-    /// What poses are rescored with; `None` where the contact effect is off or all weights are 0.
+    /// What poses are rescored with; `None` where there is nothing to ask.
     pub(super) fn rescorer(&self) -> Option<Rescorer> {
-        rescorer(&self.decisions, &self.receptor, &self.ligand, &self.options)
+        let bodies = [&self.receptor, &self.ligand];
+        rescorer(&self.decisions, bodies, &self.attracted, &self.options)
     }
 
     /// Whether an effect is on.

@@ -283,6 +283,7 @@ impl Candidate {
             fine_contact: rescored.fine_contact,
             atom_pair: rescored.atom_pair,
             relaxed: rescored.relaxed,
+            attraction: rescored.attraction,
             rank_score: terms.score + rescored.sum(),
             z_score: None,
             score: terms.score,

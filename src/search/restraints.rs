@@ -1,7 +1,10 @@
-//! Which atoms are to stay free of contact: what of an antibody lies away from its CDRs, and what the user blocks.
+//! Which atoms are to stay free of contact, what of an antibody lies away from its CDRs and what the user blocks, and which are to be in contact.
 
 use super::options::{DockOptions, SearchError};
-use knotdock_structures::molecule::{Antibody, Molecule, PARATOPE_EDGE, VariableDomain};
+use knotdock_scoring::effect::restraint::Mark;
+use knotdock_structures::molecule::{
+    Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,
+};
 use serde::{Deserialize, Serialize};
 
 /// What part of an antibody may touch.
@@ -35,73 +38,124 @@ impl std::str::FromStr for AntibodySurface {
     }
 }
 
-/// Blocked atoms of both sides.
+/// What is wanted of the contacts of both sides' atoms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Restraints {
-    /// Whether each atom of receptor and ligand is blocked.
-    pub blocked: [Vec<bool>; 2],
-    /// Why, in words; empty where nothing is.
+    /// A mark for each atom of receptor and ligand.
+    pub marks: [Vec<Mark>; 2],
+    /// Of each side, the residues that are attracted, each as the places of its atoms.
+    pub attracted: [Vec<Vec<usize>>; 2],
+    /// Why, in words; empty where all are free.
     pub reason: String,
 }
 
 impl Restraints {
-    /// What the options and the two molecules call for.
+    /// What the options and the two molecules call for. Residues that are blocked and attracted are attracted.
     ///
     /// # Errors
-    /// [`SearchError::Option`] when residues are to be blocked that a molecule does not have.
+    /// [`SearchError::Option`] when residues are named that a molecule does not have.
     pub fn new(molecules: [&Molecule; 2], options: &DockOptions) -> Result<Self, SearchError> {
-        let named = [
-            ("receptor", "block-receptor", &options.block_receptor),
-            ("ligand", "block-ligand", &options.block_ligand),
-        ];
         let mut reasons = Vec::new();
-        let mut blocked = [Vec::new(), Vec::new()];
-        for ((molecule, (side, option, residues)), blocked) in
-            molecules.into_iter().zip(named).zip(&mut blocked)
+        let mut marks = molecules.map(|molecule| vec![Mark::Free; molecule.atoms.len()]);
+        let mut attracted = [Vec::new(), Vec::new()];
+        for (((molecule, named), marks), attracted) in molecules
+            .into_iter()
+            .zip(named_residues(options))
+            .zip(&mut marks)
+            .zip(&mut attracted)
         {
-            *blocked = vec![false; molecule.atoms.len()];
+            let side = named.side;
             if options.antibody == AntibodySurface::Cdrs
                 && let Some(antibody) = molecule.antibody()
             {
-                for (blocked, paratope) in blocked.iter_mut().zip(&antibody.paratope) {
-                    *blocked = !paratope;
+                for (mark, paratope) in marks.iter_mut().zip(&antibody.paratope) {
+                    if !paratope {
+                        *mark = Mark::Blocked;
+                    }
                 }
                 reasons.push(format!(
                     "the {side} is an antibody ({}), which binds by its CDRs and what lies within {PARATOPE_EDGE} Å of them",
                     domains_told(&antibody)
                 ));
             }
-            if let Some(residues) = residues {
-                let chosen =
-                    molecule
-                        .selected(residues)
-                        .map_err(|unknown| SearchError::Option {
-                            name: option,
-                            value: unknown.part.clone(),
-                            bound: format!(
-                                "residues that the {side} has, among {}",
-                                unknown.present()
-                            ),
-                        })?;
-                for (blocked, chosen) in blocked.iter_mut().zip(chosen) {
-                    *blocked |= chosen;
+            for (option, residues, mark, told) in [
+                (named.block, named.blocked, Mark::Blocked, "blocked"),
+                (named.attract, named.attracted, Mark::Attracted, "attracted"),
+            ] {
+                let Some(residues) = residues else {
+                    continue;
+                };
+                let chosen = selected(molecule, side, option, residues)?;
+                if mark == Mark::Attracted {
+                    *attracted = molecule.atoms_by_residue(&chosen);
+                }
+                for (own, chosen) in marks.iter_mut().zip(chosen) {
+                    if chosen {
+                        *own = mark;
+                    }
                 }
                 reasons.push(format!(
-                    "residues {} of the {side} are blocked",
+                    "residues {} of the {side} are {told}",
                     String::from(residues.clone())
                 ));
             }
         }
         Ok(Self {
-            blocked,
+            marks,
+            attracted,
             reason: reasons.join("; "),
         })
     }
 
-    /// Whether any atom is blocked.
+    /// Whether any atom is marked.
     pub fn any(&self) -> bool {
-        self.blocked.iter().flatten().any(|blocked| *blocked)
+        self.marks.iter().flatten().any(|mark| *mark != Mark::Free)
     }
+}
+
+/// The residues that options name of one side, and the options' names.
+struct Named<'a> {
+    side: &'static str,
+    block: &'static str,
+    blocked: Option<&'a ResidueSelection>,
+    attract: &'static str,
+    attracted: Option<&'a ResidueSelection>,
+}
+
+/// Those of the receptor and those of the ligand.
+fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
+    [
+        Named {
+            side: "receptor",
+            block: "block-receptor",
+            blocked: options.block_receptor.as_ref(),
+            attract: "attract-receptor",
+            attracted: options.attract_receptor.as_ref(),
+        },
+        Named {
+            side: "ligand",
+            block: "block-ligand",
+            blocked: options.block_ligand.as_ref(),
+            attract: "attract-ligand",
+            attracted: options.attract_ligand.as_ref(),
+        },
+    ]
+}
+
+/// The atoms of the residues that an option names.
+fn selected(
+    molecule: &Molecule,
+    side: &str,
+    option: &'static str,
+    residues: &ResidueSelection,
+) -> Result<Vec<bool>, SearchError> {
+    molecule
+        .selected(residues)
+        .map_err(|unknown| SearchError::Option {
+            name: option,
+            value: unknown.part.clone(),
+            bound: format!("residues that the {side} has, among {}", unknown.present()),
+        })
 }
 
 /// The variable domains of an antibody in words.
@@ -153,8 +207,9 @@ mod tests {
         let none = of(None, None).unwrap();
         assert!(!none.any() && none.reason.is_empty());
         let both = of(Some("A:2-3"), Some("A:4")).unwrap();
-        assert_eq!(both.blocked[0], [false, true, true, false]);
-        assert_eq!(both.blocked[1], [false, false, false, true]);
+        use Mark::{Blocked, Free};
+        assert_eq!(both.marks[0], [Free, Blocked, Blocked, Free]);
+        assert_eq!(both.marks[1], [Free, Free, Free, Blocked]);
         assert_eq!(
             both.reason,
             "residues A:2-3 of the receptor are blocked; residues A:4 of the ligand are blocked"
@@ -163,6 +218,26 @@ mod tests {
         assert_eq!(
             unknown.to_string(),
             "block-ligand is A:9; it must be residues that the ligand has, among A:1-4"
+        );
+    }
+
+    /// What is blocked and attracted is attracted, residue by residue.
+    #[test]
+    fn attracted_residues_are_marked_and_listed() {
+        let molecule = peptide();
+        let options = DockOptions {
+            block_receptor: Some("A:3-4".parse().unwrap()),
+            attract_receptor: Some("A:1,A:4".parse().unwrap()),
+            attract_ligand: Some("A:2".parse().unwrap()),
+            ..DockOptions::default()
+        };
+        let restraints = Restraints::new([&molecule, &molecule], &options).unwrap();
+        use Mark::{Attracted, Blocked, Free};
+        assert_eq!(restraints.marks[0], [Attracted, Free, Blocked, Attracted]);
+        assert_eq!(restraints.marks[1], [Free, Attracted, Free, Free]);
+        assert_eq!(
+            restraints.attracted,
+            [vec![vec![0], vec![3]], vec![vec![1]]]
         );
     }
 }

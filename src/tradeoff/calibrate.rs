@@ -156,6 +156,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         terms,
         decisions: decisions.to_vec(),
         labels: [LabelReport::default(), LabelReport::default()],
+        attracted: Default::default(),
     })
 }
 

@@ -99,6 +99,7 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--effects", "contact"], "atom types"),
         (["--effects", "restraint"], "residues"),
         (["--block-ligand", "A:1"], "residues"),
+        (["--attract-receptor", "A:1"], "residues"),
         (["--core-weight", "2"], "buried"),
         (["--resolution", "0"], "above zero"),
         (["--alpha", "0"], "above zero"),

@@ -31,7 +31,7 @@ pub enum Effect {
     Electrostatics,
     /// Contact potential over atom types.
     Contact,
-    /// Contacts of atoms that should have none.
+    /// Contacts of atoms that should have none, and of atoms that should have some.
     Restraint,
 }
 

@@ -1,42 +1,61 @@
-//! Restraint: what contacts of atoms cost that should have none.
+//! Restraint: what contacts cost of atoms that should have none, and earn of atoms that should.
 //!
-//! A blocked atom pays for every atom of the other side within about 6 Å, whatever both are: k is that of [`super::contact`], 1 up to 5 Å
-//! and falling C-infinity to 0 at 7 Å. Two blocked atoms pay for both. Nothing is paid for a contact of free atoms, so a pose that blocked
-//! atoms have no part in scores as it would without the effect.
+//! A blocked atom pays for every atom of the other side within about 6 Å, an attracted one earns by each, whatever both are: k is that of
+//! [`super::contact`], 1 up to 5 Å and falling C-infinity to 0 at 7 Å. Of two marked atoms each has its own. Nothing comes of a contact of
+//! free atoms, so a pose that marked atoms have no part in scores as it would without the effect.
 
 use super::{Effect, Label, Term, contact};
 use knotdock_structures::Knots;
 
-/// Classes of an atom: free, blocked.
-const FREE: usize = 0;
-const BLOCKED: usize = 1;
+/// What is wanted of an atom's contacts; as a number its class.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mark {
+    /// Nothing.
+    #[default]
+    Free,
+    /// That there be none.
+    Blocked,
+    /// That there be some.
+    Attracted,
+}
 
-/// The term for two sets of knots of which those marked are blocked: minus `weight` for each contact of a blocked knot with one of the other
-/// side. Marks that are missing are of free knots.
-pub fn term(receptor: &Knots, ligand: &Knots, blocked: [&[bool]; 2], weight: f64) -> Term {
-    let labels = |knots: &Knots, blocked: &[bool]| {
+impl Mark {
+    /// All marks, in the order of their classes.
+    const ALL: [Self; 3] = [Self::Free, Self::Blocked, Self::Attracted];
+}
+
+/// What a contact of a marked atom is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// What one of a blocked atom costs: score.
+    pub blocked: f64,
+    /// What one of an attracted atom earns: score.
+    pub attracted: f64,
+}
+
+/// The term for two sets of knots with a mark each; knots without one are free.
+pub fn term(receptor: &Knots, ligand: &Knots, marks: [&[Mark]; 2], weights: Weights) -> Term {
+    let labels = |knots: &Knots, marks: &[Mark]| {
         (0..knots.len())
             .map(|index| Label {
-                class: if blocked.get(index) == Some(&true) {
-                    BLOCKED
-                } else {
-                    FREE
-                },
+                class: marks.get(index).copied().unwrap_or_default() as usize,
                 value: knots.weights.get(index).map_or(0.0, |weight| weight.re),
             })
             .collect()
     };
-    let [own, other] = blocked;
-    let mut matrix = vec![vec![0.0; 2]; 2];
-    matrix[BLOCKED][FREE] = -weight;
-    matrix[FREE][BLOCKED] = -weight;
-    matrix[BLOCKED][BLOCKED] = -2.0 * weight;
+    let worth = |mark: Mark| match mark {
+        Mark::Free => 0.0,
+        Mark::Blocked => -weights.blocked,
+        Mark::Attracted => weights.attracted,
+    };
+    let row = |own: Mark| Mark::ALL.map(|other| worth(own) + worth(other)).to_vec();
+    let [of_receptor, of_ligand] = marks;
     Term {
         effect: Effect::Restraint,
         radial: contact::RADIAL,
-        matrix,
-        receptor: labels(receptor, own),
-        ligand: labels(ligand, other),
+        matrix: Mark::ALL.map(row).to_vec(),
+        receptor: labels(receptor, of_receptor),
+        ligand: labels(ligand, of_ligand),
     }
 }
 
@@ -44,14 +63,22 @@ pub fn term(receptor: &Knots, ligand: &Knots, blocked: [&[bool]; 2], weight: f64
 mod tests {
     use super::*;
 
-    /// Every class pays as the head says, and the table is the same from either side.
+    /// Every class has its worth as the head says, and the table is the same from either side.
     #[test]
-    fn blocked_atoms_pay_and_free_ones_do_not() {
+    fn marked_atoms_pay_and_earn_and_free_ones_do_not() {
         let knots = Knots::new(vec![[0.0; 3], [9.0, 0.0, 0.0]], vec![1.7; 2]).unwrap();
-        let term = term(&knots, &knots, [&[false, true], &[]], 1.5);
+        let weights = Weights {
+            blocked: 1.5,
+            attracted: 4.0,
+        };
+        let marks = [Mark::Attracted, Mark::Blocked];
+        let term = term(&knots, &knots, [&marks, &[]], weights);
         let classes = |labels: &[Label]| labels.iter().map(|l| l.class).collect::<Vec<_>>();
-        assert_eq!(classes(&term.receptor), [FREE, BLOCKED]);
-        assert_eq!(classes(&term.ligand), [FREE, FREE]);
-        assert_eq!(term.matrix, [[0.0, -1.5], [-1.5, -3.0]]);
+        assert_eq!(classes(&term.receptor), [2, 1]);
+        assert_eq!(classes(&term.ligand), [0, 0]);
+        assert_eq!(
+            term.matrix,
+            [[0.0, -1.5, 4.0], [-1.5, -3.0, 2.5], [4.0, 2.5, 8.0]]
+        );
     }
 }

@@ -9,6 +9,7 @@
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
 mod atom_pairs;
+mod attraction;
 mod bodies;
 mod cells;
 mod contacts;
@@ -19,6 +20,7 @@ mod relaxation;
 mod rescorer;
 
 pub use atom_pairs::AtomPairs;
+pub use attraction::Attraction;
 pub use contacts::FineContacts;
 pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use potential::{FinePotential, RANGES};

@@ -1,6 +1,6 @@
 //! All that poses are rescored with.
 
-use super::{AtomPairs, FineContacts, Relaxation, Workspace};
+use super::{AtomPairs, Attraction, FineContacts, Relaxation, Workspace};
 use crate::se3::Pose;
 
 /// Terms that are asked of a pose beside its score.
@@ -11,6 +11,8 @@ pub struct Rescorer {
     pub atom_pairs: Option<AtomPairs>,
     /// The same with atoms that must not overlap, where the pose comes to rest.
     pub relaxation: Option<Relaxation>,
+    /// Residues that should be in contact.
+    pub attraction: Option<Attraction>,
 }
 
 /// What they say of a pose, weighted; higher is better. `None` where the term is left out.
@@ -22,6 +24,8 @@ pub struct Rescored {
     pub atom_pair: Option<f64>,
     /// What the pose is worth once relaxed.
     pub relaxed: Option<f64>,
+    /// The residues that touch of those that should.
+    pub attraction: Option<f64>,
 }
 
 impl Rescorer {
@@ -34,6 +38,7 @@ impl Rescorer {
                 .relaxation
                 .as_ref()
                 .map(|relaxation| relaxation.score(pose, workspace)),
+            attraction: self.attraction.as_ref().map(|terms| terms.score(pose)),
         }
     }
 }
@@ -44,5 +49,6 @@ impl Rescored {
         self.fine_contact.unwrap_or(0.0)
             + self.atom_pair.unwrap_or(0.0)
             + self.relaxed.unwrap_or(0.0)
+            + self.attraction.unwrap_or(0.0)
     }
 }

@@ -1,6 +1,7 @@
 //! Residues as a user picks them: `H:1-50,H:52A,L`.
 
 use super::Molecule;
+use super::groups::residue_runs;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -125,6 +126,15 @@ impl Molecule {
             }
         }
         Ok(chosen)
+    }
+
+    /// The places of the chosen atoms, residue by residue in file order; residues without any are left out.
+    pub fn atoms_by_residue(&self, chosen: &[bool]) -> Vec<Vec<usize>> {
+        let is_chosen = |index: &usize| chosen.get(*index) == Some(&true);
+        let runs = residue_runs(&self.atoms).into_iter();
+        let runs = runs.map(|residue| residue.atoms.into_iter().filter(is_chosen).collect());
+        runs.filter(|atoms: &Vec<usize>| !atoms.is_empty())
+            .collect()
     }
 
     /// Smallest and largest residue number of each chain.

@@ -1,0 +1,55 @@
+"""Residues that a known complex has in contact, as an experiment might tell some of them: what `scripts/benchmark.py --attract` gives a docking to know."""
+
+import random
+from collections import defaultdict
+from itertools import product
+
+CONTACT = 5.0  # A, between heavy atoms, as native contacts are counted
+
+
+def attraction(texts, name, seed, count):
+    """Options of `knotdock dock` that attract `count` residues of each side, drawn from its known interface by name and seed alone.
+
+    `texts` holds the PDB text of receptor_bound, ligand_bound, receptor_unbound and ligand_unbound; residues are matched by number, and those that the
+    unbound file lacks are not drawn. With fewer than `count` in the interface all are taken.
+    """
+    bound = {side: list(atoms(texts[f"{side}_bound"])) for side in ("receptor", "ligand")}
+    source = random.Random(f"{name} {seed} attraction")
+    options = []
+    for side, other in (("receptor", "ligand"), ("ligand", "receptor")):
+        touching = residues_within(bound[side], bound[other])
+        unbound = {number: chain for chain, number, _ in atoms(texts[f"{side}_unbound"])}
+        known = [number for number in sorted(touching, key=order) if number in unbound]
+        drawn = sorted(source.sample(known, min(count, len(known))), key=order)
+        if drawn:
+            options += [f"--attract-{side}", ",".join(f"{unbound[number]}:{number}" for number in drawn)]
+    return options
+
+
+def order(number):
+    """Numbers in order, insertion codes after their number."""
+    return int(number.rstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")), number
+
+
+def atoms(text):
+    """Chain, residue number with insertion code, and position of each heavy atom."""
+    for line in text.splitlines():
+        if line.startswith("ATOM") and not line[12:16].strip().lstrip("0123456789").startswith("H"):
+            position = tuple(float(line[first : first + 8]) for first in (30, 38, 46))
+            yield line[21].strip(), line[22:27].strip(), position
+
+
+def residues_within(own, others):
+    """Numbers of the residues of which an atom lies within CONTACT of one of the others."""
+    cells = defaultdict(list)
+    for _, _, position in others:
+        cells[tuple(int(x // CONTACT) for x in position)].append(position)
+    found = set()
+    for _, number, position in own:
+        if number in found:
+            continue
+        home = tuple(int(x // CONTACT) for x in position)
+        near = (other for step in product((-1, 0, 1), repeat=3) for other in cells.get(tuple(map(sum, zip(home, step))), ()))
+        if any(sum((a - b) ** 2 for a, b in zip(position, other)) <= CONTACT**2 for other in near):
+            found.add(number)
+    return found
