@@ -4,7 +4,8 @@
 //! poses that it keeps, more can be asked. [`FineContacts`] asks which atoms meet at which distance: a potential of three
 //! ranges over all pairs of the types of [`crate::effect::contact`], summed over the atoms themselves; it was learnt from interfaces. [`AtomPairs`] asks
 //! the same of every atom of every residue by itself, in finer steps; so much cannot be learnt from interfaces, and comes from the insides
-//! of proteins. [`Relaxation`] asks it once more, of the pose that the two bodies come to rest in when atoms must not overlap. [`Rescorer`] holds all three.
+//! of proteins. [`Relaxation`] asks it once more, of the pose that the two bodies come to rest in when atoms must not overlap. [`Attraction`] counts
+//! the residues that touch of those that are thought to. [`Rescorer`] holds all of them.
 //!
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
