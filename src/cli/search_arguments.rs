@@ -127,7 +127,7 @@ pub struct KernelArguments {
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
     block_ligand: Option<ResidueSelection>,
     /// What a pose earns in which all attracted residues touch, else the share of them that does: score. In the search each contact of theirs earns a
-    /// thousandth.
+    /// 250th, divided by their number.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().attraction_weight, help_heading = SCORE)]
     attraction_weight: f64,
     /// Residues of the receptor thought to be in contact, likewise: poses that touch them rank higher.

@@ -114,9 +114,9 @@ pub struct Scene {
     pub attracted: [Vec<Vec<usize>>; 2],
 }
 
-/// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch: a residue that
-/// touches has some 70.
-const PULL: f64 = 1e-3;
+/// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch, times their number: a
+/// residue that touches has some 70, so that the contacts of all earn about a quarter of that however many are named.
+const PULL: f64 = 4e-3;
 
 /// Share of a molecule's heavy atoms that must have contact types for the contact potential to speak for it.
 const TYPED_SHARE: f64 = 0.5;
@@ -225,9 +225,10 @@ impl Scene {
         }
         if on(Effect::Restraint) {
             let [own, other] = &restraints.marks;
+            let residues: usize = restraints.attracted.iter().map(Vec::len).sum();
             let weights = restraint::Weights {
                 blocked: options.restraint_weight,
-                attracted: PULL * options.attraction_weight,
+                attracted: PULL * options.attraction_weight / residues.max(1) as f64,
             };
             terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
