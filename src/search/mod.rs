@@ -4,6 +4,7 @@ pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
 mod costs;
+pub mod effect_choice;
 pub mod effects;
 pub mod meshes;
 pub mod options;
@@ -17,7 +18,8 @@ pub mod rotations;
 pub mod run;
 mod scan;
 
-pub use effects::{Decision, EffectChoice, LengthUnit, Scene};
+pub use effect_choice::EffectChoice;
+pub use effects::{Decision, LengthUnit, Scene};
 pub use knotdock_scoring::effect::Effect;
 pub use options::{DockOptions, SearchError};
 pub use outcome::{DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};

@@ -1,6 +1,6 @@
 //! What a docking run may be asked, and why it may refuse.
 
-use super::effects::EffectChoice;
+use super::effect_choice::EffectChoice;
 use super::meshes::SampleWeights;
 use super::restraints::AntibodySurface;
 use knotdock_scoring::effect::Effect;
