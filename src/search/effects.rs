@@ -330,7 +330,42 @@ fn lacking(
 mod tests {
     use super::*;
     use knotdock_scoring::rescoring;
-    use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
+    use knotdock_structures::molecule::{Atom, CONTACT_TYPES, Format, atom_kinds};
+
+    /// However many residues are named, all of their contacts together draw as much.
+    #[test]
+    fn attracted_residues_share_their_pull() {
+        let atom = |residue_number: i64| Atom {
+            name: "CA".to_owned(),
+            residue_name: "GLY".to_owned(),
+            chain: "A".to_owned(),
+            residue_number,
+            insertion_code: None,
+            alternate_location: None,
+            element: "C".to_owned(),
+            position: [4.0 * residue_number as f64, 0.0, 0.0],
+            occupancy: 1.0,
+            b_factor: 0.0,
+            hetero: false,
+            radius: 1.9,
+            line: 1,
+        };
+        let molecule = Molecule::new((1..=4).map(atom).collect(), Format::Pdb);
+        let pull = |residues: &str| {
+            let options = DockOptions {
+                attraction_weight: 1000.0,
+                attract_ligand: Some(residues.parse().unwrap()),
+                ..DockOptions::default()
+            };
+            let scene = Scene::new(&molecule, &molecule, &options).unwrap();
+            let is_restraint = |term: &&Term| term.effect == Effect::Restraint;
+            let term = scene.terms.iter().find(is_restraint).unwrap();
+            let (free, attracted) = (term.receptor[0].class, term.ligand[0].class);
+            term.matrix[free][attracted]
+        };
+        assert_eq!(pull("A:1"), 4.0);
+        assert_eq!(pull("A:1,A:3-4,A:1"), 4.0 / 3.0);
+    }
 
     /// Two crates hold the names, since neither may know the other's files.
     #[test]

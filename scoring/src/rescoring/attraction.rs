@@ -3,19 +3,29 @@
 //! The search draws poses to such residues by all contacts of their atoms ([`crate::effect::restraint`]), since a correlation can count
 //! nothing else; buried deep, one residue would earn what several should. So what it keeps is asked how many touch at all.
 
+use super::cells::{Atom, Cells};
+use crate::exact::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
+use nalgebra::Vector3;
 
 /// Distance in Å within which two atoms of residues are in contact, as the field counts native contacts.
 const TOUCHING: f64 = 5.0;
 
 /// The residues of both sides that should be in contact.
 pub struct Attraction {
-    /// Of receptor and ligand, the atoms of each such residue (Å).
-    residues: [Vec<Vec<[f64; 3]>>; 2],
-    /// All atoms of receptor and ligand.
-    atoms: [Vec<[f64; 3]>; 2],
+    receptor: Side,
+    ligand: Side,
     weight: f64,
+}
+
+/// One side.
+struct Side {
+    /// The atoms of each residue that should be in contact (Å).
+    residues: Vec<Vec<[f64; 3]>>,
+    /// All atoms, about the middle.
+    atoms: Cells,
+    middle: Vector3<f64>,
 }
 
 impl Attraction {
@@ -27,43 +37,51 @@ impl Attraction {
         weight: f64,
     ) -> Self {
         let [of_receptor, of_ligand] = residues;
-        let atoms = |knots: &Knots, residues: &[Vec<usize>]| {
-            let atoms = |residue: &Vec<usize>| {
-                let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
-                centers.copied().collect()
-            };
-            residues.iter().map(atoms).collect()
-        };
         Self {
-            residues: [atoms(receptor, of_receptor), atoms(ligand, of_ligand)],
-            atoms: [receptor.centers.clone(), ligand.centers.clone()],
+            receptor: Side::new(receptor, of_receptor),
+            ligand: Side::new(ligand, of_ligand),
             weight,
         }
     }
 
     /// The weight times the share of the residues that touch the other side in a pose.
     pub fn score(&self, pose: &Pose) -> f64 {
-        let [of_receptor, of_ligand] = &self.residues;
-        let [receptor, ligand] = &self.atoms;
-        let back = pose.inverse();
-        let own = touching(of_receptor, &back, ligand);
-        let other = touching(of_ligand, pose, receptor);
-        let all = (of_receptor.len() + of_ligand.len()).max(1);
-        self.weight * (own + other) as f64 / all as f64
+        let own = self.receptor.touching(&pose.inverse(), &self.ligand);
+        let other = self.ligand.touching(pose, &self.receptor);
+        let all = self.receptor.residues.len() + self.ligand.residues.len();
+        self.weight * (own + other) as f64 / all.max(1) as f64
     }
 }
 
-/// Residues, carried by `pose`, that have an atom within [`TOUCHING`] of one of the others.
-fn touching(residues: &[Vec<[f64; 3]>], pose: &Pose, others: &[[f64; 3]]) -> usize {
-    let touches = |atom: &[f64; 3]| {
-        let x = pose.apply(*atom);
-        others.iter().any(|y| {
-            let squares = (0..3).map(|axis| (x[axis] - y[axis]).powi(2));
-            squares.sum::<f64>() <= TOUCHING * TOUCHING
-        })
-    };
-    let residues = residues.iter();
-    residues.filter(|atoms| atoms.iter().any(touches)).count()
+impl Side {
+    fn new(knots: &Knots, residues: &[Vec<usize>]) -> Self {
+        let middle = center(knots);
+        let atom = |x: &[f64; 3]| Atom {
+            position: Vector3::from(*x) - middle,
+            kind: 0,
+        };
+        let centers = |residue: &Vec<usize>| {
+            let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
+            centers.copied().collect()
+        };
+        Self {
+            residues: residues.iter().map(centers).collect(),
+            atoms: Cells::new(knots.centers.iter().map(atom).collect()),
+            middle,
+        }
+    }
+
+    /// Residues, carried by `pose` into the other side's frame, that have an atom within [`TOUCHING`] of one of its.
+    fn touching(&self, pose: &Pose, other: &Self) -> usize {
+        let touches = |atom: &[f64; 3]| {
+            let x = Vector3::from(pose.apply(*atom)) - other.middle;
+            let mut near = false;
+            other.atoms.near(x, TOUCHING, |_, _| near = true);
+            near
+        };
+        let residues = self.residues.iter();
+        residues.filter(|atoms| atoms.iter().any(touches)).count()
+    }
 }
 
 #[cfg(test)]
