@@ -3,9 +3,10 @@
 use super::effect_choice::EffectChoice;
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
+use super::rescoring::Asked;
 use super::restraints::{AntibodySurface, Restraints};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
-use knotdock_scoring::rescoring::{AtomPairs, Attraction, FineContacts, Relaxation, Rescorer};
+use knotdock_scoring::rescoring::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
@@ -240,48 +241,10 @@ impl Scene {
 
     /// What poses are rescored with; `None` where there is nothing to ask.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
-        rescorer(
-            &self.decisions,
-            [&self.receptor, &self.ligand],
-            &self.attracted,
-            options,
-        )
+        let asked = Asked::of(&self.decisions, &self.attracted, options);
+        let bodies = [&self.receptor, &self.ligand];
+        asked.rescorer(bodies, &self.attracted, options)
     }
-}
-
-/// What poses of two labelled bodies are rescored with: potentials where the contact effect is on, and attracted residues where there are some;
-/// `None` where there is nothing to ask or all weights are 0.
-pub(super) fn rescorer(
-    decisions: &[Decision],
-    [receptor, ligand]: [&Knots; 2],
-    attracted: &[Vec<Vec<usize>>; 2],
-    options: &DockOptions,
-) -> Option<Rescorer> {
-    let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
-    let weight = |weight: f64| {
-        let typed = decisions.iter().any(contact);
-        if typed { weight } else { 0.0 }
-    };
-    let (fine, pairs) = (
-        weight(options.fine_contact_weight),
-        weight(options.atom_pair_weight),
-    );
-    let relaxed = weight(options.relaxed_weight);
-    let attracts = attracted.iter().any(|side| !side.is_empty()) && options.attraction_weight > 0.0;
-    let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
-    let asked = fine > 0.0 || pairs > 0.0 || relaxed > 0.0 || attracts;
-    asked.then(|| Rescorer {
-        fine_contacts: (fine > 0.0).then(|| {
-            let potential = options.fine_contact_potential.clone().unwrap_or_default();
-            FineContacts::new(receptor, ligand, &potential, fine)
-        }),
-        atom_pairs: (pairs > 0.0)
-            .then(|| AtomPairs::new(receptor, ligand, &pair_potential(), pairs)),
-        relaxation: (relaxed > 0.0)
-            .then(|| Relaxation::new(receptor, ligand, &pair_potential(), relaxed)),
-        attraction: attracts
-            .then(|| Attraction::new(receptor, ligand, attracted, options.attraction_weight)),
-    })
 }
 
 /// Points a sphere at which atoms are asked whether water reaches them.

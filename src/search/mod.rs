@@ -13,6 +13,7 @@ pub mod peaks;
 pub mod plan;
 mod ranking;
 pub mod refine;
+mod rescoring;
 pub mod restraints;
 pub mod rotations;
 pub mod run;

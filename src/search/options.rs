@@ -228,11 +228,6 @@ impl DockOptions {
         named.into_iter().any(Option::is_some)
     }
 
-    /// Whether the weights ask for rescoring, which the contact effect's types then make possible.
-    pub(crate) fn asks_rescoring(&self) -> bool {
-        self.fine_contact_weight > 0.0 || self.atom_pair_weight > 0.0 || self.relaxed_weight > 0.0
-    }
-
     /// Refuses weights and a pH that mean nothing.
     pub(super) fn check_effects(&self) -> Result<(), SearchError> {
         let numbers = [

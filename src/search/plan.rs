@@ -1,8 +1,9 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::effects::{Decision, LengthUnit, Scene, rescorer};
+use super::effects::{Decision, LengthUnit, Scene};
 use super::options::{DockOptions, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
+use super::rescoring::Asked;
 use super::rotations::{
     BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
 };
@@ -271,7 +272,13 @@ impl DockPlan {
     /// What poses are rescored with; `None` where there is nothing to ask.
     pub(super) fn rescorer(&self) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
-        rescorer(&self.decisions, bodies, &self.attracted, &self.options)
+        self.asked()
+            .rescorer(bodies, &self.attracted, &self.options)
+    }
+
+    /// What poses are asked beside their score.
+    pub(crate) fn asked(&self) -> Asked {
+        Asked::of(&self.decisions, &self.attracted, &self.options)
     }
 
     /// Whether an effect is on.

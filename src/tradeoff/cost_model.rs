@@ -191,6 +191,7 @@ impl Workload {
         }
         let on = |effect: Effect| f64::from(u8::from(plan.is_on(effect)));
         let poses = options.poses as f64;
+        let asked = plan.asked();
         Self {
             grid: points * points.log2(),
             rank: expected_rank(plan),
@@ -211,12 +212,12 @@ impl Workload {
             } else {
                 DOUBTFUL * options.tolerance
             },
-            rescored: if !plan.is_on(Effect::Contact) || !options.asks_rescoring() {
-                0.0
-            } else if options.relaxed_weight > 0.0 {
+            rescored: if asked.relaxes() {
                 poses
-            } else {
+            } else if asked.any() {
                 UNRELAXED * poses
+            } else {
+                0.0
             },
             refined: (plan.refined() as f64).min(poses),
         }

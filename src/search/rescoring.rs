@@ -1,0 +1,70 @@
+//! What poses are rescored by: the terms that the scene's effects make possible and whose weights ask for them.
+
+use super::effects::Decision;
+use super::options::DockOptions;
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::rescoring::{AtomPairs, Attraction, FineContacts, Relaxation, Rescorer};
+use knotdock_structures::Knots;
+
+/// Weights of the terms that poses are rescored by; 0 for those that are not asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Asked {
+    fine_contact: f64,
+    atom_pair: f64,
+    relaxed: f64,
+    attraction: f64,
+}
+
+impl Asked {
+    /// Potentials where the contact effect is on, and attracted residues where there are some.
+    pub fn of(
+        decisions: &[Decision],
+        attracted: &[Vec<Vec<usize>>; 2],
+        options: &DockOptions,
+    ) -> Self {
+        let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
+        let typed = decisions.iter().any(contact);
+        let attracts = attracted.iter().any(|side| !side.is_empty());
+        let when = |asked: bool, weight: f64| if asked { weight } else { 0.0 };
+        Self {
+            fine_contact: when(typed, options.fine_contact_weight),
+            atom_pair: when(typed, options.atom_pair_weight),
+            relaxed: when(typed, options.relaxed_weight),
+            attraction: when(attracts, options.attraction_weight),
+        }
+    }
+
+    /// Whether poses give way, which is most of what rescoring costs.
+    pub fn relaxes(&self) -> bool {
+        self.relaxed > 0.0
+    }
+
+    /// Whether anything is asked.
+    pub fn any(&self) -> bool {
+        let stands = self.fine_contact > 0.0 || self.atom_pair > 0.0 || self.attraction > 0.0;
+        stands || self.relaxes()
+    }
+
+    /// The terms of two labelled bodies; `None` where nothing is asked.
+    pub fn rescorer(
+        &self,
+        [receptor, ligand]: [&Knots; 2],
+        attracted: &[Vec<Vec<usize>>; 2],
+        options: &DockOptions,
+    ) -> Option<Rescorer> {
+        let asked = |weight: f64| (weight > 0.0).then_some(weight);
+        let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
+        self.any().then(|| Rescorer {
+            fine_contacts: asked(self.fine_contact).map(|weight| {
+                let potential = options.fine_contact_potential.clone().unwrap_or_default();
+                FineContacts::new(receptor, ligand, &potential, weight)
+            }),
+            atom_pairs: asked(self.atom_pair)
+                .map(|weight| AtomPairs::new(receptor, ligand, &pair_potential(), weight)),
+            relaxation: asked(self.relaxed)
+                .map(|weight| Relaxation::new(receptor, ligand, &pair_potential(), weight)),
+            attraction: asked(self.attraction)
+                .map(|weight| Attraction::new(receptor, ligand, attracted, weight)),
+        })
+    }
+}
