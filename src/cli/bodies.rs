@@ -200,12 +200,18 @@ impl Bodies {
         Ok([receptor?, ligand?])
     }
 
+    /// The files of receptor and ligand.
+    pub fn records(&self) -> [&InputRecord; 2] {
+        match self {
+            Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+        }
+    }
+
     /// Names for directories.
     pub fn labels(&self) -> [String; 2] {
-        match self {
-            Self::Molecules(inputs) => inputs.each_ref().map(|input| label(&input.record)),
-            Self::Meshes(inputs) => inputs.each_ref().map(|input| label(&input.record)),
-        }
+        self.records()
+            .map(|record| label(&record.path, record.chains.as_deref()))
     }
 }
 

@@ -40,6 +40,11 @@ impl Console {
         }
     }
 
+    /// Writes on standard error what went wrong and does not end the command.
+    pub fn error(&self, text: impl ToString) {
+        write_line(&mut io::stderr(), &text.to_string());
+    }
+
     /// Writes the command's JSON object, if that was asked for.
     pub fn result(&self, object: &serde_json::Value) {
         if self.json {

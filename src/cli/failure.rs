@@ -70,6 +70,20 @@ impl Failure {
         }
     }
 
+    /// What went wrong and where, in a line for a table.
+    pub fn line_of_table(&self) -> String {
+        let mut line = self.message.clone();
+        let file = self.file.as_ref().map(|file| file.display().to_string());
+        if let Some(file) = file.filter(|file| !line.contains(file.as_str())) {
+            line += &format!(" (in {file}");
+            if let Some(number) = self.line {
+                line += &format!(", line {number}");
+            }
+            line.push(')');
+        }
+        line
+    }
+
     /// The lines for a person.
     pub fn text(&self) -> String {
         let mut text = format!("error: {}", self.message);

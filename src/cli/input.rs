@@ -64,11 +64,11 @@ impl Input {
     }
 }
 
-/// A name for directories: that of a recorded file without its endings, and the chains that were picked.
-pub fn label(record: &InputRecord) -> String {
-    let name = record.path.file_name().unwrap_or_default();
+/// A name for directories: that of a file without its endings, and the chains that are picked.
+pub fn label(path: &Path, chains: Option<&[String]>) -> String {
+    let name = path.file_name().unwrap_or_default();
     let mut label = stem(&name.to_string_lossy()).to_owned();
-    for chain in record.chains.iter().flatten() {
+    for chain in chains.into_iter().flatten() {
         label.push('_');
         label.push_str(chain);
     }

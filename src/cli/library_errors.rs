@@ -5,6 +5,7 @@ use std::path::Path;
 
 use knotdock::output::balls::PseudoAtomError;
 use knotdock::output::input_record::InputRecordError;
+use knotdock::output::pair_table::PairTableError;
 use knotdock::output::poses_reader::PoseTableError;
 use knotdock::output::recorded_run::RecordedRunError;
 use knotdock::output::staging::StagingError;
@@ -101,5 +102,14 @@ impl From<PseudoAtomError> for Failure {
             }
             PseudoAtomError::File(error) => error.into(),
         }
+    }
+}
+
+impl From<PairTableError> for Failure {
+    fn from(error: PairTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy("give a CSV file with columns `receptor` and `ligand`, perhaps `name` and options of `knotdock dock`, and a row for each pair")
     }
 }

@@ -2,12 +2,15 @@
 //! [`knotdock::output`] and the [`console`].
 
 mod arguments;
+mod batch;
+mod batch_pairs;
 mod bodies;
 mod calibrate;
 mod complex;
 mod console;
 mod dock;
 mod dock_report;
+mod docking;
 mod evaluate;
 mod failure;
 mod input;
@@ -53,6 +56,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Dock(Box<dock::Dock>),
+    Batch(batch::Batch),
     Complex(complex::Complex),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
@@ -80,6 +84,10 @@ pub fn main() -> ExitCode {
     };
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
+        Command::Batch(command) => match command.run(console) {
+            Ok(code) => return ExitCode::from(code),
+            Err(failure) => Err(failure),
+        },
         Command::Complex(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
@@ -108,10 +116,7 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
         .take_while(|argument| *argument != "--")
         .any(|argument| argument == "--json");
     if json && !asked {
-        // clap's text is the message with usage lines; its first paragraph is the message.
-        let text = error.render().to_string();
-        let message = text.split("\n\n").next().unwrap_or(&text);
-        let failure = Failure::input(message.trim_start_matches("error: ").trim())
+        let failure = Failure::input(message(error))
             .remedy("see `knotdock --help` and `knotdock COMMAND --help`");
         let console = Console { json, quiet: false };
         console.fail(&failure);
@@ -124,4 +129,12 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     } else {
         ExitCode::from(2)
     }
+}
+
+/// What is wrong with a command line, without the lines on usage.
+fn message(error: &clap::Error) -> String {
+    // clap's text is the message with usage lines; its first paragraph is the message.
+    let text = error.render().to_string();
+    let message = text.split("\n\n").next().unwrap_or(&text);
+    message.trim_start_matches("error: ").trim().to_owned()
 }

@@ -1,6 +1,6 @@
 //! What a run leaves behind: `poses.csv`, `top/rank_0001.pdb` (of meshes `.obj`) ..., `run.json`, and the words on the terminal; and what
 //! `knotdock sample` does: `knots.csv`, and balls as a mesh, as pseudo-atoms or in a picture; and what `knotdock tradeoff` does:
-//! `tradeoff.csv`, `tradeoff.json` and a picture.
+//! `tradeoff.csv`, `tradeoff.json` and a picture; and the tables that `knotdock batch` reads and writes.
 //!
 //! # Conventions
 //!
@@ -14,10 +14,12 @@
 pub mod assemblies;
 pub mod atom_table;
 pub mod balls;
+pub mod batch_results;
 pub mod complexes;
 pub mod cost_model_file;
 pub mod input_record;
 pub mod manifest;
+pub mod pair_table;
 pub mod poses;
 pub mod poses_reader;
 pub mod program;

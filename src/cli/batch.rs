@@ -1,0 +1,193 @@
+//! `knotdock batch`: many pairs in one call, and one table of what came of them.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use knotdock::output::batch_results::{PairResult, RESULTS, RunSummary, is_ours, write_results};
+use serde_json::{Value, json};
+
+use super::batch_pairs::pairs;
+use super::console::Console;
+use super::dock::Dock;
+use super::failure::Failure;
+
+/// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
+///
+/// A pair whose directory holds its run already, of the same inputs and options, is not docked again, so that a batch which was stopped goes on where it
+/// was. A pair that fails is told of and the others go on. DIR/results.csv has a row a pair and is written anew after each.
+#[derive(Args, Debug)]
+pub struct Batch {
+    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further columns named as options of
+    /// `knotdock dock` that take a value (native, attract_receptor, rotations ...). Files are looked for from the table's folder.
+    #[arg(value_name = "PAIRS.CSV")]
+    pairs: PathBuf,
+    /// Directory of the batch, in which each pair's run has a directory of its name [default: knotdock_PAIRS].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Options of `knotdock dock` for all pairs, after `--`; with --force runs of other inputs or options are replaced.
+    #[arg(last = true, value_name = "DOCK OPTIONS")]
+    options: Vec<String>,
+}
+
+impl Batch {
+    /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
+    pub fn run(self, console: Console) -> Result<u8, Failure> {
+        let directory = self.output.clone().unwrap_or_else(|| {
+            let stem = self.pairs.file_stem().unwrap_or_default();
+            PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
+        });
+        let pairs = pairs(&self.pairs, &directory, &self.options)?;
+        let results = directory.join(RESULTS);
+        if !is_ours(&results) {
+            return Err(Failure::input("this is no table of a batch's results")
+                .at(&results)
+                .remedy("choose another directory with -o"));
+        }
+        std::fs::create_dir_all(&directory).map_err(|error| {
+            Failure::input(format!("cannot write to {}: {error}", directory.display()))
+                .at(&directory)
+                .remedy("choose with -o a place that you may write to")
+        })?;
+        let count = pairs.len();
+        console.say(format!(
+            "{count} {} of {} go to {}",
+            if count == 1 { "pair" } else { "pairs" },
+            self.pairs.display(),
+            directory.display()
+        ));
+        let mut told: Vec<Value> = Vec::new();
+        let (mut waiting, mut table): (Vec<Dock>, Vec<PairResult>) = (Vec::new(), Vec::new());
+        for pair in pairs {
+            waiting.push(pair.dock);
+            table.push(PairResult {
+                name: pair.name,
+                receptor: pair.row.receptor,
+                ligand: pair.row.ligand,
+                outcome: None,
+            });
+        }
+        let mut code = 0;
+        for (index, dock) in waiting.into_iter().enumerate() {
+            let clock = Instant::now();
+            let name = table[index].name.clone();
+            let run = directory.join(&name);
+            let head = format!("[{}/{count}] {name}", index + 1);
+            let mut entry = json!({
+                "name": name,
+                "directory": run.display().to_string(),
+                "status": "failed",
+                "error": null,
+                "best": null,
+            });
+            table[index].outcome = Some(match dock_pair(dock, self.force()) {
+                Ok(anew) => {
+                    let summary = RunSummary::of(&run);
+                    console.say(format!("{head}: {}", words(&summary, anew, clock)));
+                    entry["status"] = if anew { "docked" } else { "kept" }.into();
+                    entry["best"] = best(&summary);
+                    Ok(summary)
+                }
+                Err(failure) => {
+                    console.error(format!("{head} failed\n{}", failure.text()));
+                    code = match (code, failure.exit_code()) {
+                        (0 | 2, 2) => 2,
+                        _ => 1,
+                    };
+                    entry["error"] = failure.json()["error"].clone();
+                    Err(failure.line_of_table())
+                }
+            });
+            told.push(entry);
+            write_results(&results, &table)?;
+        }
+        let done = table
+            .iter()
+            .filter(|pair| matches!(pair.outcome, Some(Ok(_))));
+        console.say(format!(
+            "{} of {count} done, results in {}",
+            done.count(),
+            results.display()
+        ));
+        console.result(&json!({
+            "directory": directory.display().to_string(),
+            "results": results.display().to_string(),
+            "pairs": told,
+        }));
+        Ok(code)
+    }
+
+    /// Whether runs may be replaced that are of other inputs or options.
+    fn force(&self) -> bool {
+        self.options.iter().any(|option| option == "--force")
+    }
+}
+
+/// Docks a pair into its directory; whether it had to be done.
+fn dock_pair(dock: Dock, force: bool) -> Result<bool, Failure> {
+    // A pair's own words would hide the batch's; its run.json has them.
+    let silent = Console {
+        json: false,
+        quiet: true,
+    };
+    let docking = dock.prepare(silent)?;
+    if docking.is_done() {
+        return Ok(false);
+    }
+    if !force && docking.directory().join("run.json").exists() {
+        return Err(Failure::input(
+            "the directory holds a run of other inputs or options, or by another version",
+        )
+        .at(docking.directory())
+        .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
+    }
+    docking.run(force, silent)?;
+    Ok(true)
+}
+
+/// What came of a pair, in a line.
+fn words(summary: &RunSummary, anew: bool, clock: Instant) -> String {
+    let [_, clusters] = summary.counts;
+    let mut words = format!(
+        "{} clusters, the best of rank score {}",
+        clusters.unwrap_or(0),
+        rounded(summary.best("rank_score"), 1)
+    );
+    for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
+        let value = summary.best(column);
+        if !value.is_empty() {
+            words += &format!(", {name} {}", rounded(value, digits));
+        }
+    }
+    if let Some(rank) = summary.first_acceptable {
+        words += &format!("; the first acceptable one at rank {rank}");
+    }
+    if anew {
+        words + &format!("; {:.1} s", clock.elapsed().as_secs_f64())
+    } else {
+        words + "; done before"
+    }
+}
+
+/// A field with so many decimals, if it is a number.
+fn rounded(field: &str, digits: usize) -> String {
+    let number = field.parse::<f64>();
+    number.map_or_else(|_| field.to_owned(), |number| format!("{number:.digits$}"))
+}
+
+/// The best row for the JSON object.
+fn best(summary: &RunSummary) -> Value {
+    let number = |name: &str| summary.best(name).parse::<f64>().ok();
+    json!({
+        "score": number("score"),
+        "rank_score": number("rank_score"),
+        "z_score": number("z_score"),
+        "cluster_size": number("cluster_size"),
+        "irmsd": number("irmsd"),
+        "lrmsd": number("lrmsd"),
+        "fnat": number("fnat"),
+        "dockq": number("dockq"),
+        "capri": Some(summary.best("capri")).filter(|class| !class.is_empty()),
+        "first_acceptable_rank": summary.first_acceptable,
+    })
+}

@@ -1,0 +1,128 @@
+//! The pairs of a batch: rows of a table as command lines of `knotdock dock`.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use clap::Parser;
+use knotdock::output::batch_results::RESULTS;
+use knotdock::output::pair_table::{PairRow, read_pairs};
+use knotdock_structures::molecule::InputSpec;
+
+use super::dock::Dock;
+use super::failure::Failure;
+use super::input::label;
+use super::message;
+
+/// Columns that name files.
+const FILES: [&str; 6] = [
+    "native",
+    "native_receptor",
+    "native_ligand",
+    "contact_potential",
+    "fine_contact_potential",
+    "atom_pair_potential",
+];
+
+/// Options that are the batch's to set.
+const OWN: [&str; 3] = ["output", "from", "force"];
+
+/// One pair's command line.
+#[derive(Parser, Debug)]
+#[command(name = "knotdock dock")]
+struct PairCommand {
+    #[command(flatten)]
+    dock: Dock,
+}
+
+/// A pair that is to be docked.
+pub struct Pair {
+    /// Its name, and that of the directory of its run.
+    pub name: String,
+    /// Its row of the table.
+    pub row: PairRow,
+    /// Its command line.
+    pub dock: Dock,
+}
+
+/// The pairs of the table with their command lines, each checked as far as words go.
+pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<Pair>, Failure> {
+    let folder = table.parent().unwrap_or(Path::new(""));
+    let mut names: HashMap<String, u64> = HashMap::new();
+    let rows = read_pairs(table)?;
+    let pairs = rows.into_iter().map(|row| {
+            let wrong = |message: String, remedy: &str| {
+                Failure::input(message)
+                    .at(table)
+                    .on_line(Some(row.line))
+                    .remedy(remedy)
+            };
+            let name = match row.name.as_str() {
+                "" => format!("{}_{}", part(&row.receptor)?, part(&row.ligand)?),
+                name => name.to_owned(),
+            };
+            if !is_name(&name) {
+                return Err(wrong(
+                    format!("'{name}' cannot be the name of a directory in the batch's"),
+                    "name the pair with letters, digits, `.`, `_` and `-`, beginning with none of the last three",
+                ));
+            }
+            // Letters of either case are one where file systems think so.
+            if let Some(line) = names.insert(name.to_lowercase(), row.line) {
+                return Err(wrong(
+                    format!("the pair of line {line} is named {name}, too"),
+                    "give each pair a name of its own in a column `name`",
+                ));
+            }
+            let dock = command(&row, &directory.join(&name), folder, options);
+            let dock = dock.map_err(|message| {
+                wrong(
+                    message,
+                    "name columns as the options that `knotdock dock --help` lists, and give each option once: in a column or after --",
+                )
+            })?;
+            Ok(Pair { name, row, dock })
+        });
+    pairs.collect()
+}
+
+/// The command line of a pair.
+fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Result<Dock, String> {
+    let mut words = vec!["knotdock dock".to_owned()];
+    for (column, value) in &row.options {
+        if OWN.contains(&column.as_str()) {
+            return Err(format!("a column cannot be `{column}`"));
+        }
+        let value = if FILES.contains(&column.as_str()) {
+            at(folder, value)
+        } else {
+            value.clone()
+        };
+        words.push(format!("--{}={value}", column.replace('_', "-")));
+    }
+    words.push(format!("--output={}", run.display()));
+    words.extend(options.iter().cloned());
+    words.push("--".to_owned());
+    words.extend([&row.receptor, &row.ligand].map(|file| at(folder, file)));
+    let command = PairCommand::try_parse_from(words).map_err(|error| message(&error))?;
+    Ok(command.dock)
+}
+
+/// A file of the table as seen from here, its chains behind it.
+fn at(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().into_owned()
+}
+
+/// A file's part of a pair's name.
+fn part(file: &str) -> Result<String, Failure> {
+    let spec = InputSpec::parse(file)?;
+    Ok(label(&spec.path, spec.chains.as_deref()))
+}
+
+/// Whether a pair may be called so.
+fn is_name(name: &str) -> bool {
+    name.starts_with(char::is_alphanumeric)
+        && name
+            .chars()
+            .all(|c| c.is_alphanumeric() || "._-".contains(c))
+        && !name.eq_ignore_ascii_case(RESULTS)
+}

@@ -1,0 +1,290 @@
+//! A docking run: prepared, told, carried out and written.
+
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use knotdock::evaluate::Evaluator;
+use knotdock::output::input_record::{InputRecord, NativeRecord};
+use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
+use knotdock::output::poses::PoseTable;
+use knotdock::output::program::{COMMIT, VERSION};
+use knotdock::output::quality;
+use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::report::{BEST, best_clusters, firsts};
+use knotdock::output::run_options::RunOptions;
+use knotdock::output::staging::Staging;
+use knotdock::search::options::Precision;
+use knotdock::search::{self, DockOptions, DockOutcome};
+use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
+use knotdock::tradeoff::pair::{Prepared, Preparer};
+use serde_json::{Value, json};
+
+use super::calibrate::cost_model;
+use super::console::Console;
+use super::dock_report::{assumed, chance_told, told};
+use super::failure::Failure;
+use super::machine_arguments::machine;
+use super::memory;
+use super::native::{match_text, measure};
+use super::request::Request;
+
+/// A run that is ready to go.
+pub struct Docking {
+    request: Request,
+    directory: PathBuf,
+    evaluator: Option<Evaluator>,
+    prepared: Prepared,
+    chosen: Option<Chosen>,
+    clock: Clock,
+}
+
+impl Docking {
+    /// Plans what was asked for.
+    pub fn prepare(
+        mut request: Request,
+        wanted: Wanted,
+        directory: PathBuf,
+        clock: Clock,
+        console: Console,
+    ) -> Result<Self, Failure> {
+        request.bodies.describe(console);
+        let evaluator = request.evaluator()?;
+        if let Some(evaluator) = &evaluator {
+            console.say(match_text(evaluator));
+        }
+        let (prepared, chosen) = if wanted == Wanted::default() {
+            (request.plan(console)?, None)
+        } else {
+            let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
+            (prepared, Some(chosen))
+        };
+        let plan = &prepared.plan;
+        console.say(format!("\n{plan}"));
+        for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
+            if count > 0 {
+                console.warn(format!(
+                    "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
+                    request.options.dock.resolution, plan.unit
+                ));
+            }
+        }
+        for (side, labels) in ["receptor", "ligand"].into_iter().zip(&plan.labels) {
+            if let Some(text) = assumed(side, labels, plan) {
+                console.say(text);
+            }
+        }
+        Ok(Self {
+            request,
+            directory,
+            evaluator,
+            prepared,
+            chosen,
+            clock,
+        })
+    }
+
+    /// The directory of the run.
+    pub fn directory(&self) -> &Path {
+        &self.directory
+    }
+
+    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the same options.
+    pub fn is_done(&self) -> bool {
+        let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
+            return false;
+        };
+        let default = DockOptions::default();
+        let asked = RunOptions {
+            dock: DockOptions {
+                threads: default.threads,
+                memory: default.memory,
+                ..self.request.options.dock.clone()
+            },
+            ..self.request.options.clone()
+        };
+        let inputs = self.request.bodies.records();
+        let native = self.request.native.as_ref().map(|native| native.record());
+        (run.version.as_str(), run.commit.as_str()) == (VERSION, COMMIT)
+            && run.options == asked
+            && same(&run.receptor, inputs[0])
+            && same(&run.ligand, inputs[1])
+            && match (&run.native, &native) {
+                (None, None) => true,
+                (Some(NativeRecord::Complex(one)), Some(NativeRecord::Complex(other))) => {
+                    same(one, other)
+                }
+                (
+                    Some(NativeRecord::Partners { receptor, ligand }),
+                    Some(NativeRecord::Partners {
+                        receptor: other_receptor,
+                        ligand: other_ligand,
+                    }),
+                ) => same(receptor, other_receptor) && same(ligand, other_ligand),
+                _ => false,
+            }
+    }
+
+    /// Docks, and writes the run; its JSON object.
+    pub fn run(self, force: bool, console: Console) -> Result<Value, Failure> {
+        let Self {
+            request,
+            directory,
+            evaluator,
+            prepared,
+            chosen,
+            clock,
+        } = self;
+        let Prepared {
+            plan,
+            points,
+            sampling,
+            ..
+        } = prepared;
+        let staging = Staging::open(&directory, force)?;
+        let progress = console.progress();
+        let outcome = search::dock(&plan, &points, &progress)
+            .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
+        drop(progress);
+
+        let mut table = PoseTable::new(&outcome.poses);
+        let quality = match &evaluator {
+            Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
+            None => Vec::new(),
+        };
+        for column in &quality {
+            table.set_column(column);
+        }
+        table.write(&staging.folder().join("poses.csv"))?;
+        let top = table
+            .rows()
+            .get(..request.options.write_top)
+            .unwrap_or(table.rows());
+        let written = request.bodies.write(top, &staging.folder().join("top"))?;
+        let inputs = request.inputs(sampling.as_deref())?;
+        let manifest = Manifest::new(ManifestParts {
+            inputs: &inputs,
+            options: &request.options,
+            plan: &plan,
+            outcome: &outcome,
+            results: Results {
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
+                chance_acceptable_in_10: outcome.chance,
+            },
+            chains: written.chains.as_ref(),
+            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            timing: clock.timing(&outcome),
+            machine: Machine {
+                chosen: chosen.clone(),
+                ..machine(&plan)
+            },
+        })
+        .map_err(Failure::other)?;
+        manifest.write(&staging.folder().join("run.json"))?;
+        staging.commit()?;
+
+        console.say(format!("\n{}", told(&outcome)));
+        if let Some(chosen) = &chosen {
+            let stages = outcome.timing.iter();
+            console.say(format!(
+                "The search was expected to take {:.1} s, and took {:.1} s",
+                chosen.predicted_seconds,
+                stages.map(|stage| stage.wall_seconds).sum::<f64>()
+            ));
+        }
+        console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
+        if let Some(chance) = outcome.chance {
+            console.say(format!("\n{}", chance_told(chance)));
+        }
+        console.say(format!(
+            "\n{} rows in {}",
+            outcome.poses.len(),
+            directory.join("poses.csv").display()
+        ));
+        let complexes = written
+            .names
+            .iter()
+            .map(|name| directory.join("top").join(name));
+        Ok(json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": table.objects(firsts(&outcome.poses).into_iter().take(BEST)),
+            "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
+        }))
+    }
+}
+
+/// Whether two files have the same content, and the same chains are read of them.
+fn same(one: &InputRecord, other: &InputRecord) -> bool {
+    (&one.sha256, &one.chains) == (&other.sha256, &other.chains)
+}
+
+/// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
+fn plan_within(
+    wanted: Wanted,
+    request: &mut Request,
+    console: Console,
+) -> Result<(Prepared, Chosen), Failure> {
+    let (model, source) = cost_model(console);
+    let rotations = request.options.dock.rotations;
+    // A first plan fills in the lengths of meshes; its rotations are not used.
+    request.options.dock.rotations = 4;
+    let first = request.plan(console)?;
+    request.options.dock.rotations = rotations;
+    let options = &mut request.options.dock;
+    let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
+    let chosen = choose(wanted, (&model, &source), options, &mut preparer)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let prepared = preparer
+        .prepare(options)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let error = chosen
+        .predicted_error
+        .map(|error| format!(" and an error of {error:.1e} of the best score"));
+    console.say(format!(
+        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
+        options.rotations,
+        options.tolerance,
+        match options.precision {
+            Precision::Single => "",
+            Precision::Double => " --precision double",
+        },
+        prepared.plan.spacing,
+        if source == "built-in" { "built-in" } else { "calibrated" },
+        chosen.predicted_seconds,
+        error.unwrap_or_default()
+    ));
+    Ok((prepared, chosen))
+}
+
+/// When the run began.
+pub struct Clock {
+    wall: SystemTime,
+    monotonic: Instant,
+}
+
+impl Clock {
+    /// Now.
+    pub fn start() -> Self {
+        Self {
+            wall: SystemTime::now(),
+            monotonic: Instant::now(),
+        }
+    }
+
+    fn timing(&self, outcome: &DockOutcome) -> Timing {
+        Timing {
+            // A clock set before 1970 says nothing.
+            started_unix_seconds: self
+                .wall
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |since| since.as_secs()),
+            wall_seconds: self.monotonic.elapsed().as_secs_f64(),
+            stages: outcome.timing.clone(),
+            effects: EffectTime::of(&outcome.effects),
+            peak_memory_bytes: memory::peak(),
+        }
+    }
+}

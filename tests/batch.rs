@@ -1,0 +1,268 @@
+//! Many pairs in one call: what each leaves, what a failure costs, and what a second call does again.
+
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use program::succeed;
+use serde_json::Value;
+
+/// A folder `in` with two small pairs, each with a table of both.
+fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let inputs = folder.path().join("in");
+    fs::create_dir(&inputs).unwrap();
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table/cases");
+    for case in ["helices", "charged_helices"] {
+        for side in ["receptor", "ligand"] {
+            let name = format!("{case}_{side}.pdb");
+            fs::copy(cases.join(&name), inputs.join(&name)).unwrap();
+        }
+    }
+    folder
+}
+
+fn write_pairs(folder: &Path, text: &str) {
+    fs::write(folder.join("in/pairs.csv"), text).unwrap();
+}
+
+fn batch(folder: &Path, words: &str) -> Output {
+    cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args(words.split(' '))
+        .output()
+        .unwrap()
+}
+
+type Row = BTreeMap<String, String>;
+
+fn results(folder: &Path) -> Vec<Row> {
+    let mut reader = csv::Reader::from_path(folder.join("out/results.csv")).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+const TWO: &str = "name,receptor,ligand,rotations\n\
+                   first,helices_receptor.pdb,helices_ligand.pdb,\n\
+                   ,charged_helices_receptor.pdb,charged_helices_ligand.pdb,36\n";
+const OPTIONS: &str = "-- --poses 60 --write-top 1 --threads 1";
+
+#[test]
+fn each_pair_is_docked_as_by_itself() {
+    let folder = place();
+    // One option for all, another by a column.
+    let table = TWO.replace("pdb,\n", "pdb,24\n");
+    write_pairs(folder.path(), &table);
+    let output = batch(
+        folder.path(),
+        &format!("batch in/pairs.csv -o out {OPTIONS}"),
+    );
+    assert!(output.status.success(), "{output:?}");
+    let rows = results(folder.path());
+    let second = "charged_helices_receptor_charged_helices_ligand";
+    assert_eq!([&rows[0]["name"], &rows[1]["name"]], ["first", second]);
+    for (case, name, rotations, row) in [
+        ("helices", "first", 24, &rows[0]),
+        ("charged_helices", second, 36, &rows[1]),
+    ] {
+        let alone = format!(
+            "dock in/{case}_receptor.pdb in/{case}_ligand.pdb --rotations {rotations} --poses 60 --write-top 1 --threads 1 -o {case}"
+        );
+        succeed(folder.path(), alone.split(' '));
+        for file in ["poses.csv", "top/rank_0001.pdb"] {
+            let [one, other] = [format!("out/{name}"), case.to_owned()]
+                .map(|run| fs::read(folder.path().join(run).join(file)).unwrap());
+            assert_eq!(one, other, "{case} {file}");
+        }
+        let poses = folder.path().join(case).join("poses.csv");
+        let best: Row = csv::Reader::from_path(poses)
+            .unwrap()
+            .deserialize()
+            .next()
+            .unwrap()
+            .unwrap();
+        assert_eq!(
+            (row["status"].as_str(), row["error"].as_str()),
+            ("done", "")
+        );
+        for column in ["score", "rank_score", "z_score", "cluster_size"] {
+            assert_eq!(row[column], best[column], "{column}");
+        }
+        assert_eq!(row["dockq"], "");
+    }
+}
+
+#[test]
+fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
+    let folder = place();
+    let missing = TWO.replace("first,helices_receptor.pdb", "first,late.pdb");
+    write_pairs(folder.path(), &missing);
+    let call = format!("batch in/pairs.csv -o out {OPTIONS}");
+    let first = batch(folder.path(), &call);
+    assert_eq!(first.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&first.stderr);
+    assert!(
+        told.contains("[1/2] first failed") && told.contains("late.pdb"),
+        "{told}"
+    );
+    let status = |rows: &[Row]| {
+        rows.iter()
+            .map(|row| row["status"].clone())
+            .collect::<Vec<_>>()
+    };
+    let rows = results(folder.path());
+    assert_eq!(status(&rows), ["failed", "done"]);
+    assert!(rows[0]["error"].contains("late.pdb") && rows[0]["score"].is_empty());
+    let record = folder
+        .path()
+        .join("out")
+        .join(&rows[1]["name"])
+        .join("run.json");
+    let before = fs::read(&record).unwrap();
+
+    // The file comes; the other pair's run, with its times, stays as it was.
+    fs::copy(
+        folder.path().join("in/helices_receptor.pdb"),
+        folder.path().join("in/late.pdb"),
+    )
+    .unwrap();
+    let second = batch(folder.path(), &call.replace("batch", "batch --json"));
+    assert!(second.status.success());
+    let object: Value = serde_json::from_slice(&second.stdout).unwrap();
+    let states: Vec<&Value> = object["pairs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|pair| &pair["status"])
+        .collect();
+    assert_eq!(states, ["docked", "kept"]);
+    assert_eq!(fs::read(&record).unwrap(), before);
+    let again = results(folder.path());
+    assert_eq!(status(&again), ["done", "done"]);
+    assert_eq!(again[1], rows[1]);
+
+    // Other options, or an input that changed, are no reason to lose a run.
+    let other = format!("{call} --lambda 8");
+    assert_eq!(batch(folder.path(), &other).status.code(), Some(2));
+    assert_eq!(status(&results(folder.path())), ["failed", "failed"]);
+    assert_eq!(fs::read(&record).unwrap(), before);
+    let forced = batch(folder.path(), &format!("{other} --force"));
+    assert!(forced.status.success(), "{forced:?}");
+    let replaced = fs::read(&record).unwrap();
+    assert_ne!(replaced, before);
+    // What is as asked is kept, forced or not.
+    assert!(
+        batch(folder.path(), &format!("{other} --force"))
+            .status
+            .success()
+    );
+    assert_eq!(fs::read(&record).unwrap(), replaced);
+}
+
+/// Columns name options, files among them are looked for beside the table, and a known complex shows in the results.
+#[test]
+fn a_known_complex_is_measured_against() {
+    let folder = place();
+    write_pairs(
+        folder.path(),
+        "name,receptor,ligand,native_receptor,native_ligand,attract_receptor\n\
+         a,helices_receptor.pdb,helices_ligand.pdb,helices_receptor.pdb,helices_ligand.pdb,A:5\n",
+    );
+    let output = batch(
+        folder.path(),
+        &format!("batch in/pairs.csv -o out --json {OPTIONS} --rotations 48"),
+    );
+    assert!(output.status.success(), "{output:?}");
+    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let row = &results(folder.path())[0];
+    let best = &object["pairs"][0]["best"];
+    for column in ["score", "irmsd", "lrmsd", "fnat", "dockq"] {
+        assert_eq!(best[column].as_f64(), row[column].parse().ok(), "{column}");
+    }
+    assert_eq!(best["capri"], row["capri"].as_str());
+    let record = fs::read(folder.path().join("out/a/run.json")).unwrap();
+    let record: Value = serde_json::from_slice(&record).unwrap();
+    assert_eq!(record["options"]["attract_receptor"], "A:5");
+}
+
+#[test]
+fn a_table_that_is_none_is_refused_before_anything_runs() {
+    let folder = place();
+    let pair = "helices_receptor.pdb,helices_ligand.pdb";
+    for (table, options, line, said) in [
+        (
+            "receptor\na.pdb\n".to_owned(),
+            "",
+            Some(1),
+            "no column `ligand`",
+        ),
+        (
+            format!("receptor,ligand,rotation\n{pair},5\n"),
+            "",
+            Some(2),
+            "--rotation",
+        ),
+        (
+            format!("receptor,ligand,rotations\n{pair},x\n"),
+            "",
+            Some(2),
+            "'x'",
+        ),
+        (
+            format!("receptor,ligand,output\n{pair},x\n"),
+            "",
+            Some(2),
+            "`output`",
+        ),
+        (
+            format!("receptor,ligand,rotations\n{pair},5\n"),
+            "-- --rotations 6",
+            Some(2),
+            "multiple times",
+        ),
+        (
+            format!("receptor,ligand\n{pair}\n{pair}\n"),
+            "",
+            Some(3),
+            "of line 2",
+        ),
+        (
+            format!("name,receptor,ligand\n../x,{pair}\n"),
+            "",
+            Some(2),
+            "'../x'",
+        ),
+        (
+            format!("name,receptor,ligand\nresults.csv,{pair}\n"),
+            "",
+            Some(2),
+            "results.csv",
+        ),
+    ] {
+        write_pairs(folder.path(), &table);
+        let words = format!("batch in/pairs.csv -o out --json {options}");
+        let output = batch(folder.path(), words.trim_end());
+        assert_eq!(output.status.code(), Some(2), "{table}");
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = &object["error"];
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(said), "{message}");
+        assert_eq!(error["line"].as_u64(), line, "{table}");
+        assert!(error["file"].as_str().unwrap().ends_with("pairs.csv"));
+        assert!(!error["remedy"].as_str().unwrap().is_empty());
+        assert!(!folder.path().join("out").exists(), "{table}");
+    }
+    // Nor is a table of somebody else's replaced.
+    write_pairs(folder.path(), &format!("receptor,ligand\n{pair}\n"));
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("out/results.csv"), "mine\n").unwrap();
+    let output = batch(folder.path(), "batch in/pairs.csv -o out");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        fs::read_to_string(folder.path().join("out/results.csv")).unwrap(),
+        "mine\n"
+    );
+}
