@@ -43,7 +43,7 @@ pub struct PairResult {
 pub struct RunSummary {
     /// Poses kept and clusters among them, as run.json has them.
     pub counts: [Option<u64>; 2],
-    /// Fields of the first row, by [`BEST`]; empty where there is no such column or value.
+    /// Fields of the first row, in the order of the results' columns; empty where there is no such column or value.
     pub best: [String; BEST.len()],
     /// First rank whose pose is of CAPRI's class acceptable or better; `None` where none is, or nothing is known.
     pub first_acceptable: Option<u64>,

@@ -65,7 +65,7 @@ impl PairTableError {
 /// # Errors
 /// [`PairTableError`].
 pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
-    let file = std::fs::File::open(path).map_err(|source| PairTableError::Open {
+    let text = std::fs::read_to_string(path).map_err(|source| PairTableError::Open {
         path: path.to_owned(),
         source,
     })?;
@@ -75,13 +75,13 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         message,
     };
     let malformed = |error: csv::Error| {
-        let line = error.position().map(csv::Position::line);
+        let line = error.position().map(|position| line_of(&text, position));
         wrong(line, error.to_string())
     };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_reader(file);
+        .from_reader(text.as_bytes());
     let header = reader.headers().map_err(malformed)?.clone();
     let mut seen = HashSet::new();
     if let Some(column) = header.iter().find(|column| !seen.insert(*column)) {
@@ -94,7 +94,9 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
     }
     let rows = reader.records().map(|record| {
         let record = record.map_err(malformed)?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let line = record
+            .position()
+            .map_or(0, |position| line_of(&text, position));
         let row = row(&header, &record, line);
         for (column, field) in [("receptor", &row.receptor), ("ligand", &row.ligand)] {
             if field.is_empty() {
@@ -108,6 +110,16 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         return Err(wrong(None, "there is no pair in it".to_owned()));
     }
     Ok(rows)
+}
+
+/// The 1-based line of a record, whose position is where the reader stood before it passed over empty lines and those of comments.
+fn line_of(text: &str, position: &csv::Position) -> u64 {
+    let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let rest = text.get(from..).unwrap_or("");
+    let passed = rest
+        .lines()
+        .take_while(|line| line.trim().is_empty() || line.starts_with('#'));
+    position.line() + passed.count() as u64
 }
 
 fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
@@ -145,7 +157,7 @@ mod tests {
     #[test]
     fn columns_are_found_by_name_and_the_rest_are_options() {
         let rows = read(
-            "ligand, receptor,attract_ligand,name,rotations\n# of March\n\"b.cif:A,B\",a.pdb,,first,\nd.pdb,c.pdb,A:5,,120\n",
+            "ligand, receptor,attract_ligand,name,rotations\n# of March\n\n\"b.cif:A,B\",a.pdb,,first,\nd.pdb,c.pdb,A:5,,120\n",
         )
         .unwrap();
         let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
@@ -153,7 +165,7 @@ mod tests {
             (rows[0].receptor.as_str(), rows[0].ligand.as_str()),
             ("a.pdb", "b.cif:A,B")
         );
-        assert_eq!((rows[0].name.as_str(), rows[0].line), ("first", 3));
+        assert_eq!((rows[0].name.as_str(), rows[0].line), ("first", 4));
         assert!(rows[0].options.is_empty());
         assert_eq!(rows[1].name, "");
         let expected = [option("attract_ligand", "A:5"), option("rotations", "120")];
