@@ -119,7 +119,9 @@ fn line_of(text: &str, position: &csv::Position) -> u64 {
     let passed = rest
         .lines()
         .take_while(|line| line.trim().is_empty() || line.starts_with('#'));
-    position.line() + passed.count() as u64
+    // A record there is, if only a last line that the reader took for one.
+    let most = rest.lines().count().saturating_sub(1);
+    position.line() + passed.count().min(most) as u64
 }
 
 fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {

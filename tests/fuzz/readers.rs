@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use knotdock::output::pair_table::read_pairs;
 use knotdock::output::poses::PoseTable;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
@@ -30,10 +31,11 @@ pub enum Reader {
     Contact,
     FineContact,
     AtomPair,
+    Pairs,
 }
 
 impl Reader {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Pdb,
         Self::Mmcif,
         Self::Gzip,
@@ -46,6 +48,7 @@ impl Reader {
         Self::Contact,
         Self::FineContact,
         Self::AtomPair,
+        Self::Pairs,
     ];
 
     /// Sound inputs, small so that a change is likely to hit something that matters.
@@ -63,6 +66,7 @@ impl Reader {
             Self::Contact => vec![include_str!("../../scoring/src/effect/contact_potential.csv").to_owned()],
             Self::FineContact => vec![include_str!("../../scoring/src/rescoring/fine_contact_potential.csv").to_owned()],
             Self::AtomPair => vec![include_str!("../../scoring/src/rescoring/atom_pair_potential.csv").to_owned()],
+            Self::Pairs => vec![PAIRS.to_owned()],
         };
         texts.into_iter().map(String::into_bytes).collect()
     }
@@ -115,9 +119,38 @@ impl Reader {
             Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
             Self::FineContact => table(bytes, |text| Ok(FinePotential::parse(text)?.ranges.into())),
             Self::AtomPair => pair_table(bytes),
+            Self::Pairs => {
+                let path = scratch.join("pairs.csv");
+                replace(&path, bytes);
+                // At least one: a table without a line end may be wrong in its first.
+                let lines = 1 + bytes.iter().filter(|&&byte| byte == b'\n').count() as u64;
+                match read_pairs(&path) {
+                    Ok(rows) => {
+                        assert!(!rows.is_empty());
+                        for row in &rows {
+                            assert!(!row.receptor.is_empty() && !row.ligand.is_empty());
+                            assert!((2..=lines).contains(&row.line), "line {}", row.line);
+                        }
+                        true
+                    }
+                    Err(error) => {
+                        assert!(!error.to_string().is_empty());
+                        assert_eq!(error.path(), path);
+                        let line = error.line();
+                        assert!(
+                            line.is_none_or(|line| (1..=lines).contains(&line)),
+                            "{error}"
+                        );
+                        false
+                    }
+                }
+            }
         }
     }
 }
+
+/// A table of pairs with all that it may have.
+const PAIRS: &str = "name,receptor,ligand,native,rotations\n# of spring\nfirst,a.pdb,\"b.cif.gz:H,L\",,\n\n,c.pdb,d.pdb,e.pdb,1200\n";
 
 /// Puts an input where the last one was. As a new file: some file systems flush one that is cut short and written again, which took fifty
 /// times as long as reading it.
