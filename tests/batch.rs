@@ -160,6 +160,11 @@ fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
             .success()
     );
     assert_eq!(fs::read(&record).unwrap(), replaced);
+    let input = folder.path().join("in/late.pdb");
+    let text = fs::read_to_string(&input).unwrap();
+    fs::write(&input, format!("REMARK  99\n{text}")).unwrap();
+    assert_eq!(batch(folder.path(), &other).status.code(), Some(2));
+    assert_eq!(status(&results(folder.path())), ["failed", "done"]);
 }
 
 /// Columns name options, files among them are looked for beside the table, and a known complex shows in the results.
@@ -177,6 +182,16 @@ fn a_known_complex_is_measured_against() {
     );
     assert!(output.status.success(), "{output:?}");
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let keys = |value: &Value| {
+        let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        keys.join(" ")
+    };
+    assert_eq!(keys(&object), "directory pairs results");
+    assert_eq!(
+        keys(&object["pairs"][0]),
+        "best directory error name status"
+    );
     let row = &results(folder.path())[0];
     let best = &object["pairs"][0]["best"];
     for column in ["score", "irmsd", "lrmsd", "fnat", "dockq"] {

@@ -4,17 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use knotdock::evaluate::Evaluator;
-use knotdock::output::input_record::{InputRecord, NativeRecord};
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
-use knotdock::output::program::{COMMIT, VERSION};
 use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, firsts};
-use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::Staging;
 use knotdock::search::options::Precision;
-use knotdock::search::{self, DockOptions, DockOutcome};
+use knotdock::search::{self, DockOutcome};
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
 use knotdock::tradeoff::pair::{Prepared, Preparer};
 use serde_json::{Value, json};
@@ -25,7 +22,7 @@ use super::dock_report::{assumed, chance_told, told};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
-use super::native::{match_text, measure};
+use super::native::{NativeFiles, match_text, measure};
 use super::request::Request;
 
 /// A run that is ready to go.
@@ -93,35 +90,11 @@ impl Docking {
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
             return false;
         };
-        let default = DockOptions::default();
-        let asked = RunOptions {
-            dock: DockOptions {
-                threads: default.threads,
-                memory: default.memory,
-                ..self.request.options.dock.clone()
-            },
-            ..self.request.options.clone()
-        };
+        let native = self.request.native.as_ref().map(NativeFiles::record);
         let inputs = self.request.bodies.records();
-        let native = self.request.native.as_ref().map(|native| native.record());
-        (run.version.as_str(), run.commit.as_str()) == (VERSION, COMMIT)
-            && run.options == asked
-            && same(&run.receptor, inputs[0])
-            && same(&run.ligand, inputs[1])
-            && match (&run.native, &native) {
-                (None, None) => true,
-                (Some(NativeRecord::Complex(one)), Some(NativeRecord::Complex(other))) => {
-                    same(one, other)
-                }
-                (
-                    Some(NativeRecord::Partners { receptor, ligand }),
-                    Some(NativeRecord::Partners {
-                        receptor: other_receptor,
-                        ligand: other_ligand,
-                    }),
-                ) => same(receptor, other_receptor) && same(ligand, other_ligand),
-                _ => false,
-            }
+        self.directory.join("poses.csv").is_file()
+            && run.is_of_this_program()
+            && run.asks(inputs, native.as_ref(), &self.request.options)
     }
 
     /// Docks, and writes the run; its JSON object.
@@ -214,11 +187,6 @@ impl Docking {
             "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
         }))
     }
-}
-
-/// Whether two files have the same content, and the same chains are read of them.
-fn same(one: &InputRecord, other: &InputRecord) -> bool {
-    (&one.sha256, &one.chains) == (&other.sha256, &other.chains)
 }
 
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::evaluate::Evaluator;
 use knotdock::output::manifest::Inputs;
-use knotdock::output::program::{COMMIT, VERSION, VERSION_WITH_COMMIT, cpu_features};
+use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::meshes::GivenLengths;
@@ -33,7 +33,7 @@ impl Request {
     /// What an earlier run was asked for, from its run.json.
     pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
         let run = RecordedRun::read(path)?;
-        if (run.version.as_str(), run.commit.as_str()) != (VERSION, COMMIT) {
+        if !run.is_of_this_program() {
             console.warn(format!(
                 "the run is of version {} ({}), this is {VERSION_WITH_COMMIT}: the poses may differ",
                 run.version, run.commit

@@ -66,6 +66,11 @@ impl InputRecord {
         })
     }
 
+    /// Whether the other has the same content, and the same chains are read of it.
+    pub fn is_like(&self, other: &Self) -> bool {
+        (&self.sha256, &self.chains) == (&other.sha256, &other.chains)
+    }
+
     /// What to read.
     pub fn spec(&self) -> InputSpec {
         InputSpec {
@@ -136,6 +141,16 @@ pub enum NativeRecord {
         /// File and chains of the ligand.
         ligand: InputRecord,
     },
+}
+
+impl NativeRecord {
+    /// Its files: one, or the receptor's and the ligand's.
+    pub fn files(&self) -> Vec<&InputRecord> {
+        match self {
+            Self::Complex(complex) => vec![complex],
+            Self::Partners { receptor, ligand } => vec![receptor, ligand],
+        }
+    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 
 use super::input_record::{InputRecord, NativeRecord};
 use super::manifest::SCHEMA;
+use super::program::{COMMIT, VERSION};
 use super::run_options::RunOptions;
 
 /// What later commands take from a `run.json`.
@@ -124,5 +125,32 @@ impl RecordedRun {
             options: RunOptions::from_record(&file.options)
                 .map_err(|message| content(None, message))?,
         })
+    }
+
+    /// Whether this very program wrote it.
+    pub fn is_of_this_program(&self) -> bool {
+        (self.version.as_str(), self.commit.as_str()) == (VERSION, COMMIT)
+    }
+
+    /// Whether it asked the same of the same: files of the same content wherever they lie, the same chains of them, and the same options, those of the
+    /// machine aside.
+    pub fn asks(
+        &self,
+        [receptor, ligand]: [&InputRecord; 2],
+        native: Option<&NativeRecord>,
+        options: &RunOptions,
+    ) -> bool {
+        let own = self.native.as_ref().map(NativeRecord::files);
+        let other = native.map(NativeRecord::files);
+        let natives = match (&own, &other) {
+            (Some(own), Some(other)) => {
+                own.len() == other.len() && own.iter().zip(other).all(|(a, b)| a.is_like(b))
+            }
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        self.receptor.is_like(receptor)
+            && self.ligand.is_like(ligand)
+            && natives
+            && self.options == options.less_machine()
     }
 }

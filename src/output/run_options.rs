@@ -20,6 +20,19 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
+    /// The options with those of the machine at their defaults, as a record gives them back.
+    pub(super) fn less_machine(&self) -> Self {
+        let default = DockOptions::default();
+        Self {
+            dock: DockOptions {
+                threads: default.threads,
+                memory: default.memory,
+                ..self.dock.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The options as recorded, less those of the machine.
     pub(super) fn record(&self) -> serde_json::Result<Map<String, Value>> {
         let mut options = object(serde_json::to_value(&self.dock)?);
