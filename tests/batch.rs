@@ -281,3 +281,19 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
         "mine\n"
     );
 }
+
+/// The table beside the example does what README says.
+#[test]
+fn the_example_s_table_is_docked() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/pairs.csv");
+    let words = format!(
+        "batch {} -o out -- --rotations 24 --poses 40",
+        table.display()
+    );
+    let output = batch(folder.path(), &words);
+    assert!(output.status.success(), "{output:?}");
+    let rows = results(folder.path());
+    assert_eq!((rows.len(), rows[0]["name"].as_str()), (1, "1PPE"));
+    assert!((0.0..=1.0).contains(&rows[0]["dockq"].parse::<f64>().unwrap()));
+}
