@@ -17,6 +17,7 @@ pub mod balls;
 pub mod batch_results;
 pub mod complexes;
 pub mod cost_model_file;
+mod csv_lines;
 pub mod input_record;
 pub mod manifest;
 pub mod pair_table;

@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
+use super::csv_lines::line_of;
+
+/// What a line begins with that is no row.
+const COMMENT: Option<u8> = Some(b'#');
+
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PairRow {
@@ -74,13 +79,14 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         line,
         message,
     };
+    let line = |position: &csv::Position| line_of(text.as_bytes(), position, COMMENT);
     let malformed = |error: csv::Error| {
-        let line = error.position().map(|position| line_of(&text, position));
+        let line = error.position().map(line);
         wrong(line, error.to_string())
     };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .comment(Some(b'#'))
+        .comment(COMMENT)
         .from_reader(text.as_bytes());
     let header = reader.headers().map_err(malformed)?.clone();
     let mut seen = HashSet::new();
@@ -94,9 +100,7 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
     }
     let rows = reader.records().map(|record| {
         let record = record.map_err(malformed)?;
-        let line = record
-            .position()
-            .map_or(0, |position| line_of(&text, position));
+        let line = record.position().map_or(0, line);
         let row = row(&header, &record, line);
         for (column, field) in [("receptor", &row.receptor), ("ligand", &row.ligand)] {
             if field.is_empty() {
@@ -110,18 +114,6 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         return Err(wrong(None, "there is no pair in it".to_owned()));
     }
     Ok(rows)
-}
-
-/// The 1-based line of a record, whose position is where the reader stood before it passed over empty lines and those of comments.
-fn line_of(text: &str, position: &csv::Position) -> u64 {
-    let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
-    let rest = text.get(from..).unwrap_or("");
-    let passed = rest
-        .lines()
-        .take_while(|line| line.trim().is_empty() || line.starts_with('#'));
-    // A record there is, if only a last line that the reader took for one.
-    let most = rest.lines().count().saturating_sub(1);
-    position.line() + passed.count().min(most) as u64
 }
 
 fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {

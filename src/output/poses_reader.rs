@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 
+use super::csv_lines::line_of;
 use super::poses::{PoseRow, PoseTable};
 
 /// Why a table of poses cannot be read.
@@ -111,9 +112,10 @@ impl PoseTable {
             path: path.to_owned(),
             source,
         })?;
+        let line = |position: &csv::Position| line_of(&bytes, position, None);
         let malformed = |error: csv::Error| PoseTableError::Csv {
             path: path.to_owned(),
-            line: error.position().map(csv::Position::line),
+            line: error.position().map(line),
             message: error.to_string(),
         };
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
@@ -123,7 +125,8 @@ impl PoseTable {
         let mut rows = Vec::new();
         for record in reader.into_records() {
             let record = record.map_err(malformed)?;
-            rows.push(columns.row(path, &record)?);
+            let line = record.position().map_or(0, line);
+            rows.push(columns.row(path, line, &record)?);
             records.push(record);
         }
         Ok(Self {
@@ -160,8 +163,12 @@ impl PoseColumns {
         })
     }
 
-    fn row(&self, path: &Path, record: &StringRecord) -> Result<PoseRow, PoseTableError> {
-        let line = record.position().map_or(0, csv::Position::line);
+    fn row(
+        &self,
+        path: &Path,
+        line: u64,
+        record: &StringRecord,
+    ) -> Result<PoseRow, PoseTableError> {
         let fault = |column, field: &str, expected| PoseTableError::Field {
             path: path.to_owned(),
             line,
@@ -221,6 +228,7 @@ mod tests {
             ("x,1,0,0,0,0,0,0\n", 3),
             ("2,0,0,0,0,0,0,0\n", 3),
             ("2,1,0,0\n", 3),
+            ("\n\n2,1,0,0,0,0,0,nan\n", 5),
         ] {
             std::fs::write(&path, format!("{header}{rows}")).unwrap();
             let error = PoseTable::read(&path).unwrap_err();

@@ -1,0 +1,49 @@
+//! Lines of a CSV file by which faults in it are told.
+
+/// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty lines and, where a byte begins comments,
+/// over theirs.
+pub(super) fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
+    let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let lines: Vec<&[u8]> = text
+        .get(from..)
+        .unwrap_or_default()
+        .split(|&byte| byte == b'\n')
+        .collect();
+    let passed = lines
+        .iter()
+        .take_while(|line| {
+            line.strip_suffix(b"\r").unwrap_or(line).is_empty()
+                || comment.is_some_and(|comment| line.starts_with(&[comment]))
+        })
+        .count();
+    // A record there is, if only a last line that the reader took for one.
+    let rest = lines.iter().rev().skip_while(|line| line.is_empty());
+    position.line() + passed.min(rest.count().saturating_sub(1)) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_reader_passes_over_counts() {
+        let text = "a,b\n\n1,2\n# no\n \n\n3,4\n5,6\n";
+        let lines = |text: &str, comment| {
+            let reader = csv::ReaderBuilder::new()
+                .comment(comment)
+                .flexible(true)
+                .from_reader(text.as_bytes());
+            let records = reader.into_records();
+            let lines = records.map(|record| {
+                let record = record.unwrap();
+                line_of(text.as_bytes(), record.position().unwrap(), comment)
+            });
+            lines.collect::<Vec<_>>()
+        };
+        // A line of blanks is a record of one field.
+        for text in [text, &text.replace('\n', "\r\n")] {
+            assert_eq!(lines(text, Some(b'#')), [3, 5, 7, 8]);
+            assert_eq!(lines(text, None), [3, 4, 5, 7, 8]);
+        }
+    }
+}
