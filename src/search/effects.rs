@@ -292,28 +292,14 @@ fn lacking(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::search::restraints::tests::peptide;
     use knotdock_scoring::rescoring;
-    use knotdock_structures::molecule::{Atom, CONTACT_TYPES, Format, atom_kinds};
+    use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 
     /// However many residues are named, all of their contacts together draw as much.
     #[test]
     fn attracted_residues_share_their_pull() {
-        let atom = |residue_number: i64| Atom {
-            name: "CA".to_owned(),
-            residue_name: "GLY".to_owned(),
-            chain: "A".to_owned(),
-            residue_number,
-            insertion_code: None,
-            alternate_location: None,
-            element: "C".to_owned(),
-            position: [4.0 * residue_number as f64, 0.0, 0.0],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
-        };
-        let molecule = Molecule::new((1..=4).map(atom).collect(), Format::Pdb);
+        let molecule = peptide(4.0);
         let pull = |residues: &str| {
             let options = DockOptions {
                 attraction_weight: 1000.0,

@@ -169,12 +169,12 @@ pub fn domains_told(antibody: &Antibody) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use knotdock_structures::molecule::{Atom, Format};
 
-    /// Alpha carbons of glycine, number 1 to 4, 10 Å apart.
-    fn peptide() -> Molecule {
+    /// Alpha carbons of glycine, number 1 to 4, so many Å apart.
+    pub fn peptide(apart: f64) -> Molecule {
         let atom = |residue_number: i64| Atom {
             name: "CA".to_owned(),
             residue_name: "GLY".to_owned(),
@@ -183,7 +183,7 @@ mod tests {
             insertion_code: None,
             alternate_location: None,
             element: "C".to_owned(),
-            position: [10.0 * residue_number as f64, 0.0, 0.0],
+            position: [apart * residue_number as f64, 0.0, 0.0],
             occupancy: 1.0,
             b_factor: 0.0,
             hetero: false,
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn named_residues_of_either_side_are_blocked_and_nothing_else() {
-        let molecule = peptide();
+        let molecule = peptide(10.0);
         let of = |receptor: Option<&str>, ligand: Option<&str>| {
             let options = DockOptions {
                 block_receptor: receptor.map(|text| text.parse().unwrap()),
@@ -224,7 +224,7 @@ mod tests {
     /// What is blocked and attracted is attracted, residue by residue.
     #[test]
     fn attracted_residues_are_marked_and_listed() {
-        let molecule = peptide();
+        let molecule = peptide(10.0);
         let options = DockOptions {
             block_receptor: Some("A:3-4".parse().unwrap()),
             attract_receptor: Some("A:1,A:4".parse().unwrap()),
