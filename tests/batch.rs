@@ -129,6 +129,7 @@ fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
         folder.path().join("in/late.pdb"),
     )
     .unwrap();
+    let call = call.replace("--threads 1", "--threads 2");
     let second = batch(folder.path(), &call.replace("batch", "batch --json"));
     assert!(second.status.success());
     let object: Value = serde_json::from_slice(&second.stdout).unwrap();
@@ -190,7 +191,7 @@ fn a_known_complex_is_measured_against() {
     assert_eq!(keys(&object), "directory pairs results");
     assert_eq!(
         keys(&object["pairs"][0]),
-        "best directory error name status"
+        "best directory error first_acceptable_rank name status"
     );
     let row = &results(folder.path())[0];
     let best = &object["pairs"][0]["best"];
@@ -201,6 +202,40 @@ fn a_known_complex_is_measured_against() {
     let record = fs::read(folder.path().join("out/a/run.json")).unwrap();
     let record: Value = serde_json::from_slice(&record).unwrap();
     assert_eq!(record["options"]["attract_receptor"], "A:5");
+
+    // Another known complex is another run, and so is a table of poses that is gone.
+    let again = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 48");
+    assert!(batch(folder.path(), &again).status.success());
+    let native = folder.path().join("in/charged_helices_ligand.pdb");
+    let table = fs::read_to_string(folder.path().join("in/pairs.csv")).unwrap();
+    fs::copy(folder.path().join("in/helices_ligand.pdb"), &native).unwrap();
+    let same = table.replace(
+        "pdb,helices_ligand.pdb,A",
+        "pdb,charged_helices_ligand.pdb,A",
+    );
+    assert_ne!(same, table);
+    write_pairs(folder.path(), &same);
+    assert!(
+        batch(folder.path(), &again).status.success(),
+        "what a file holds counts, not its name"
+    );
+    let text = fs::read_to_string(&native).unwrap();
+    fs::write(&native, format!("REMARK  99\n{text}")).unwrap();
+    assert_eq!(batch(folder.path(), &again).status.code(), Some(2));
+    write_pairs(folder.path(), &table);
+    fs::remove_file(folder.path().join("out/a/poses.csv")).unwrap();
+    assert_eq!(batch(folder.path(), &again).status.code(), Some(2));
+    assert!(
+        batch(folder.path(), &format!("{again} --force"))
+            .status
+            .success()
+    );
+    assert!(folder.path().join("out/a/poses.csv").exists());
+
+    // One that cannot be read is nothing done.
+    fs::write(folder.path().join("out/a/poses.csv"), "rank,qw\n").unwrap();
+    assert_eq!(batch(folder.path(), &again).status.code(), Some(2));
+    assert_eq!(results(folder.path())[0]["status"], "failed");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use knotdock::output::batch_results::{PairResult, RESULTS, RunSummary, is_ours, write_results};
+use knotdock::output::whole_file::FileError;
 use serde_json::{Value, json};
 
 use super::batch_pairs::pairs;
@@ -44,10 +45,9 @@ impl Batch {
                 .at(&results)
                 .remedy("choose another directory with -o"));
         }
-        std::fs::create_dir_all(&directory).map_err(|error| {
-            Failure::input(format!("cannot write to {}: {error}", directory.display()))
-                .at(&directory)
-                .remedy("choose with -o a place that you may write to")
+        std::fs::create_dir_all(&directory).map_err(|source| FileError::Unwritable {
+            path: directory.clone(),
+            source,
         })?;
         let count = pairs.len();
         console.say(format!(
@@ -79,25 +79,28 @@ impl Batch {
                 "status": "failed",
                 "error": null,
                 "best": null,
+                "first_acceptable_rank": null,
             });
-            table[index].outcome = Some(match dock_pair(dock, self.force()) {
-                Ok(anew) => {
-                    let summary = RunSummary::of(&run);
-                    console.say(format!("{head}: {}", words(&summary, anew, clock)));
-                    entry["status"] = if anew { "docked" } else { "kept" }.into();
-                    entry["best"] = best(&summary);
-                    Ok(summary)
-                }
-                Err(failure) => {
-                    console.error(format!("{head} failed\n{}", failure.text()));
-                    code = match (code, failure.exit_code()) {
-                        (0 | 2, 2) => 2,
-                        _ => 1,
-                    };
-                    entry["error"] = failure.json()["error"].clone();
-                    Err(failure.line_of_table())
-                }
-            });
+            table[index].outcome = Some(
+                match dock_pair(dock).and_then(|anew| Ok((RunSummary::of(&run)?, anew))) {
+                    Ok((summary, anew)) => {
+                        console.say(format!("{head}: {}", words(&summary, anew, clock)));
+                        entry["status"] = if anew { "docked" } else { "kept" }.into();
+                        entry["best"] = summary.best.clone();
+                        entry["first_acceptable_rank"] = summary.first_acceptable.into();
+                        Ok(summary)
+                    }
+                    Err(failure) => {
+                        console.error(format!("{head} failed\n{}", failure.text()));
+                        code = match (code, failure.exit_code()) {
+                            (0 | 2, 2) => 2,
+                            _ => 1,
+                        };
+                        entry["error"] = failure.json()["error"].clone();
+                        Err(failure.line_of_table())
+                    }
+                },
+            );
             told.push(entry);
             write_results(&results, &table)?;
         }
@@ -116,15 +119,10 @@ impl Batch {
         }));
         Ok(code)
     }
-
-    /// Whether runs may be replaced that are of other inputs or options.
-    fn force(&self) -> bool {
-        self.options.iter().any(|option| option == "--force")
-    }
 }
 
 /// Docks a pair into its directory; whether it had to be done.
-fn dock_pair(dock: Dock, force: bool) -> Result<bool, Failure> {
+fn dock_pair(dock: Dock) -> Result<bool, Failure> {
     // A pair's own words would hide the batch's; its run.json has them.
     let silent = Console {
         json: false,
@@ -134,14 +132,14 @@ fn dock_pair(dock: Dock, force: bool) -> Result<bool, Failure> {
     if docking.is_done() {
         return Ok(false);
     }
-    if !force && docking.directory().join("run.json").exists() {
+    if let Some(directory) = docking.in_the_way() {
         return Err(Failure::input(
-            "the directory holds a run of other inputs or options, or by another version",
+            "the directory holds a run of other inputs or options, or by another version, or only part of this one",
         )
-        .at(docking.directory())
+        .at(directory)
         .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
     }
-    docking.run(force, silent)?;
+    docking.run(silent)?;
     Ok(true)
 }
 
@@ -151,12 +149,11 @@ fn words(summary: &RunSummary, anew: bool, clock: Instant) -> String {
     let mut words = format!(
         "{} clusters, the best of rank score {}",
         clusters.unwrap_or(0),
-        rounded(summary.best("rank_score"), 1)
+        rounded(&summary.best["rank_score"], 1).unwrap_or_default()
     );
     for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
-        let value = summary.best(column);
-        if !value.is_empty() {
-            words += &format!(", {name} {}", rounded(value, digits));
+        if let Some(value) = rounded(&summary.best[column], digits) {
+            words += &format!(", {name} {value}");
         }
     }
     if let Some(rank) = summary.first_acceptable {
@@ -169,25 +166,7 @@ fn words(summary: &RunSummary, anew: bool, clock: Instant) -> String {
     }
 }
 
-/// A field with so many decimals, if it is a number.
-fn rounded(field: &str, digits: usize) -> String {
-    let number = field.parse::<f64>();
-    number.map_or_else(|_| field.to_owned(), |number| format!("{number:.digits$}"))
-}
-
-/// The best row for the JSON object.
-fn best(summary: &RunSummary) -> Value {
-    let number = |name: &str| summary.best(name).parse::<f64>().ok();
-    json!({
-        "score": number("score"),
-        "rank_score": number("rank_score"),
-        "z_score": number("z_score"),
-        "cluster_size": number("cluster_size"),
-        "irmsd": number("irmsd"),
-        "lrmsd": number("lrmsd"),
-        "fnat": number("fnat"),
-        "dockq": number("dockq"),
-        "capri": Some(summary.best("capri")).filter(|class| !class.is_empty()),
-        "first_acceptable_rank": summary.first_acceptable,
-    })
+/// A number with so many decimals.
+fn rounded(value: &Value, digits: usize) -> Option<String> {
+    Some(format!("{:.digits$}", value.as_f64()?))
 }

@@ -124,5 +124,6 @@ fn is_name(name: &str) -> bool {
         && name
             .chars()
             .all(|c| c.is_alphanumeric() || "._-".contains(c))
-        && !name.eq_ignore_ascii_case(RESULTS)
+        // Nor may it be the name under which results are being written.
+        && !name.to_lowercase().starts_with(RESULTS)
 }

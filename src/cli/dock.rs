@@ -147,13 +147,12 @@ impl Dock {
             accuracy: self.accuracy,
             budget: self.budget,
         };
-        Docking::prepare(request, wanted, directory, clock, console)
+        Docking::prepare(request, wanted, (directory, self.force), clock, console)
     }
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let force = self.force;
-        let done = self.prepare(console)?.run(force, console)?;
+        let done = self.prepare(console)?.run(console)?;
         console.result(&done);
         Ok(())
     }

@@ -29,6 +29,8 @@ use super::request::Request;
 pub struct Docking {
     request: Request,
     directory: PathBuf,
+    /// Whether another run there is replaced.
+    force: bool,
     evaluator: Option<Evaluator>,
     prepared: Prepared,
     chosen: Option<Chosen>,
@@ -36,11 +38,11 @@ pub struct Docking {
 }
 
 impl Docking {
-    /// Plans what was asked for.
+    /// Plans what was asked for, to be written into a directory, in place of a run there if that is forced.
     pub fn prepare(
         mut request: Request,
         wanted: Wanted,
-        directory: PathBuf,
+        (directory, force): (PathBuf, bool),
         clock: Clock,
         console: Console,
     ) -> Result<Self, Failure> {
@@ -73,6 +75,7 @@ impl Docking {
         Ok(Self {
             request,
             directory,
+            force,
             evaluator,
             prepared,
             chosen,
@@ -80,9 +83,10 @@ impl Docking {
         })
     }
 
-    /// The directory of the run.
-    pub fn directory(&self) -> &Path {
-        &self.directory
+    /// The directory of the run, if it holds another run that is not to be replaced.
+    pub fn in_the_way(&self) -> Option<&Path> {
+        let run = !self.force && self.directory.join("run.json").exists();
+        run.then_some(self.directory.as_path())
     }
 
     /// Whether the directory holds this very run already: of this program, with inputs of the same content and the same options.
@@ -98,10 +102,11 @@ impl Docking {
     }
 
     /// Docks, and writes the run; its JSON object.
-    pub fn run(self, force: bool, console: Console) -> Result<Value, Failure> {
+    pub fn run(self, console: Console) -> Result<Value, Failure> {
         let Self {
             request,
             directory,
+            force,
             evaluator,
             prepared,
             chosen,

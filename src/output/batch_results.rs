@@ -1,12 +1,13 @@
 //! The results of a batch: one row a pair, with the best row of each pair's own table.
 
-use std::collections::HashMap;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use serde_json::Value;
 
+use super::poses::{PoseTable, number};
+use super::poses_reader::PoseTableError;
 use super::whole_file::{FileError, write_whole};
 
 /// Name of the table in the batch's directory.
@@ -39,51 +40,48 @@ pub struct PairResult {
 }
 
 /// What a batch tells of a run.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSummary {
     /// Poses kept and clusters among them, as run.json has them.
     pub counts: [Option<u64>; 2],
-    /// Fields of the first row, in the order of the results' columns; empty where there is no such column or value.
-    pub best: [String; BEST.len()],
+    /// The first row of its table by column; `null` where it has none.
+    pub best: Value,
     /// First rank whose pose is of CAPRI's class acceptable or better; `None` where none is, or nothing is known.
     pub first_acceptable: Option<u64>,
 }
 
 impl RunSummary {
-    /// Reads the directory of a whole run; what cannot be read stays empty.
-    pub fn of(directory: &Path) -> Self {
-        let mut summary = Self::default();
+    /// Reads the directory of a whole run.
+    ///
+    /// # Errors
+    /// [`PoseTableError`] when its table of poses cannot be read.
+    pub fn of(directory: &Path) -> Result<Self, PoseTableError> {
+        let table = PoseTable::read(&directory.join("poses.csv"))?;
+        let rows = table.objects(0..table.rows().len());
+        let acceptable = |row: &&Value| {
+            row["capri"]
+                .as_str()
+                .is_some_and(|class| class != "incorrect")
+        };
         let record = fs::read(directory.join("run.json")).unwrap_or_default();
         let record: Value = serde_json::from_slice(&record).unwrap_or_default();
-        summary.counts = ["poses", "clusters"].map(|name| record["results"][name].as_u64());
-        let Ok(mut table) = csv::Reader::from_path(directory.join("poses.csv")) else {
-            return summary;
-        };
-        let header = table.headers().cloned().unwrap_or_default();
-        let columns: HashMap<&str, usize> = header.iter().zip(0..).collect();
-        for (index, row) in table.records().filter_map(Result::ok).enumerate() {
-            let field = |name: &str| {
-                let place = columns.get(name).copied();
-                place
-                    .and_then(|place| row.get(place))
-                    .unwrap_or("")
-                    .to_owned()
-            };
-            if index == 0 {
-                summary.best = BEST.map(field);
-            }
-            if !["", "incorrect"].contains(&field("capri").as_str()) {
-                summary.first_acceptable = field("rank").parse().ok();
-                break;
-            }
-        }
-        summary
+        Ok(Self {
+            counts: ["poses", "clusters"].map(|name| record["results"][name].as_u64()),
+            first_acceptable: rows
+                .iter()
+                .find(acceptable)
+                .and_then(|row| row["rank"].as_u64()),
+            best: rows.into_iter().next().unwrap_or_default(),
+        })
     }
 
-    /// The value of a column of the first row.
-    pub fn best(&self, name: &str) -> &str {
-        let place = BEST.iter().position(|column| *column == name);
-        place.map_or("", |place| self.best[place].as_str())
+    /// A column of the first row as a field.
+    fn best(&self, name: &str) -> String {
+        match &self.best[name] {
+            Value::Null => String::new(),
+            Value::String(text) => text.clone(),
+            value => value.as_f64().map_or_else(|| value.to_string(), number),
+        }
     }
 }
 
@@ -131,7 +129,7 @@ pub fn write_results(path: &Path, results: &[PairResult]) -> Result<(), FileErro
                 error.to_owned(),
             ];
             row.extend(run.counts.map(count));
-            row.extend(run.best.clone());
+            row.extend(BEST.map(|name| run.best(name)));
             row.push(count(run.first_acceptable));
             table.write_record(row)?;
         }
@@ -147,22 +145,30 @@ mod tests {
     fn a_run_is_summed_up_and_what_is_missing_stays_empty() {
         let folder = tempfile::tempdir().unwrap();
         let run = folder.path();
-        assert_eq!(RunSummary::of(run), RunSummary::default());
-        let poses =
-            "rank,score,rank_score,capri\n1,4.5,5.25,incorrect\n2,4,5,acceptable\n3,3,4,medium\n";
-        fs::write(run.join("poses.csv"), poses).unwrap();
+        assert!(RunSummary::of(run).is_err());
+        let rows = |classes: [&str; 3]| {
+            let [first, second, third] = classes;
+            format!(
+                "rank,qw,qx,qy,qz,tx,ty,tz,score,rank_score,capri\n1,1,0,0,0,0,0,0,4.5,0.0000001,{first}\n\
+                 2,1,0,0,0,0,0,0,4,5,{second}\n3,1,0,0,0,0,0,0,3,4,{third}\n"
+            )
+        };
+        let known = rows(["incorrect", "acceptable", "medium"]);
+        fs::write(run.join("poses.csv"), known).unwrap();
         fs::write(
             run.join("run.json"),
             r#"{"results":{"poses":9,"clusters":3}}"#,
         )
         .unwrap();
-        let summary = RunSummary::of(run);
+        let summary = RunSummary::of(run).unwrap();
         assert_eq!(summary.counts, [Some(9), Some(3)]);
         assert_eq!(
             ["score", "rank_score", "dockq", "capri", "nothing"].map(|name| summary.best(name)),
-            ["4.5", "5.25", "", "incorrect", ""]
+            ["4.5", "0.0000001", "", "incorrect", ""]
         );
         assert_eq!(summary.first_acceptable, Some(2));
+        fs::write(run.join("poses.csv"), rows([""; 3])).unwrap();
+        assert_eq!(RunSummary::of(run).unwrap().first_acceptable, None);
     }
 
     #[test]
