@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use knotdock::output::run_options::RunOptions;
+use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::choice::Wanted;
 
 use super::arguments::{above_zero, duration};
@@ -60,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 51] = [
+const RECORDED: [&str; 52] = [
     "receptor",
     "ligand",
     "waters",
@@ -84,6 +85,7 @@ const RECORDED: [&str; 51] = [
     "sample_weights",
     "tolerance",
     "precision",
+    "engine",
     "effects",
     "electrostatics_weight",
     "contact_weight",
@@ -147,6 +149,12 @@ impl Dock {
             accuracy: self.accuracy,
             budget: self.budget,
         };
+        if wanted != Wanted::default() && request.options.dock.engine == EngineChoice::Gpu {
+            let error =
+                "--accuracy and --budget rest on what the CPU takes, and --engine gpu is asked for";
+            return Err(Failure::input(error)
+                .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
+        }
         Docking::prepare(request, wanted, (directory, self.force), clock, console)
     }
 

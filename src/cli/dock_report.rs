@@ -22,6 +22,22 @@ pub fn told(outcome: &DockOutcome) -> String {
             ),
         });
     let mut lines: Vec<String> = effects.collect();
+    if let Some(adapter) = &outcome.adapter {
+        lines.insert(
+            0,
+            format!(
+                "Searched on {} ({}{}), {} rotations in flight; the times below are of one CPU thread",
+                adapter.name,
+                adapter.backend,
+                if adapter.software {
+                    ", a program that plays a graphics processor"
+                } else {
+                    ""
+                },
+                adapter.rotations_in_flight
+            ),
+        );
+    }
     lines.push(format!(
         "All together: rank {}, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error

@@ -155,6 +155,7 @@ impl Docking {
             timing: clock.timing(&outcome),
             machine: Machine {
                 chosen: chosen.clone(),
+                adapter: outcome.adapter.clone(),
                 ..machine(&plan)
             },
         })

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
-use knotdock::search::options::{PASS_RATIO, Precision, REFINED_BY_SHAPE};
+use knotdock::search::options::{EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE};
 use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
@@ -165,6 +165,10 @@ pub struct SearchArguments {
     /// either way.
     #[arg(long, value_name = "single|double", default_value = DockOptions::default().precision.name(), help_heading = TRADE_OFFS)]
     precision: Precision,
+    /// What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single precision; of several the environment
+    /// variable WGPU_ADAPTER_NAME names one.
+    #[arg(long, value_name = "cpu|gpu", default_value = DockOptions::default().engine.name(), help_heading = TRADE_OFFS)]
+    engine: EngineChoice,
     /// Peaks kept of each rotation.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().per_rotation, help_heading = TRADE_OFFS)]
     per_rotation: usize,
@@ -251,6 +255,7 @@ impl SearchArguments {
             fine_rotations: self.fine_angle.or(self.fine_rotations),
             fine_share: self.fine_share,
             precision: self.precision,
+            engine: self.engine,
             per_rotation: self.per_rotation,
             poses: self.poses,
             refine: self.refine,

@@ -17,7 +17,7 @@ use crate::evaluate::MatchReport;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
-use crate::search::{DockOutcome, DockPlan, Effect, EffectCost, StageTime};
+use crate::search::{Adapter, DockOutcome, DockPlan, Effect, EffectCost, StageTime};
 use crate::tradeoff::choice::Chosen;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
@@ -115,6 +115,8 @@ pub struct Machine {
     pub memory_estimate_bytes: u64,
     /// Memory that the search was given, in bytes; `null` for no limit.
     pub memory_limit_bytes: Option<u64>,
+    /// The graphics processor that correlated; `null` where none did.
+    pub adapter: Option<Adapter>,
     /// The command line.
     pub command: Vec<String>,
     /// What the plan was chosen by, where an accuracy or a time was asked for.

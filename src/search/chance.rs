@@ -31,13 +31,14 @@ pub fn chance(
     calibrated.then_some(SHARE)
 }
 
-/// Whether nothing is asked that moves the ranking: threads and memory do not, and which effects are on is seen by themselves.
+/// Whether nothing is asked that moves the ranking: threads, memory and the engine do not, and which effects are on is seen by themselves.
 fn is_default(options: &DockOptions) -> bool {
     let default = DockOptions::default();
     let rest = DockOptions {
         effects: default.effects.clone(),
         threads: default.threads,
         memory: default.memory,
+        engine: default.engine,
         ..options.clone()
     };
     rest == default

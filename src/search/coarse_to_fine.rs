@@ -5,11 +5,12 @@
 //! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
+use super::correlator::Correlator;
+use super::options::SearchError;
 use super::peaks::{NEIGHBOURS, Peak};
 use super::plan::DockPlan;
 use super::run::Progress;
 use super::scan::{Quartet, scan};
-use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -25,12 +26,15 @@ pub struct FineSearched {
 }
 
 /// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both, best first, and what was searched.
+///
+/// # Errors
+/// As [`scan`].
 pub(super) fn search_finer<T: Real>(
     plan: &DockPlan,
-    engine: &CpuEngine<T>,
+    engine: &Correlator<T>,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
-) -> (Vec<Peak>, FineSearched) {
+) -> Result<(Vec<Peak>, FineSearched), SearchError> {
     let cell_of = nearest(&plan.fine_set, &plan.set);
     let mut sizes = vec![0usize; plan.set.len()];
     for &cell in &cell_of {
@@ -61,7 +65,7 @@ pub(super) fn search_finer<T: Real>(
         .filter(|quartet| quartet.wanted.contains(&true))
         .collect();
     progress.stage("fine", rotations as u64);
-    let fine = scan(plan, engine, &quartets, usize::MAX, progress);
+    let fine = scan(plan, engine, &quartets, usize::MAX, progress)?;
 
     let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(plan.set.len()) {
         Some(index) => cell_of[index],
@@ -74,7 +78,8 @@ pub(super) fn search_finer<T: Real>(
     crowded.sort_unstable_by(|a, b| cell(a).cmp(&cell(b)).then(a.order(b)));
     let position = |peak: &Peak| {
         let (_, half_turn) = plan.rotation(peak.rotation as usize);
-        engine.position_after(half_turn, peak.voxel as usize)
+        let voxel = peak.voxel as usize;
+        engine.cpu.position_after(half_turn, voxel)
     };
     for group in crowded.chunk_by(|a, b| cell(a) == cell(b)) {
         peaks.extend(apart(
@@ -86,7 +91,7 @@ pub(super) fn search_finer<T: Real>(
     }
     peaks.sort_unstable_by(Peak::order);
     peaks.truncate(plan.options.poses);
-    (peaks, FineSearched { rotations, cells })
+    Ok((peaks, FineSearched { rotations, cells }))
 }
 
 /// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's peaks may.

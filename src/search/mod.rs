@@ -3,6 +3,7 @@
 pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
+mod correlator;
 mod costs;
 pub mod effect_choice;
 pub mod effects;
@@ -23,7 +24,7 @@ pub use effect_choice::EffectChoice;
 pub use effects::{Decision, LengthUnit, Scene};
 pub use knotdock_scoring::effect::Effect;
 pub use options::{DockOptions, SearchError};
-pub use outcome::{DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
+pub use outcome::{Adapter, DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
 pub use plan::{DockPlan, plan, plan_scene};
 pub use restraints::AntibodySurface;
 pub use run::{Progress, dock, molecule_points};

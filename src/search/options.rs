@@ -39,6 +39,8 @@ pub struct DockOptions {
     pub tolerance: f64,
     /// Floating-point type of the fast path.
     pub precision: Precision,
+    /// What correlates.
+    pub engine: EngineChoice,
     /// Nodes along each edge of the grids that meshes are sampled on; `None` for molecules.
     pub sample_grid: Option<usize>,
     /// Weights of a mesh's balls; `None` for molecules.
@@ -134,6 +136,39 @@ impl std::str::FromStr for Precision {
     }
 }
 
+/// What the correlations are computed on. All else, exact sums and refinement among it, is computed on the CPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EngineChoice {
+    /// The CPU's cores.
+    #[default]
+    Cpu,
+    /// A graphics processor, in single precision.
+    Gpu,
+}
+
+impl EngineChoice {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Cpu, Self::Gpu];
+
+    /// Name as on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+        }
+    }
+}
+
+impl std::str::FromStr for EngineChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|known| known.name() == text);
+        known.ok_or_else(|| format!("{} is needed", Self::ALL.map(Self::name).join(" or ")))
+    }
+}
+
 /// Poses refined by default when shape is all there is: on training pairs that gained ranks, and beside other effects it cost some.
 pub const REFINED_BY_SHAPE: usize = 300;
 
@@ -157,6 +192,7 @@ impl Default for DockOptions {
             core_weight: 1.0,
             tolerance: 1e-2,
             precision: Precision::Single,
+            engine: EngineChoice::Cpu,
             sample_grid: None,
             sample_weights: None,
             effects: EffectChoice::Auto,
@@ -305,6 +341,27 @@ impl DockOptions {
                 .to_owned(),
             });
         }
+        self.check_engine()
+    }
+
+    fn check_engine(&self) -> Result<(), SearchError> {
+        if self.engine == EngineChoice::Cpu {
+            return Ok(());
+        }
+        if !cfg!(feature = "gpu") {
+            return Err(SearchError::Option {
+                name: "engine",
+                value: self.engine.name().to_owned(),
+                bound: "cpu in this build, which was made without the feature `gpu`".to_owned(),
+            });
+        }
+        if self.precision == Precision::Double {
+            return Err(SearchError::Option {
+                name: "precision",
+                value: self.precision.name().to_owned(),
+                bound: "single with --engine gpu".to_owned(),
+            });
+        }
         Ok(())
     }
 }
@@ -349,6 +406,9 @@ pub enum SearchError {
     /// The threads could not be started.
     #[error("threads could not be started: {0}")]
     Threads(String),
+    /// The graphics processor cannot be used.
+    #[error("--engine gpu: {0}")]
+    Graphics(String),
     /// No rotation has a finite score.
     #[error("no pose has a finite score")]
     NoPose,
@@ -371,6 +431,10 @@ impl SearchError {
                 ..
             } => format!("use --spacing {spacing}, or allow more with --memory"),
             Self::Memory { .. } => "allow more with --memory".to_owned(),
+            Self::Graphics(_) => {
+                "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
+                    .to_owned()
+            }
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
             Self::Effect { .. } => {
                 "leave it out of --effects, or let auto choose what the inputs call for".to_owned()

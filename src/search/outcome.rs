@@ -107,6 +107,19 @@ pub struct StageTime {
     pub cpu_seconds: Option<f64>,
 }
 
+/// The graphics processor that correlated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Adapter {
+    /// Its name.
+    pub name: String,
+    /// The interface that it was driven through, such as `vulkan`.
+    pub backend: &'static str,
+    /// Whether it is a program on the CPU that plays one.
+    pub software: bool,
+    /// Rotations that were in flight at once, half-turns counted.
+    pub rotations_in_flight: usize,
+}
+
 /// All that a docking run found.
 #[derive(Clone, Debug)]
 pub struct DockOutcome {
@@ -130,4 +143,6 @@ pub struct DockOutcome {
     pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,
+    /// The graphics processor that correlated, where one did.
+    pub adapter: Option<Adapter>,
 }

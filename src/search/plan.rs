@@ -1,7 +1,7 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use super::effects::{Decision, LengthUnit, Scene};
-use super::options::{DockOptions, Precision, REFINED_BY_SHAPE, SearchError};
+use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
 use super::rescoring::Asked;
 use super::rotations::{
@@ -63,6 +63,9 @@ pub struct DockPlan {
     pub fixed_bytes: u64,
     /// Bytes that a rotation in flight takes.
     pub bytes_in_flight: u64,
+    /// Bytes of the graphics processor's memory that rotations in flight there may take; 0 on the CPU.
+    #[serde(skip)]
+    pub graphics_bytes: u64,
     /// Which effects are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
@@ -85,6 +88,9 @@ pub struct DockPlan {
 
 /// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
 const EXPECTED_RANK: usize = 8;
+
+/// Most bytes that rotations in flight take of a graphics processor's memory, which may be the computer's own.
+const GRAPHICS_BYTES: u64 = 512 << 20;
 
 /// Plans the docking of two molecules.
 ///
@@ -174,6 +180,14 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         }
         in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
     }
+    let graphics_bytes = match options.engine {
+        EngineChoice::Cpu => 0,
+        EngineChoice::Gpu => {
+            let taken = fixed + in_flight as u64 * per_rotation;
+            let left = options.memory.map(|allowed| allowed.saturating_sub(taken));
+            left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
+        }
+    };
     let set = rotation_set(options.rotations);
     let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
     let (a, b) = match &engine.basis {
@@ -201,6 +215,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         in_flight,
         fixed_bytes: fixed,
         bytes_in_flight: per_rotation,
+        graphics_bytes,
         decisions,
         attracted,
         labels,
@@ -288,7 +303,7 @@ impl DockPlan {
 
     /// Bytes that the run is expected to take at its peak.
     pub fn memory_bytes(&self) -> u64 {
-        self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight
+        self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight + self.graphics_bytes
     }
 }
 
@@ -322,6 +337,9 @@ impl std::fmt::Display for DockPlan {
         )?;
         if self.options.precision == Precision::Double {
             write!(f, "; in double precision")?;
+        }
+        if self.options.engine == EngineChoice::Gpu {
+            write!(f, "; on a graphics processor")?;
         }
         if let Some(finer) = self.options.fine_rotations {
             write!(

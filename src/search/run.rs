@@ -3,6 +3,7 @@
 use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
+use super::correlator::Correlator;
 use super::costs::costs;
 use super::options::{Precision, SearchError};
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
@@ -105,20 +106,21 @@ fn dock_in<T: Real>(
         error: rank_error,
     } = choose_rank(plan, &folded);
     let effects = costs(plan, &folded, &engine);
+    let engine = Correlator::new(plan, engine)?;
     let scorer = plan.exact_scorer()?;
     progress.advance(1);
     clock.lap("prepare");
 
     progress.stage("search", plan.rotations as u64);
     let rotations = all_rotations(plan);
-    let mut peaks = scan(plan, &engine, &rotations, options.poses, progress);
+    let mut peaks = scan(plan, &engine, &rotations, options.poses, progress)?;
     clock.lap("search");
     if peaks.is_empty() {
         return Err(SearchError::NoPose);
     }
     let mut fine = None;
     if !plan.fine_set.is_empty() {
-        let (finer, searched) = search_finer(plan, &engine, peaks, progress);
+        let (finer, searched) = search_finer(plan, &engine, peaks, progress)?;
         (peaks, fine) = (finer, Some(searched));
         clock.lap("fine");
     }
@@ -126,8 +128,8 @@ fn dock_in<T: Real>(
         .iter()
         .map(|peak| {
             let (rotation, half_turn) = plan.rotation(peak.rotation as usize);
-            let place =
-                plan.engine.receptor_center + engine.position_after(half_turn, peak.voxel as usize);
+            let position = engine.cpu.position_after(half_turn, peak.voxel as usize);
+            let place = plan.engine.receptor_center + position;
             Pose::about(rotation, plan.engine.ligand_center, place)
         })
         .collect();
@@ -213,10 +215,11 @@ fn dock_in<T: Real>(
         chance: chance(options, on, ranking.clusters),
         error,
         rank_error,
-        rank: engine.rank(),
+        rank: engine.cpu.rank(),
         effects,
         fine,
         timing: clock.stages,
+        adapter: engine.adapter,
     })
 }
 

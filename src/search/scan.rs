@@ -1,10 +1,14 @@
 //! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
 
+use super::correlator::Correlator;
+use super::options::SearchError;
 use super::peaks::{Peak, find_peaks};
 use super::plan::DockPlan;
 use super::run::Progress;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::engine::Folded;
+#[cfg(feature = "gpu")]
+use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
@@ -120,7 +124,57 @@ pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
 }
 
 /// The best `most` peaks over the rotations given, best first.
+///
+/// # Errors
+/// [`SearchError::Graphics`] where the graphics processor fails.
 pub(super) fn scan<T: Real>(
+    plan: &DockPlan,
+    engine: &Correlator<T>,
+    quartets: &[Quartet],
+    most: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<Peak>, SearchError> {
+    // No list grows beyond all peaks that there are.
+    let most = most.min(4 * quartets.len() * plan.options.per_rotation);
+    #[cfg(feature = "gpu")]
+    let mut peaks = match &engine.gpu {
+        Some(gpu) => scan_on_card(plan, gpu, quartets, progress)?,
+        None => scan_on_cores(plan, &engine.cpu, quartets, most, progress),
+    };
+    #[cfg(not(feature = "gpu"))]
+    let mut peaks = scan_on_cores(plan, &engine.cpu, quartets, most, progress);
+    peaks.retain(|peak| peak.score.is_finite());
+    peaks.sort_unstable_by(Peak::order);
+    peaks.truncate(most);
+    Ok(peaks)
+}
+
+/// All peaks, from the graphics processor.
+#[cfg(feature = "gpu")]
+fn scan_on_card(
+    plan: &DockPlan,
+    gpu: &GpuEngine,
+    quartets: &[Quartet],
+    progress: &dyn Progress,
+) -> Result<Vec<Peak>, SearchError> {
+    let turns: Vec<Turn> = quartets
+        .iter()
+        .map(|quartet| Turn {
+            rotation: plan.rotation(quartet.first).0,
+            wanted: quartet.wanted,
+        })
+        .collect();
+    let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
+    let peaks = found.into_iter().map(|peak| Peak {
+        score: f64::from(peak.score),
+        rotation: (quartets[peak.turn].first + peak.half_turn) as u32,
+        voxel: peak.voxel,
+    });
+    Ok(peaks.collect())
+}
+
+/// Peaks of the CPU's cores, the best `most` of each thread among them.
+fn scan_on_cores<T: Real>(
     plan: &DockPlan,
     engine: &CpuEngine<T>,
     quartets: &[Quartet],
@@ -129,10 +183,7 @@ pub(super) fn scan<T: Real>(
 ) -> Vec<Peak> {
     let options = &plan.options;
     let next = AtomicUsize::new(0);
-    // No list grows beyond all peaks that there are.
-    let all = 4 * quartets.len() * options.per_rotation;
-    let most = most.min(all);
-    let mut peaks: Vec<Peak> = (0..plan.in_flight)
+    (0..plan.in_flight)
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
@@ -164,9 +215,5 @@ pub(super) fn scan<T: Real>(
             found
         })
         .flatten()
-        .collect();
-    peaks.retain(|peak| peak.score.is_finite());
-    peaks.sort_unstable_by(Peak::order);
-    peaks.truncate(most);
-    peaks
+        .collect()
 }

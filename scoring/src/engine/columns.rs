@@ -30,6 +30,12 @@ impl Reading {
         }
     }
 
+    /// 1 mirrored, 2 reversed, 4 conjugated.
+    #[cfg(feature = "gpu")]
+    pub fn bits(self) -> u32 {
+        u32::from(self.mirrored) + 2 * u32::from(self.reversed) + 4 * u32::from(self.conjugate)
+    }
+
     /// Adds a conj(b), with b so read, to a column in transform order: `a` and `b` run from kx = -kx_max to kx_max, `sum` is as
     /// long as the inverse transform.
     #[inline(always)]

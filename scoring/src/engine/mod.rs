@@ -5,6 +5,8 @@
 mod columns;
 pub mod cpu;
 pub mod folded;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod plan;
 mod preparation;
 mod resolved;

@@ -86,6 +86,12 @@ impl<T: Real> Forward<T> {
         self.kernel.width()
     }
 
+    /// Fine grid points of the block that knots are spread onto, on each axis.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn block(&self) -> [usize; 3] {
+        self.block
+    }
+
     /// The spreading window.
     pub fn kernel(&self) -> &SpreadingKernel<T> {
         &self.kernel

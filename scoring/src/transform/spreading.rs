@@ -61,6 +61,12 @@ impl<T: Real> SpreadingKernel<T> {
         self.width
     }
 
+    /// [power][point]: polynomials in 2 f - 1, f in [0, 1) the distance of the window's first point from its edge, of its points' values.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn coefficients(&self) -> &[[T; MAX_WIDTH]] {
+        &self.coefficients
+    }
+
     /// Window values at the `width` grid points from ceil(u - width/2) on, for a knot at u in cells; returns the first point.
     #[inline(always)]
     pub fn place(&self, u: f64, values: &mut [T; MAX_WIDTH]) -> i64 {

@@ -1,0 +1,87 @@
+//! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run, peaks included.
+//!
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, prints its name, and for two ranks of the lifted axis the
+//! milliseconds of a rotation on either, their ratio, and the stages on the card, each submitted by itself.
+
+mod example;
+
+use knotdock::search::peaks::find_peaks;
+use knotdock::search::rotations::rotation_set;
+use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
+use knotdock_scoring::engine::{CpuEngine, Folded, Plan};
+use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::se3::HalfTurn;
+use std::error::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Fours of rotations.
+const TURNS: usize = 900;
+/// Peaks of a rotation, and how far apart, as in a search.
+const PEAKS: (usize, usize) = (3, 2);
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let gpu = match GpuDevice::open(std::env::var(ADAPTER_VARIABLE).ok().as_deref()) {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            println!("not measured: {error}");
+            return Ok(());
+        }
+    };
+    let [receptor, ligand] = example::knots()?;
+    let options = knotdock::search::DockOptions::default().engine();
+    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
+    let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);
+    let turns: Vec<Turn> = rotation_set(4 * TURNS)
+        .into_iter()
+        .step_by(4)
+        .map(|rotation| Turn {
+            rotation,
+            wanted: [true; 4],
+        })
+        .collect();
+    for rank in [2, 6] {
+        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
+        let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
+        let on_card = least_seconds(2, || card.best(&turns, |_| {}).map(drop))?;
+        let mut work = engine.workspace();
+        let on_core = least_seconds(2, || {
+            let mut found = Vec::new();
+            for turn in &turns[..TURNS / 9] {
+                engine.turn(&turn.rotation, &mut work);
+                for half_turn in HalfTurn::ALL {
+                    engine.correlate_turned(half_turn, &mut work);
+                    let (grid, rows) = (&mut work.grid, &mut work.row_best);
+                    find_peaks(plan.size(), grid, rows, 0, PEAKS.0, &mut found);
+                }
+                found.clear();
+            }
+            Ok::<(), Box<dyn Error>>(())
+        })?;
+        let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (4 * turns) as f64;
+        let (card_ms, core_ms) = (of_rotation(on_card, TURNS), of_rotation(on_core, TURNS / 9));
+        println!(
+            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
+            engine.rank(),
+            gpu.name(),
+            gpu.backend(),
+            card.in_flight(),
+            core_ms / card_ms
+        );
+        for (name, seconds) in card.stage_seconds(&turns[0].rotation)? {
+            println!("  {name}: {:.4} ms a rotation", 1e3 * seconds);
+        }
+    }
+    Ok(())
+}
+
+/// The least of a few runs.
+fn least_seconds<E>(runs: usize, mut run: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+    let mut least = f64::INFINITY;
+    for _ in 0..runs {
+        let start = Instant::now();
+        run()?;
+        least = least.min(start.elapsed().as_secs_f64());
+    }
+    Ok(least)
+}

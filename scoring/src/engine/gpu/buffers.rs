@@ -1,0 +1,289 @@
+//! The sizes of a batch and the buffers that it works in.
+
+use super::device::{GpuDevice, GpuError};
+use crate::engine::cpu::CpuEngine;
+use crate::transform::Real;
+use crate::transform::modes::place;
+use bytemuck::{Pod, Zeroable};
+use wgpu::util::DeviceExt;
+
+/// Sizes that a plan fixes.
+#[derive(Clone, Debug)]
+pub(super) struct Sizes {
+    pub grid: [usize; 3],
+    pub fine: [usize; 3],
+    pub block: [usize; 3],
+    pub fields: usize,
+    pub knots: usize,
+    /// Points of the spreading window, and terms of each point's polynomial.
+    pub window: usize,
+    pub terms: usize,
+    /// Planes kz that hold modes.
+    pub depth: usize,
+    pub columns: usize,
+    pub modes: usize,
+    /// Modes of the longest column.
+    pub longest: usize,
+    /// Peaks of an image, and how far each rules out others on each axis, voxels.
+    pub peaks: usize,
+    pub reach: [usize; 3],
+}
+
+/// Turns and images of a batch: each turn has up to four images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Batch {
+    pub turns: usize,
+    pub images: usize,
+}
+
+/// Turns in a batch: enough to fill a large card, few enough that no batch takes seconds.
+const MOST_TURNS: usize = 32;
+
+impl Sizes {
+    /// Of an engine, with so many peaks an image that keep `reach` voxels free on each side.
+    pub fn new<T: Real>(engine: &CpuEngine<T>, peaks: usize, reach: usize) -> Self {
+        let plan = engine.plan();
+        let modes = &plan.modes;
+        let kernel = engine.forward.kernel();
+        Self {
+            grid: modes.size,
+            fine: plan.fine,
+            block: engine.forward.block(),
+            fields: engine.rank(),
+            knots: engine.ligand.len(),
+            window: kernel.width(),
+            terms: kernel.coefficients().len(),
+            depth: modes.planes.len(),
+            columns: modes.columns.len(),
+            modes: modes.count,
+            longest: modes
+                .columns
+                .iter()
+                .map(|column| column.len())
+                .max()
+                .unwrap_or(0),
+            peaks,
+            reach: modes.size.map(|n| reach.min((n - 1) / 2)),
+        }
+    }
+
+    /// Peaks that an image of finite scores has at the least: each rules out no more voxels than its neighbourhood has.
+    pub fn least_peaks(&self) -> usize {
+        let of_peak: usize = self.reach.iter().map(|reach| 2 * reach + 1).product();
+        let voxels: usize = self.grid.iter().product();
+        self.peaks.min(voxels.div_ceil(of_peak))
+    }
+
+    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images.
+    fn bytes(&self) -> ([usize; 4], [usize; 5]) {
+        let [bx, by, bz] = self.block;
+        let [nx, ny, nz] = self.grid;
+        let of_turn = [
+            4 * self.fields * bx * by * bz,
+            8 * self.fields * bx * self.depth * by,
+            8 * self.fields * self.columns * bx,
+            8 * self.fields * self.modes,
+        ];
+        let of_image = [
+            8 * self.columns * nx,
+            8 * nx * self.depth * ny,
+            4 * nx * ny * nz,
+            4 * nx * ny,
+            8 * self.peaks,
+        ];
+        (of_turn, of_image)
+    }
+
+    /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.
+    pub fn batch(&self, gpu: &GpuDevice, memory: u64) -> Result<Batch, GpuError> {
+        let limits = gpu.device.limits();
+        let longest = limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size);
+        let (of_turn, of_image) = self.bytes();
+        let fits = |batch: Batch| {
+            let buffers = of_turn
+                .iter()
+                .map(|bytes| (batch.turns * bytes) as u64)
+                .chain(of_image.iter().map(|bytes| (batch.images * bytes) as u64));
+            buffers.clone().all(|bytes| bytes <= longest) && buffers.sum::<u64>() <= memory
+        };
+        let of = |turns: usize| Batch {
+            turns,
+            images: 4 * turns,
+        };
+        let chosen = (1..=MOST_TURNS).rev().map(of).find(|&batch| fits(batch));
+        // A grid so large that the four images of one turn do not fit goes image by image.
+        let least = Batch {
+            turns: 1,
+            images: 1,
+        };
+        chosen.or(fits(least).then_some(least)).ok_or_else(|| {
+            let needed: usize = of_turn.iter().chain(&of_image).sum();
+            gpu.too_small(format!(
+                "a rotation takes {:.0} MB, of {:.0} MB at hand, and no buffer may be longer than {:.0} MB",
+                needed as f64 / 1e6,
+                memory as f64 / 1e6,
+                longest as f64 / 1e6
+            ))
+        })
+    }
+}
+
+/// A column of modes as the stages know it.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Column {
+    fine_y: u32,
+    y: u32,
+    side: u32,
+    start: u32,
+    mirror: u32,
+}
+
+/// Everything on the card.
+pub(super) struct Buffers {
+    pub columns: wgpu::Buffer,
+    pub planes: wgpu::Buffer,
+    pub spectra: wgpu::Buffer,
+    pub knots: wgpu::Buffer,
+    pub weights: wgpu::Buffer,
+    pub window: wgpu::Buffer,
+    pub turns: wgpu::Buffer,
+    pub images: wgpu::Buffer,
+    pub block: wgpu::Buffer,
+    pub fine_rows: wgpu::Buffer,
+    pub partial: wgpu::Buffer,
+    pub turned: wgpu::Buffer,
+    pub along: wgpu::Buffer,
+    pub rows: wgpu::Buffer,
+    pub grid: wgpu::Buffer,
+    pub row_best: wgpu::Buffer,
+    pub peaks: wgpu::Buffer,
+}
+
+impl Buffers {
+    /// Uploads what does not turn and makes room for a batch.
+    pub fn new<T: Real>(
+        gpu: &GpuDevice,
+        engine: &CpuEngine<T>,
+        sizes: &Sizes,
+        batch: Batch,
+    ) -> Result<Self, GpuError> {
+        let modes = &engine.plan().modes;
+        let columns: Vec<Column> = modes
+            .columns
+            .iter()
+            .zip(&engine.mirrors)
+            .map(|(column, &mirror)| Column {
+                fine_y: place(column.ky, sizes.fine[1]) as u32,
+                y: place(column.ky, sizes.grid[1]) as u32,
+                side: column.kx_max as u32,
+                start: column.start as u32,
+                mirror: modes.columns[mirror as usize].start as u32,
+            })
+            .collect();
+        let mut planes: Vec<u32> = modes
+            .planes
+            .iter()
+            .map(|range| range.start as u32)
+            .collect();
+        planes.push(sizes.columns as u32);
+        let units = units(engine);
+        let mut spectra = vec![[0f32; 2]; engine.spectra.len()];
+        for column in &modes.columns {
+            for (field, unit) in units.iter().enumerate() {
+                let start = sizes.fields * column.start + field * column.len();
+                let range = start..start + column.len();
+                for (to, from) in spectra[range.clone()]
+                    .iter_mut()
+                    .zip(&engine.spectra[range])
+                {
+                    *to = [
+                        (from.re.wide() * unit) as f32,
+                        (from.im.wide() * unit) as f32,
+                    ];
+                }
+            }
+        }
+        let weights: Vec<f32> = engine
+            .weights
+            .iter()
+            .zip(units.iter().cycle())
+            .map(|(weight, unit)| (weight.wide() / unit) as f32)
+            .collect();
+        let knots: Vec<[f32; 4]> = engine
+            .ligand
+            .iter()
+            .map(|y| [y.x as f32, y.y as f32, y.z as f32, 0.0])
+            .collect();
+        let window: Vec<f32> = engine
+            .forward
+            .kernel()
+            .coefficients()
+            .iter()
+            .flat_map(|points| &points[..sizes.window])
+            .map(|value| value.wide() as f32)
+            .collect();
+        let filled = |label, contents: &[u8]| {
+            let contents = if contents.is_empty() {
+                &[0; 4]
+            } else {
+                contents
+            };
+            gpu.device
+                .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                    label: Some(label),
+                    contents,
+                    usage: wgpu::BufferUsages::STORAGE,
+                })
+        };
+        let empty = |label, bytes: usize| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes as u64,
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let Batch { turns, images } = batch;
+        let (of_turn, of_image) = sizes.bytes();
+        let buffers = Self {
+            columns: filled("columns", bytemuck::cast_slice(&columns)),
+            planes: filled("planes", bytemuck::cast_slice(&planes)),
+            spectra: filled("spectra", bytemuck::cast_slice(&spectra)),
+            knots: filled("knots", bytemuck::cast_slice(&knots)),
+            weights: filled("weights", bytemuck::cast_slice(&weights)),
+            window: filled("window", bytemuck::cast_slice(&window)),
+            turns: empty("turns", 48 * turns),
+            images: empty("images", 8 * images),
+            block: empty("block", turns * of_turn[0]),
+            fine_rows: empty("fine rows", turns * of_turn[1]),
+            partial: empty("partial", turns * of_turn[2]),
+            turned: empty("turned", turns * of_turn[3]),
+            along: empty("along", images * of_image[0]),
+            rows: empty("rows", images * of_image[1]),
+            grid: empty("grid", images * of_image[2]),
+            row_best: empty("row best", images * of_image[3]),
+            peaks: empty("peaks", images * of_image[4]),
+        };
+        gpu.check()?;
+        Ok(buffers)
+    }
+}
+
+/// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach 2^30.
+fn units<T: Real>(engine: &CpuEngine<T>) -> Vec<f64> {
+    let fields = engine.rank();
+    let mut sums = vec![0.0; fields];
+    for weights in engine.weights.chunks_exact(fields) {
+        for (sum, weight) in sums.iter_mut().zip(weights) {
+            *sum += weight.wide().abs();
+        }
+    }
+    sums.iter()
+        .map(|sum| sum.max(f64::from(f32::MIN_POSITIVE)) / f64::from(1 << 30))
+        .collect()
+}

@@ -1,0 +1,186 @@
+//! The graphics processor that is used, and what can go wrong with it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use thiserror::Error;
+
+/// Names part of an adapter's name, in any case, where several are there (as in other programs that use wgpu).
+pub const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
+
+/// How long a batch may take before the device is given up.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Why the correlation cannot run on a graphics processor.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum GpuError {
+    /// No adapter, or none by the name asked for.
+    #[error("no graphics processor{}: the system's Vulkan, Metal or Direct3D 12 driver shows {}", of(.wanted), listed(.found))]
+    NoAdapter {
+        /// What [`ADAPTER_VARIABLE`] says.
+        wanted: Option<String>,
+        /// Names of the adapters there are.
+        found: Vec<String>,
+    },
+    /// The plan asks for more than the adapter has.
+    #[error("{adapter} is too small for this grid: {what}")]
+    TooSmall {
+        /// The adapter's name.
+        adapter: String,
+        /// What is missing.
+        what: String,
+    },
+    /// The driver reported an error.
+    #[error("{adapter}: {message}")]
+    Driver {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver says.
+        message: String,
+    },
+}
+
+fn of(wanted: &Option<String>) -> String {
+    wanted
+        .as_ref()
+        .map_or_else(String::new, |name| format!(" named like \"{name}\""))
+}
+
+fn listed(found: &[String]) -> String {
+    if found.is_empty() {
+        "none".into()
+    } else {
+        found.join(", ")
+    }
+}
+
+/// An opened graphics processor.
+#[derive(Clone)]
+pub struct GpuDevice {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    info: wgpu::AdapterInfo,
+    /// The first error that no call returned.
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+impl GpuDevice {
+    /// Opens the adapter that `wanted` names (part of its name, in any case), else the first of the best kind: a card of its own before one within the
+    /// processor, and a program that plays one last.
+    ///
+    /// # Errors
+    /// [`GpuError`] where none is there or it cannot be opened.
+    pub fn open(wanted: Option<&str>) -> Result<Self, GpuError> {
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let backends = wgpu::Backends::PRIMARY;
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+        let found: Vec<String> = adapters.iter().map(|one| one.get_info().name).collect();
+        adapters.sort_by_key(|one| kind_order(one.get_info().device_type));
+        let wanted = wanted.map(str::to_lowercase);
+        let fits = |name: &str| {
+            let named = |part: &String| name.to_lowercase().contains(part);
+            wanted.as_ref().is_none_or(named)
+        };
+        let adapter = adapters
+            .into_iter()
+            .find(|one| fits(&one.get_info().name))
+            .ok_or(GpuError::NoAdapter { wanted, found })?;
+        let info = adapter.get_info();
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("knotdock"),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        });
+        let (device, queue) = pollster::block_on(request).map_err(|error| GpuError::Driver {
+            adapter: info.name.clone(),
+            message: error.to_string(),
+        })?;
+        let failure = Arc::new(Mutex::new(None));
+        let told = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            note(&told, error.to_string());
+        }));
+        let told = Arc::clone(&failure);
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&told, message);
+            }
+        });
+        Ok(Self {
+            device,
+            queue,
+            info,
+            failure,
+        })
+    }
+
+    /// The adapter's name.
+    pub fn name(&self) -> &str {
+        &self.info.name
+    }
+
+    /// The interface that it is driven through, such as `vulkan`.
+    pub fn backend(&self) -> &'static str {
+        self.info.backend.to_str()
+    }
+
+    /// Whether it is a program on the processor that plays a graphics card: right, and slow.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Waits until a submission is done.
+    pub(super) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        let waited = self.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(submission),
+            timeout: Some(PATIENCE),
+        });
+        self.check()?;
+        match waited {
+            Ok(_) => Ok(()),
+            Err(error) => Err(self.driver(error.to_string())),
+        }
+    }
+
+    /// The first error that has not been told of.
+    pub(super) fn check(&self) -> Result<(), GpuError> {
+        let failure = self
+            .failure
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
+        failure.map_or(Ok(()), |message| Err(self.driver(message)))
+    }
+
+    pub(super) fn driver(&self, message: String) -> GpuError {
+        GpuError::Driver {
+            adapter: self.info.name.clone(),
+            message,
+        }
+    }
+
+    pub(super) fn too_small(&self, what: String) -> GpuError {
+        GpuError::TooSmall {
+            adapter: self.info.name.clone(),
+            what,
+        }
+    }
+}
+
+fn kind_order(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// Keeps the first message.
+fn note(failure: &Mutex<Option<String>>, message: String) {
+    failure
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .get_or_insert(message);
+}

@@ -1,0 +1,322 @@
+//! The engine on a graphics processor: the plan, the spectra and the answers of [`CpuEngine`], many rotations in flight.
+//!
+//! All runs through wgpu (Vulkan, Metal, Direct3D 12), in single precision. A batch of turned ligands goes through the stages that the engine on
+//! the CPU has, one dispatch each: spreading, the three pruned forward transforms, the product with the inverse along x (four half-turns from one
+//! transform), the inverses along y and z, and the peaks, so that only these come back. Knots are spread in whole numbers, whose sum does not depend
+//! on the order in which a card takes them: one card gives the same bits each time.
+
+mod buffers;
+mod device;
+mod line_fft;
+mod stages;
+
+pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
+
+use super::columns::Reading;
+use super::cpu::CpuEngine;
+use crate::se3::HalfTurn;
+use crate::transform::Real;
+use buffers::{Batch, Buffers, Sizes};
+use nalgebra::UnitQuaternion;
+use stages::Stages;
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// A prepared correlation of one pair on a graphics processor.
+pub struct GpuEngine {
+    gpu: GpuDevice,
+    sizes: Sizes,
+    batch: Batch,
+    buffers: Buffers,
+    stages: Stages,
+    /// Å to cells of the block, per axis, and where the block's centre lies in it.
+    scale: [f64; 3],
+    center: [f64; 3],
+}
+
+/// One rotation of the ligand, and which of its four half-turns are wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// The rotation.
+    pub rotation: UnitQuaternion<f64>,
+    /// In the order of [`HalfTurn::ALL`].
+    pub wanted: [bool; 4],
+}
+
+/// One of the best voxels of one image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridPeak {
+    /// Index of the turn, and of the half-turn in [`HalfTurn::ALL`].
+    pub turn: usize,
+    /// Index in [`HalfTurn::ALL`].
+    pub half_turn: usize,
+    /// Voxel, row-major.
+    pub voxel: u32,
+    /// G there.
+    pub score: f32,
+}
+
+/// An image of a batch: which turn of all, and which half-turn.
+#[derive(Clone, Copy)]
+struct Image {
+    turn: usize,
+    half_turn: usize,
+}
+
+/// Batches that may be under way before the first is waited for.
+const AHEAD: usize = 2;
+
+impl GpuEngine {
+    /// Takes an engine to the card, to find up to `peaks` (at least 1) voxels a rotation that are more than `reach` voxels apart on some axis, with
+    /// at most `memory` bytes of the card for what is in flight.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the grid does not fit the card or the driver fails.
+    pub fn new<T: Real>(
+        gpu: &GpuDevice,
+        engine: &CpuEngine<T>,
+        peaks: usize,
+        reach: usize,
+        memory: u64,
+    ) -> Result<Self, GpuError> {
+        let sizes = Sizes::new(engine, peaks.max(1), reach);
+        let batch = sizes.batch(gpu, memory)?;
+        let buffers = Buffers::new(gpu, engine, &sizes, batch)?;
+        let stages = Stages::new(gpu, &sizes, &buffers)?;
+        Ok(Self {
+            gpu: gpu.clone(),
+            sizes,
+            batch,
+            buffers,
+            stages,
+            scale: engine.forward.cells_per_length(),
+            center: engine.forward.center(),
+        })
+    }
+
+    /// Rotations that go through together, half-turns counted.
+    pub fn in_flight(&self) -> usize {
+        self.batch.images
+    }
+
+    /// The best voxels of every wanted image of every turn, in the order of the turns; `done` is told of images as they are finished.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where the driver fails.
+    pub fn best(
+        &self,
+        turns: &[Turn],
+        mut done: impl FnMut(usize),
+    ) -> Result<Vec<GridPeak>, GpuError> {
+        let all: Vec<Image> = turns
+            .iter()
+            .enumerate()
+            .flat_map(|(turn, wanted)| {
+                (0..4)
+                    .filter(|&half_turn| wanted.wanted[half_turn])
+                    .map(move |half_turn| Image { turn, half_turn })
+            })
+            .collect();
+        if all.is_empty() {
+            return Ok(Vec::new());
+        }
+        let bytes = (8 * self.sizes.peaks * all.len()) as u64;
+        let results = self.readable(bytes);
+        let mut under_way: VecDeque<(wgpu::SubmissionIndex, usize)> = VecDeque::new();
+        let mut at = 0;
+        for images in self.batches(&all) {
+            let mut encoder = self.encode(turns, images, self.stages.len());
+            let length = (8 * self.sizes.peaks * images.len()) as u64;
+            encoder.copy_buffer_to_buffer(&self.buffers.peaks, 0, &results, at, length);
+            at += length;
+            under_way.push_back((self.gpu.queue.submit([encoder.finish()]), images.len()));
+            if under_way.len() > AHEAD
+                && let Some((submission, count)) = under_way.pop_front()
+            {
+                self.gpu.wait(submission)?;
+                done(count);
+            }
+        }
+        for (submission, count) in under_way {
+            self.gpu.wait(submission)?;
+            done(count);
+        }
+        let records: Vec<[u32; 2]> = self.read(&results)?;
+        let least = self.sizes.least_peaks();
+        let mut peaks = Vec::with_capacity(records.len());
+        for (records, image) in records.chunks_exact(self.sizes.peaks).zip(&all) {
+            let before = peaks.len();
+            // A grid may hold fewer voxels than were asked for: 0 stands for none, else voxel + 1.
+            let found = records.iter().filter_map(|&[place, bits]| {
+                place.checked_sub(1).map(|voxel| GridPeak {
+                    turn: image.turn,
+                    half_turn: image.half_turn,
+                    voxel,
+                    score: f32::from_bits(bits),
+                })
+            });
+            peaks.extend(found);
+            if peaks.len() - before < least {
+                return Err(self.gpu.driver(format!(
+                    "{} peaks came of a grid that has {least} or more: scores that are not finite, or a stage that the driver cut short",
+                    peaks.len() - before
+                )));
+            }
+        }
+        Ok(peaks)
+    }
+
+    /// G over all translations at one rotation followed by a half-turn, (nx, ny, nz) row-major: for checks, one at a time.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where the driver fails.
+    pub fn correlate(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+        half_turn: HalfTurn,
+    ) -> Result<Vec<f32>, GpuError> {
+        let wanted = HalfTurn::ALL.map(|one| one == half_turn);
+        let turn = Turn {
+            rotation: *rotation,
+            wanted,
+        };
+        let half_turn = wanted.iter().position(|&one| one).unwrap_or(0);
+        let mut encoder = self.encode(
+            &[turn],
+            &[Image { turn: 0, half_turn }],
+            self.stages.len() - 1,
+        );
+        let bytes = 4 * self.sizes.grid.iter().product::<usize>() as u64;
+        let results = self.readable(bytes);
+        encoder.copy_buffer_to_buffer(&self.buffers.grid, 0, &results, 0, bytes);
+        let submission = self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait(submission)?;
+        self.read(&results)
+    }
+
+    /// Seconds of each stage, by name, of as full a batch as goes through together, as a share of it for each of its images: the least of a few, each
+    /// submitted and waited for by itself, so that together they take longer than a whole batch.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] where the driver fails.
+    pub fn stage_seconds(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+    ) -> Result<Vec<(&'static str, f64)>, GpuError> {
+        const REPEATS: usize = 5;
+        let turn = Turn {
+            rotation: *rotation,
+            wanted: [true; 4],
+        };
+        let images: Vec<Image> = (0..self.batch.images)
+            .map(|index| Image {
+                turn: index / 4,
+                half_turn: index % 4,
+            })
+            .collect();
+        let turns = vec![turn; self.batch.turns];
+        let counts = (self.batch.turns, images.len());
+        let mut seconds = Vec::new();
+        for stage in 0..self.stages.len() {
+            let mut least = f64::INFINITY;
+            for _ in 0..REPEATS {
+                // What it works on is there.
+                let before = self.encode(&turns, &images, stage);
+                self.gpu.wait(self.gpu.queue.submit([before.finish()]))?;
+                let mut encoder = self
+                    .gpu
+                    .device
+                    .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                self.stages
+                    .record(&mut encoder, &self.sizes, counts, stage..stage + 1);
+                let start = Instant::now();
+                self.gpu.wait(self.gpu.queue.submit([encoder.finish()]))?;
+                least = least.min(start.elapsed().as_secs_f64());
+            }
+            seconds.push((self.stages.name(stage), least / images.len() as f64));
+        }
+        Ok(seconds)
+    }
+
+    /// Runs of images that fit a batch, no turn's divided among two but where one alone is too many.
+    fn batches<'a>(&self, all: &'a [Image]) -> Vec<&'a [Image]> {
+        let mut batches = Vec::new();
+        let mut rest = all;
+        while !rest.is_empty() {
+            let mut count = 0;
+            let groups = rest.chunk_by(|a, b| a.turn == b.turn);
+            for group in groups.take(self.batch.turns) {
+                if count + group.len() > self.batch.images {
+                    break;
+                }
+                count += group.len();
+            }
+            // Where not even one turn's images fit: as many of them as do.
+            let count = if count == 0 { self.batch.images } else { count };
+            let (batch, after) = rest.split_at(count.min(rest.len()));
+            batches.push(batch);
+            rest = after;
+        }
+        batches
+    }
+
+    /// The commands of a batch as far as so many stages; its turns and images are on their way.
+    fn encode(&self, turns: &[Turn], images: &[Image], stages: usize) -> wgpu::CommandEncoder {
+        let mut rows: Vec<[f32; 4]> = Vec::with_capacity(3 * self.batch.turns);
+        let mut table: Vec<[u32; 2]> = Vec::with_capacity(images.len());
+        for group in images.chunk_by(|a, b| a.turn == b.turn) {
+            let slot = (rows.len() / 3) as u32;
+            let matrix = turns[group[0].turn].rotation.to_rotation_matrix();
+            for axis in 0..3 {
+                let row = [0, 1, 2].map(|j| (matrix[(axis, j)] * self.scale[axis]) as f32);
+                rows.push([row[0], row[1], row[2], self.center[axis] as f32]);
+            }
+            table.extend(
+                group
+                    .iter()
+                    .map(|image| [slot, Reading::after(HalfTurn::ALL[image.half_turn]).bits()]),
+            );
+        }
+        let queue = &self.gpu.queue;
+        queue.write_buffer(&self.buffers.turns, 0, bytemuck::cast_slice(&rows));
+        queue.write_buffer(&self.buffers.images, 0, bytemuck::cast_slice(&table));
+        let mut encoder = self
+            .gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.clear_buffer(&self.buffers.block, 0, None);
+        let counts = (rows.len() / 3, images.len());
+        self.stages
+            .record(&mut encoder, &self.sizes, counts, 0..stages);
+        encoder
+    }
+
+    fn readable(&self, bytes: u64) -> wgpu::Buffer {
+        self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("results"),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// What a buffer holds once everything submitted is done.
+    fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
+        let (told, mapped) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver lives until it has heard.
+            let _ = told.send(result);
+        });
+        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        self.gpu.check()?;
+        waited.map_err(|error| self.gpu.driver(error.to_string()))?;
+        match mapped.recv() {
+            Ok(Ok(())) => {}
+            _ => return Err(self.gpu.driver("results could not be read back".into())),
+        }
+        let view = buffer
+            .get_mapped_range(..)
+            .map_err(|error| self.gpu.driver(error.to_string()))?;
+        Ok(bytemuck::cast_slice(&view).to_vec())
+    }
+}

@@ -1,0 +1,57 @@
+// sum_q U_q conj(B_q), the ligand's transform read as a half-turn leaves it, and the inverse along x.
+
+@group(0) @binding(0) var<storage, read> twiddle: array<vec2<f32>>;
+@group(0) @binding(1) var<storage, read> columns: array<Column>;
+// [column][field][kx]
+@group(0) @binding(2) var<storage, read> spectra: array<vec2<f32>>;
+// [turn][column][field][kx]
+@group(0) @binding(3) var<storage, read> turned: array<vec2<f32>>;
+// Per image its turn, and how the transform is read: 1 mirrored, 2 reversed, 4 conjugated.
+@group(0) @binding(4) var<storage, read> images: array<vec2<u32>>;
+// [image][column][x]
+@group(0) @binding(5) var<storage, read_write> along: array<vec2<f32>>;
+
+@compute @workgroup_size(WIDTH)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let first = group.x * LINES;
+    let image = images[group.y];
+    let mirrored = (image.y & 1u) != 0u;
+    let reversed = (image.y & 2u) != 0u;
+    let sign = select(-1.0, 1.0, (image.y & 4u) != 0u);
+    for (var item = lane; item < LINES * NX; item += WIDTH) {
+        ping[item] = vec2<f32>(0.0);
+    }
+    workgroupBarrier();
+    for (var item = lane; item < LINES * LONGEST; item += WIDTH) {
+        let line = item / LONGEST;
+        let mode = item % LONGEST;
+        if (first + line >= COLUMNS) {
+            continue;
+        }
+        let column = columns[first + line];
+        let length = 2u * column.side + 1u;
+        if (mode >= length) {
+            continue;
+        }
+        let ours = FIELDS * column.start + mode;
+        let theirs = FIELDS * (image.x * MODES + select(column.start, column.mirror, mirrored))
+            + select(mode, length - 1u - mode, reversed);
+        var sum = vec2<f32>(0.0);
+        for (var field = 0u; field < FIELDS; field += 1u) {
+            let a = spectra[ours + field * length];
+            let b = turned[theirs + field * length];
+            sum += multiply(a, vec2<f32>(b.x, sign * b.y));
+        }
+        ping[line * NX + (mode + NX - column.side) % NX] = sum;
+    }
+    workgroupBarrier();
+    transform(lane);
+    for (var item = lane; item < LINES * NX; item += WIDTH) {
+        if (first + item / NX < COLUMNS) {
+            along[(group.y * COLUMNS + first) * NX + item] = result(item);
+        }
+    }
+}

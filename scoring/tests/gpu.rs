@@ -1,0 +1,269 @@
+//! The engine on a graphics processor against the engine on the CPU in double precision, and against plain sorting for its peaks.
+
+#[path = "scene/adapter.rs"]
+mod adapter;
+mod scene;
+
+use adapter::adapter;
+use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
+use knotdock_scoring::engine::{EngineOptions, Plan};
+use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_structures::Knots;
+use nalgebra::UnitQuaternion;
+use scene::{Numbers, Pair, RADII, cloud, engine_options, some_rotation};
+
+const MEMORY: u64 = 256 << 20;
+
+fn rotations(count: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
+    let mut numbers = Numbers(seed);
+    (0..count)
+        .map(|_| {
+            let parts = std::array::from_fn(|_| numbers.next() - 0.5);
+            Pose::from_parts(parts, [0.0; 3]).rotation
+        })
+        .collect()
+}
+
+/// Largest difference of the card's grid from the CPU's in f64 over all voxels and half-turns, as a share of the largest score there.
+fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
+    let pair = Pair::<f64>::new(a, b, options);
+    let engine = GpuEngine::new(gpu, &pair.engine, 1, 2, MEMORY).unwrap();
+    let mut work = pair.engine.workspace();
+    let rotation = some_rotation();
+    pair.engine.turn(&rotation, &mut work);
+    let (mut worst, mut best) = (0.0f64, 0.0f64);
+    for half_turn in HalfTurn::ALL {
+        pair.engine.correlate_turned(half_turn, &mut work);
+        let grid = engine.correlate(&rotation, half_turn).unwrap();
+        assert_eq!(grid.len(), work.grid.len());
+        for (ours, theirs) in grid.iter().zip(&work.grid) {
+            worst = worst.max((f64::from(*ours) - theirs).abs());
+            best = best.max(*theirs);
+        }
+    }
+    worst / best
+}
+
+/// The greedy choice among all voxels in order of score, none a neighbour of one before it.
+fn greedy(grid: &[f32], size: [usize; 3], count: usize, reach: usize) -> Vec<(u32, f32)> {
+    let [_, ny, nz] = size;
+    let place = |voxel: usize| [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
+    let mut order: Vec<usize> = (0..grid.len()).collect();
+    order.sort_by(|&a, &b| grid[b].total_cmp(&grid[a]).then(a.cmp(&b)));
+    let mut kept: Vec<usize> = Vec::new();
+    for voxel in order {
+        let apart = |&other: &usize| {
+            (0..3).any(|axis| {
+                let distance = place(voxel)[axis].abs_diff(place(other)[axis]);
+                distance.min(size[axis] - distance) > reach.min((size[axis] - 1) / 2)
+            })
+        };
+        if kept.iter().all(apart) {
+            kept.push(voxel);
+            if kept.len() == count {
+                break;
+            }
+        }
+    }
+    kept.into_iter().map(|v| (v as u32, grid[v])).collect()
+}
+
+/// Single precision costs the same small share whatever the tolerance asks of the plan: window widths, ranks and grids all change with it.
+#[test]
+fn the_grid_is_that_of_the_cpu_in_double_precision() {
+    let Some(gpu) = adapter() else { return };
+    let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let share = difference(&gpu, &a, &b, engine_options(tolerance));
+        let cpu = single_difference(&a, &b, engine_options(tolerance));
+        println!("tolerance {tolerance:e}: {share:.1e}, {cpu:.1e} on the CPU");
+        assert!(share < 3e-5, "{tolerance}: {share}");
+    }
+}
+
+/// Every radix that grids are made of, on every axis and both ways: needles along each axis, the shortest with a length of 3, 5 and 7 times a power.
+#[test]
+fn every_radix_of_grid_lengths() {
+    let Some(gpu) = adapter() else { return };
+    let ligand = cloud(20, 4.0, &RADII, 4);
+    let options = EngineOptions {
+        spacing: Some(2.0),
+        ..engine_options(1e-2)
+    };
+    for axis in 0..3 {
+        let needle = |stretch: f64| {
+            let mut receptor = cloud(80, 8.0, &RADII, 3);
+            for center in &mut receptor.centers {
+                center[axis] *= stretch;
+            }
+            receptor
+        };
+        for radix in [3, 5, 7] {
+            let receptor = (0..80)
+                .map(|step| needle(1.0 + 0.25 * f64::from(step)))
+                .find(|receptor| {
+                    let plan = Plan::new(receptor, &ligand, options).unwrap();
+                    let lengths = [plan.modes.size[axis], plan.fine[axis]];
+                    lengths.iter().any(|length| length.is_multiple_of(radix))
+                })
+                .expect("no needle has such a length");
+            let share = difference(&gpu, &receptor, &ligand, options);
+            println!("axis {axis}, radix {radix}: {share:.1e}");
+            assert!(share < 3e-5, "axis {axis}, radix {radix}: {share}");
+        }
+    }
+}
+
+/// One knot has one field of one row; balls of sizes 1 to 30 have many fields that cancel, which costs single precision more digits: what it costs
+/// the CPU it may cost the card.
+#[test]
+fn a_single_knot_and_balls_of_many_sizes() {
+    let Some(gpu) = adapter() else { return };
+    let one = cloud(1, 1.0, &[1.7], 5);
+    let share = difference(&gpu, &cloud(60, 9.0, &RADII, 6), &one, engine_options(1e-3));
+    assert!(share < 3e-5, "one knot: {share}");
+    let share = difference(&gpu, &one, &one, engine_options(1e-3));
+    assert!(share < 3e-5, "two knots: {share}");
+    let sizes = [1.0, 2.0, 4.0, 8.0, 15.0, 30.0];
+    let (a, b) = (cloud(60, 40.0, &sizes, 7), cloud(24, 20.0, &sizes, 8));
+    let share = difference(&gpu, &a, &b, engine_options(1e-2));
+    let cpu = single_difference(&a, &b, engine_options(1e-2));
+    println!("many sizes: {share:.1e}, {cpu:.1e} on the CPU");
+    assert!(share < 3.0 * cpu, "many sizes: {share}, {cpu} on the CPU");
+}
+
+/// As [`difference`], of the CPU's own single precision.
+fn single_difference(a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
+    let (single, double) = (
+        Pair::<f32>::new(a, b, options).correlate(&some_rotation()),
+        Pair::<f64>::new(a, b, options).correlate(&some_rotation()),
+    );
+    let best = double.grid.iter().copied().fold(0.0, f64::max);
+    let differences = single.grid.iter().zip(&double.grid);
+    differences
+        .map(|(a, b)| (f64::from(*a) - b).abs() / best)
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn peaks_are_those_of_a_sorted_grid() {
+    let Some(gpu) = adapter() else { return };
+    let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
+    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
+    let size = pair.engine.plan().size();
+    for (count, reach) in [(1, 2), (5, 2), (40, 1), (3, 0)] {
+        let engine = GpuEngine::new(&gpu, &pair.engine, count, reach, MEMORY).unwrap();
+        for rotation in rotations(3, 9) {
+            let wanted = [true, false, true, true];
+            let peaks = engine.best(&[Turn { rotation, wanted }], |_| {}).unwrap();
+            let mut expected = Vec::new();
+            for half_turn in (0..4).filter(|&half_turn| wanted[half_turn]) {
+                let grid = engine
+                    .correlate(&rotation, HalfTurn::ALL[half_turn])
+                    .unwrap();
+                for (voxel, score) in greedy(&grid, size, count, reach) {
+                    expected.push(GridPeak {
+                        turn: 0,
+                        half_turn,
+                        voxel,
+                        score,
+                    });
+                }
+            }
+            assert_eq!(peaks, expected);
+        }
+    }
+}
+
+/// A neighbourhood that covers the whole grid leaves one peak, and no more are made up.
+#[test]
+fn a_grid_gives_no_more_peaks_than_it_has() {
+    let Some(gpu) = adapter() else { return };
+    let one = cloud(1, 1.0, &[1.7], 5);
+    let pair = Pair::<f32>::new(&one, &one, engine_options(1e-2));
+    let longest = pair.engine.plan().size().into_iter().max().unwrap();
+    let engine = GpuEngine::new(&gpu, &pair.engine, 50, longest, MEMORY).unwrap();
+    let turn = Turn {
+        rotation: some_rotation(),
+        wanted: [true; 4],
+    };
+    let peaks = engine.best(&[turn], |_| {}).unwrap();
+    let distinct: std::collections::HashSet<_> = peaks
+        .iter()
+        .map(|peak| (peak.half_turn, peak.voxel))
+        .collect();
+    assert_eq!(distinct.len(), peaks.len());
+    assert!(peaks.len() < 4 * 50 && peaks.len() >= 4, "{}", peaks.len());
+}
+
+/// However many rotations go through together, down to one image alone, the bits are the same: so are they from run to run.
+#[test]
+fn batches_change_no_bit() {
+    let Some(gpu) = adapter() else { return };
+    let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
+    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
+    let turns: Vec<Turn> = rotations(40, 11)
+        .into_iter()
+        .enumerate()
+        .map(|(index, rotation)| Turn {
+            rotation,
+            wanted: std::array::from_fn(|image| (index >> image) % 3 != 1),
+        })
+        .collect();
+    let images: usize = turns
+        .iter()
+        .map(|turn| turn.wanted.iter().filter(|&&wanted| wanted).count())
+        .sum();
+    let mut runs: Vec<Vec<GridPeak>> = Vec::new();
+    let mut sizes = Vec::new();
+    for memory in [
+        MEMORY,
+        MEMORY,
+        MEMORY / 16,
+        3 << 20,
+        3 << 19,
+        5 << 18,
+        1 << 20,
+    ] {
+        let Ok(engine) = GpuEngine::new(&gpu, &pair.engine, 3, 2, memory) else {
+            continue;
+        };
+        sizes.push(engine.in_flight());
+        let mut told = 0;
+        runs.push(engine.best(&turns, |count| told += count).unwrap());
+        assert_eq!(told, images);
+    }
+    println!("images in flight: {sizes:?}");
+    assert!(
+        sizes.first() > sizes.last() && sizes.contains(&1),
+        "{sizes:?}"
+    );
+    assert_eq!(runs[0].len(), 3 * images);
+    for run in &runs[1..] {
+        assert_eq!(run, &runs[0]);
+    }
+    let engine = GpuEngine::new(&gpu, &pair.engine, 3, 2, MEMORY).unwrap();
+    assert_eq!(engine.best(&[], |_| {}).unwrap(), []);
+}
+
+#[test]
+fn what_cannot_be_had_is_said() {
+    let Some(gpu) = adapter() else { return };
+    let Err(error) = GpuDevice::open(Some("no such card")) else {
+        panic!("a card of no such name was opened")
+    };
+    assert!(matches!(error, GpuError::NoAdapter { .. }));
+    let text = error.to_string();
+    assert!(
+        text.contains("no such card") && text.contains(gpu.name()),
+        "{text}"
+    );
+    let part: String = gpu.name().to_uppercase().chars().take(4).collect();
+    assert_eq!(GpuDevice::open(Some(&part)).unwrap().name(), gpu.name());
+    let one = cloud(1, 1.0, &[1.7], 5);
+    let pair = Pair::<f32>::new(&one, &one, engine_options(1e-2));
+    let Err(error) = GpuEngine::new(&gpu, &pair.engine, 1, 2, 1000) else {
+        panic!("a batch in a thousand bytes")
+    };
+    assert!(matches!(error, GpuError::TooSmall { .. }), "{error}");
+}

@@ -1,0 +1,19 @@
+//! The graphics processor that tests run on, if there is one.
+//!
+//! Without an adapter nothing can be tried, and each test says so and ends; with `KNOTDOCK_NEEDS_GPU` set it fails instead. Any adapter serves, the
+//! program that plays one too (Debian's mesa-vulkan-drivers), which `.ci/run` installs where it may.
+
+use knotdock_scoring::engine::gpu::GpuDevice;
+
+/// The first adapter.
+pub fn adapter() -> Option<GpuDevice> {
+    match GpuDevice::open(None) {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
+            assert!(!needed, "{error}");
+            println!("not tried: {error}");
+            None
+        }
+    }
+}

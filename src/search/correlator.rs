@@ -1,0 +1,82 @@
+//! What a run correlates with: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
+
+use super::options::{EngineChoice, SearchError};
+use super::outcome::Adapter;
+use super::plan::DockPlan;
+use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::transform::Real;
+
+#[cfg(feature = "gpu")]
+use super::peaks::NEIGHBOURS;
+#[cfg(feature = "gpu")]
+use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
+
+/// An engine that is ready to scan.
+pub(super) struct Correlator<T: Real> {
+    /// Maps voxels to places, and scans where there is nothing else to.
+    pub cpu: CpuEngine<T>,
+    #[cfg(feature = "gpu")]
+    pub gpu: Option<GpuEngine>,
+    /// The graphics processor in use.
+    pub adapter: Option<Adapter>,
+}
+
+#[cfg(feature = "gpu")]
+impl From<GpuError> for SearchError {
+    fn from(error: GpuError) -> Self {
+        Self::Graphics(error.to_string())
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl<T: Real> Correlator<T> {
+    /// Takes an engine to where the plan wants it.
+    ///
+    /// # Errors
+    /// [`SearchError::Graphics`] where there is no graphics processor, or it cannot be used.
+    pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+        if plan.options.engine == EngineChoice::Cpu {
+            return Ok(Self {
+                cpu,
+                gpu: None,
+                adapter: None,
+            });
+        }
+        let wanted = std::env::var(ADAPTER_VARIABLE).ok();
+        let device = GpuDevice::open(wanted.as_deref())?;
+        let gpu = GpuEngine::new(
+            &device,
+            &cpu,
+            plan.options.per_rotation,
+            NEIGHBOURS,
+            plan.graphics_bytes,
+        )?;
+        let adapter = Adapter {
+            name: device.name().to_owned(),
+            backend: device.backend(),
+            software: device.is_software(),
+            rotations_in_flight: gpu.in_flight(),
+        };
+        Ok(Self {
+            cpu,
+            gpu: Some(gpu),
+            adapter: Some(adapter),
+        })
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+impl<T: Real> Correlator<T> {
+    /// The engine as it is.
+    ///
+    /// # Errors
+    /// [`SearchError::Graphics`] where a graphics processor is wanted, for this build has none.
+    pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+        match plan.options.engine {
+            EngineChoice::Cpu => Ok(Self { cpu, adapter: None }),
+            EngineChoice::Gpu => Err(SearchError::Graphics(
+                "this build was made without the feature `gpu`".to_owned(),
+            )),
+        }
+    }
+}

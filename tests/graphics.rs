@@ -1,0 +1,150 @@
+//! `--engine gpu` as its users see it: the rows of the CPU's engine, the same bytes each time, and clear words where it cannot be had.
+
+#[path = "../scoring/tests/scene/adapter.rs"]
+mod adapter;
+#[path = "dock_run/run.rs"]
+mod dock_run;
+mod molecules;
+#[path = "../structures/examples/docking_parts/mod.rs"]
+#[allow(dead_code)] // A pair of parts is all that is used.
+mod parts;
+mod program;
+
+use adapter::adapter;
+use assert_cmd::cargo::cargo_bin_cmd;
+use dock_run::{comparable, number, place, rows, run};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn example(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    folder.join(name).display().to_string()
+}
+
+fn record(run: &Path) -> Value {
+    serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap()
+}
+
+/// Runs with both engines and holds the rows of one to those of the other: every row of either among the other's but for a few at the end, where a
+/// rounding error decides what is kept. Rows that both have were scored by the same exact sum; the grid's scores differ by single precision alone.
+fn hold_to_cpu(folder: &Path, arguments: &str) {
+    run(folder, &format!("dock {arguments} -o cpu --quiet"));
+    run(
+        folder,
+        &format!("dock {arguments} -o gpu --engine gpu --quiet"),
+    );
+    let (cpu, gpu) = (rows(&folder.join("cpu")), rows(&folder.join("gpu")));
+    let best = cpu
+        .iter()
+        .map(|row| number(row, "score_grid").abs())
+        .fold(0.0, f64::max);
+    let key = |row: &std::collections::BTreeMap<String, String>| {
+        ["rotation", "tx", "ty", "tz"].map(|column| row[column].clone())
+    };
+    let mut shared = 0;
+    for row in &gpu {
+        let Some(twin) = cpu.iter().find(|other| key(other) == key(row)) else {
+            continue;
+        };
+        shared += 1;
+        assert_eq!(row["score"], twin["score"]);
+        let difference = number(row, "score_grid") - number(twin, "score_grid");
+        assert!(difference.abs() < 1e-5 * best, "{difference} of {best}");
+    }
+    println!("{shared} of {} and {} rows", cpu.len(), gpu.len());
+    assert!(!cpu.is_empty() && 50 * shared >= 49 * cpu.len().max(gpu.len()));
+    let record = record(&folder.join("gpu"));
+    assert_eq!(record["options"]["engine"], "gpu");
+    assert!(record["machine"]["adapter"]["name"].is_string());
+}
+
+#[test]
+fn all_effects_of_a_pair_of_proteins() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let pair = [
+        example("1ppe_receptor_unbound.pdb"),
+        example("1ppe_ligand_unbound.pdb"),
+    ]
+    .join(" ");
+    hold_to_cpu(
+        folder.path(),
+        &format!("{pair} --rotations 100 --no-cluster"),
+    );
+}
+
+#[test]
+fn coarse_to_fine_and_few_wanted_images() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = place();
+    hold_to_cpu(
+        folder.path(),
+        "receptor.pdb ligand.pdb --effects shape --rotations 62 --fine-rotations 500 --no-cluster --per-rotation 7",
+    );
+}
+
+#[test]
+fn meshes() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let pair = parts::peg_and_hole(0.05);
+    for (name, part) in [("a.stl", &pair.receptor), ("b.stl", &pair.ligand)] {
+        fs::write(folder.path().join(name), part.stl()).unwrap();
+    }
+    hold_to_cpu(
+        folder.path(),
+        "a.stl b.stl --rotations 40 --sample-grid 2^15 --no-cluster",
+    );
+}
+
+/// Threads, another run and `--from` change no byte.
+#[test]
+fn the_same_bytes_each_time() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = place();
+    let words = "dock receptor.pdb ligand.pdb --rotations 150 --engine gpu --quiet";
+    run(folder.path(), &format!("{words} --threads 1 -o one"));
+    run(folder.path(), &format!("{words} --threads 2 -o two"));
+    run(folder.path(), "dock --from one/run.json -o again --quiet");
+    let one = comparable(&folder.path().join("one"));
+    for other in ["two", "again"] {
+        assert_eq!(one, comparable(&folder.path().join(other)), "{other}");
+    }
+}
+
+/// With or without an adapter: nothing is left behind, and the words say what to do.
+#[test]
+fn what_cannot_be_had_is_refused() {
+    let folder = place();
+    for (arguments, code, said) in [
+        ("", 1, "no such adapter"),
+        ("--precision double", 2, "single"),
+        ("--budget 5s", 2, "--budget"),
+        ("--accuracy 1e-3", 2, "--accuracy"),
+    ] {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .env("WGPU_ADAPTER_NAME", "no such adapter")
+            .args(
+                "dock receptor.pdb ligand.pdb --rotations 20 --json --engine gpu -o run".split(' '),
+            )
+            .args(arguments.split_whitespace())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(code), "{arguments}");
+        let error: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let message = error["error"]["message"].as_str().unwrap();
+        assert!(message.contains(said), "{message}");
+        assert!(error["error"]["remedy"].is_string());
+        assert!(!folder.path().join("run").exists(), "{arguments}");
+    }
+}
