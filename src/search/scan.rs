@@ -138,7 +138,7 @@ pub(super) fn scan<T: Real>(
     let most = most.min(4 * quartets.len() * plan.options.per_rotation);
     #[cfg(feature = "gpu")]
     let mut peaks = match &engine.gpu {
-        Some(gpu) => scan_on_card(plan, gpu, quartets, progress)?,
+        Some(gpu) => scan_on_card(plan, gpu, quartets, most, progress)?,
         None => scan_on_cores(plan, &engine.cpu, quartets, most, progress),
     };
     #[cfg(not(feature = "gpu"))]
@@ -149,28 +149,35 @@ pub(super) fn scan<T: Real>(
     Ok(peaks)
 }
 
-/// All peaks, from the graphics processor.
+/// Peaks of the graphics processor, the best `most` among them.
 #[cfg(feature = "gpu")]
 fn scan_on_card(
     plan: &DockPlan,
     gpu: &GpuEngine,
     quartets: &[Quartet],
+    most: usize,
     progress: &dyn Progress,
 ) -> Result<Vec<Peak>, SearchError> {
-    let turns: Vec<Turn> = quartets
-        .iter()
-        .map(|quartet| Turn {
+    // Peaks that come back together.
+    const TOGETHER: usize = 1 << 20;
+    let part = (TOGETHER / (4 * plan.options.per_rotation)).max(1);
+    let mut peaks: Vec<Peak> = Vec::new();
+    for quartets in quartets.chunks(part) {
+        let turn = |quartet: &Quartet| Turn {
             rotation: plan.rotation(quartet.first).0,
             wanted: quartet.wanted,
-        })
-        .collect();
-    let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
-    let peaks = found.into_iter().map(|peak| Peak {
-        score: f64::from(peak.score),
-        rotation: (quartets[peak.turn].first + peak.half_turn) as u32,
-        voxel: peak.voxel,
-    });
-    Ok(peaks.collect())
+        };
+        let turns: Vec<Turn> = quartets.iter().map(turn).collect();
+        let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
+        peaks.extend(found.into_iter().map(|peak| Peak {
+            score: f64::from(peak.score),
+            rotation: (quartets[peak.turn].first + peak.half_turn) as u32,
+            voxel: peak.voxel,
+        }));
+        peaks.sort_unstable_by(Peak::order);
+        peaks.truncate(most);
+    }
+    Ok(peaks)
 }
 
 /// Peaks of the CPU's cores, the best `most` of each thread among them.

@@ -285,6 +285,8 @@ impl GpuEngine {
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.clear_buffer(&self.buffers.block, 0, None);
+        // A driver that cuts a stage short must not leave the last batch's peaks standing.
+        encoder.clear_buffer(&self.buffers.peaks, 0, None);
         let counts = (rows.len() / 3, images.len());
         self.stages
             .record(&mut encoder, &self.sizes, counts, 0..stages);
