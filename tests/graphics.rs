@@ -125,18 +125,18 @@ fn the_same_bytes_each_time() {
 #[test]
 fn what_cannot_be_had_is_refused() {
     let folder = place();
-    for (arguments, code, said) in [
-        ("", 1, "no such adapter"),
-        ("--precision double", 2, "single"),
-        ("--budget 5s", 2, "--budget"),
-        ("--accuracy 1e-3", 2, "--accuracy"),
+    for (command, arguments, code, said) in [
+        ("dock", "", 1, "no such adapter"),
+        ("dock", "--precision double", 2, "single"),
+        ("dock", "--budget 5s", 2, "--budget"),
+        ("dock", "--accuracy 1e-3", 2, "--accuracy"),
+        ("tradeoff", "", 2, "processor time"),
     ] {
         let output = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
             .env("WGPU_ADAPTER_NAME", "no such adapter")
-            .args(
-                "dock receptor.pdb ligand.pdb --rotations 20 --json --engine gpu -o run".split(' '),
-            )
+            .arg(command)
+            .args("receptor.pdb ligand.pdb --rotations 20 --json --engine gpu -o run".split(' '))
             .args(arguments.split_whitespace())
             .output()
             .unwrap();

@@ -9,6 +9,7 @@ use knotdock::output::staging::{Staging, TRADEOFF};
 use knotdock::output::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::whole_file::write_whole;
 use knotdock::search::Progress;
+use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{
@@ -71,6 +72,10 @@ impl TradeoffCommand {
             offset: self.search.offset(),
             given: self.search.given_lengths(),
         };
+        if request.options.dock.engine == EngineChoice::Gpu {
+            let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
+            return Err(Failure::input(error).remedy("leave out --engine gpu"));
+        }
         self.machine.apply(&mut request.options.dock);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();
