@@ -46,7 +46,7 @@ pub struct Turn {
 /// One of the best voxels of one image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridPeak {
-    /// Index of the turn, and of the half-turn in [`HalfTurn::ALL`].
+    /// Index of the turn among those given.
     pub turn: usize,
     /// Index in [`HalfTurn::ALL`].
     pub half_turn: usize,
