@@ -175,8 +175,7 @@ fn peaks_are_those_of_a_sorted_grid() {
     }
 }
 
-/// A driver may cut long loops short (llvmpipe does, after 65,536 rounds): then the peaks that are missing are told of, and none of an earlier batch
-/// stands in for them.
+/// A driver may cut long loops short (llvmpipe does, after 65,536 rounds): then the peaks that are missing are told of.
 #[test]
 fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
     let Some(gpu) = adapter() else { return };

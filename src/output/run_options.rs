@@ -139,11 +139,12 @@ mod tests {
         options.record().unwrap()
     }
 
-    /// A run from before poses were rescored and relaxed, antibodies told and residues blocked is repeated without all that.
+    /// A run from before poses were rescored and relaxed, antibodies told, residues blocked and engines chosen is repeated without all that, on the CPU.
     #[test]
     fn what_an_older_record_does_not_name_is_as_it_was() {
         let mut record = default_record();
         for name in [
+            "engine",
             "fine_contact_weight",
             "fine_contact_potential",
             "atom_pair_weight",

@@ -48,17 +48,19 @@ fn is_default(options: &DockOptions) -> bool {
 mod tests {
     use super::*;
     use crate::search::EffectChoice;
+    use crate::search::options::EngineChoice;
 
     /// As `auto` has them for two proteins.
     const AUTO: [bool; Effect::ALL.len()] = [true, true, true, false];
 
     /// What does not move the ranking does not matter, nor that effects were named which `auto` would have taken.
     #[test]
-    fn default_rankings_have_one_whatever_threads_memory_and_names() {
+    fn default_rankings_have_one_whatever_threads_memory_engine_and_names() {
         assert_eq!(chance(&DockOptions::default(), AUTO, 10), Some(SHARE));
         let options = DockOptions {
             threads: 2,
             memory: Some(1 << 30),
+            engine: EngineChoice::Gpu,
             effects: EffectChoice::Only(ON.to_vec()),
             ..DockOptions::default()
         };
