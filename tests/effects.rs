@@ -130,6 +130,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |options: &[&str]| {
         let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
+        all.extend(["--peptidase-weight", "0"]);
         all.extend(options);
         let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
         let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -297,7 +298,7 @@ fn named_residues_are_kept_free_or_touched() {
         )
     };
     let cost = |row: &Value| scorer.score(&pose(row)).terms[Effect::Restraint as usize];
-    let free = rows(&[]);
+    let free = rows(&["--peptidase-weight", "0"]);
     let blocked = rows(&["--block-receptor", sites]);
     assert!(free.iter().all(|row| row["restraint"].is_null()));
     for row in &blocked {
@@ -352,4 +353,60 @@ fn named_residues_are_kept_free_or_touched() {
         assert!(message.contains(said), "{message}");
         assert!(!folder.path().join("refused").exists());
     }
+}
+
+/// Trypsin's active site counts in the ranking and nowhere else; whoever asks is told of it.
+#[test]
+fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let rows = |weight: &str| {
+        let options = [
+            "--rotations",
+            "48",
+            "--poses",
+            "40",
+            "--no-cluster",
+            "--peptidase-weight",
+            weight,
+        ];
+        let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let rows: Vec<std::collections::BTreeMap<String, String>> =
+            reader.deserialize().map(|row| row.unwrap()).collect();
+        (object["run"]["active_site"].clone(), rows)
+    };
+    let (none, plain) = rows("0");
+    let (site, ranked) = rows("1000");
+    assert!(none.is_null());
+    assert_eq!(site["partner"], "receptor");
+    assert_eq!(site["sites"][0]["family"], "S1");
+    assert_eq!(
+        site["sites"][0]["residues"],
+        serde_json::json!(["A:57", "A:195"])
+    );
+    let number = |text: &String| text.parse::<f64>().unwrap();
+    let place = |row: &std::collections::BTreeMap<String, String>| {
+        let parts = ["rotation", "tx", "ty", "tz", "score", "relaxed"];
+        parts.map(|part| row[part].clone())
+    };
+    let sorted = |rows: &[std::collections::BTreeMap<String, String>]| {
+        let mut places: Vec<_> = rows.iter().map(place).collect();
+        places.sort();
+        places
+    };
+    assert_eq!(sorted(&plain), sorted(&ranked));
+    assert!(plain.iter().all(|row| row["attraction"].is_empty()));
+    let mut seen = std::collections::BTreeSet::new();
+    for row in &ranked {
+        let own = plain.iter().find(|other| place(other) == place(row));
+        let before = number(&own.unwrap()["rank_score"]);
+        let earned = number(&row["attraction"]);
+        assert!((number(&row["rank_score"]) - before - earned).abs() < 1e-9 * before.abs());
+        seen.insert(row["attraction"].clone());
+    }
+    // None, one or both of the two residues touch.
+    let shares = ["0", "500", "1000"].map(str::to_owned);
+    assert!(seen.iter().all(|share| shares.contains(share)), "{seen:?}");
+    assert!(seen.len() > 1, "{seen:?}");
 }

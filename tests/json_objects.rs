@@ -71,6 +71,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
     assert_eq!(
         keys(&recorded),
         [
+            "active_site",
             "chains",
             "commit",
             "cpu_features",
@@ -217,6 +218,7 @@ fn inspect_tells_what_was_read_and_assumed() {
         keys(&object),
         [
             "accessible_area",
+            "active_sites",
             "antibody",
             "input",
             "labels",

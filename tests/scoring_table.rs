@@ -32,7 +32,7 @@ const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
 /// The helices once more, at the same poses, with residues of both sides blocked.
 const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 13] = [
     "score",
     "shape",
     "electrostatics",
@@ -45,6 +45,7 @@ const COLUMNS: [&str; 12] = [
     "atom_pair",
     "relaxed",
     "restraint",
+    "attraction",
 ];
 
 fn folder() -> PathBuf {
@@ -273,7 +274,7 @@ fn scores_terms_slices_and_ranks_of_poses() {
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
             values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
-            values.push(term(Effect::Restraint));
+            values.extend([term(Effect::Restraint), rescored.attraction]);
             found.insert((case.clone(), *number), values);
         }
     }

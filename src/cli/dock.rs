@@ -61,7 +61,7 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 52] = [
+const RECORDED: [&str; 53] = [
     "receptor",
     "ligand",
     "waters",
@@ -100,6 +100,7 @@ const RECORDED: [&str; 52] = [
     "block_receptor",
     "block_ligand",
     "attraction_weight",
+    "peptidase_weight",
     "attract_receptor",
     "attract_ligand",
     "ph",

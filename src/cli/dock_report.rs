@@ -6,7 +6,7 @@ use knotdock::search::{DockOutcome, DockPlan, Effect};
 use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.
-pub fn told(outcome: &DockOutcome) -> String {
+pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
     let effects = outcome
         .effects
         .iter()
@@ -22,6 +22,11 @@ pub fn told(outcome: &DockOutcome) -> String {
             ),
         });
     let mut lines: Vec<String> = effects.collect();
+    if let Some(site) = plan.active_site() {
+        lines.push(format!(
+            "Active site: {site}; poses that touch it rank higher, --peptidase-weight 0 leaves that out"
+        ));
+    }
     if let Some(adapter) = &outcome.adapter {
         lines.insert(
             0,
@@ -49,11 +54,15 @@ pub fn told(outcome: &DockOutcome) -> String {
         ));
     }
     let row = outcome.poses.first();
+    let attracting = match plan.active_site() {
+        Some(_) => "the active site",
+        None => "attracted residues",
+    };
     let terms = [
         ("fine contacts", row.and_then(|row| row.fine_contact)),
         ("atom pairs", row.and_then(|row| row.atom_pair)),
         ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
-        ("attracted residues", row.and_then(|row| row.attraction)),
+        (attracting, row.and_then(|row| row.attraction)),
     ];
     let terms = terms.iter().filter(|(_, value)| value.is_some());
     let names: Vec<&str> = terms.map(|(name, _)| *name).collect();

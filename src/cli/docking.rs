@@ -163,7 +163,7 @@ impl Docking {
         manifest.write(&staging.folder().join("run.json"))?;
         staging.commit()?;
 
-        console.say(format!("\n{}", told(&outcome)));
+        console.say(format!("\n{}", told(&plan, &outcome)));
         if let Some(chosen) = &chosen {
             let stages = outcome.timing.iter();
             console.say(format!(

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use knotdock::output::atom_table;
 use knotdock::search::DockOptions;
+use knotdock::search::attracted::sites_told;
 use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
-use knotdock_structures::molecule::{Antibody, InputSpec, LabelReport, read_listed};
+use knotdock_structures::molecule::{ActiveSite, Antibody, InputSpec, LabelReport, read_listed};
 use serde_json::json;
 
 use super::arguments::not_negative;
@@ -55,11 +56,19 @@ impl Inspect {
             .iter()
             .sum();
         let antibody = molecule.antibody();
+        let active_sites = molecule.active_sites();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(&labels, self.ph, area, volume, antibody.as_ref())
+            told(
+                &labels,
+                self.ph,
+                area,
+                volume,
+                antibody.as_ref(),
+                &active_sites
+            )
         ));
         if let Some(path) = &self.atoms {
             let (_, listed) = read_listed(&InputSpec::parse(&self.file)?, &reading)?;
@@ -70,6 +79,7 @@ impl Inspect {
             "input": input.entry()?,
             "labels": labels,
             "antibody": antibody.map(|antibody| antibody.domains),
+            "active_sites": active_sites,
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,
@@ -85,6 +95,7 @@ fn told(
     area: f64,
     volume: Volume,
     antibody: Option<&Antibody>,
+    active_sites: &[ActiveSite],
 ) -> String {
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
@@ -126,6 +137,9 @@ fn told(
                 cdrs.collect::<Vec<_>>().join(", ")
             ));
         }
+    }
+    if !active_sites.is_empty() {
+        lines.push(format!("A peptidase {}", sites_told(active_sites)));
     }
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(

@@ -136,6 +136,10 @@ pub struct KernelArguments {
     /// Residues of the ligand thought to be in contact, likewise.
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
     attract_ligand: Option<ResidueSelection>,
+    /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues that does: score. Peptidases are told by their
+    /// sequence, and this counts where the contact effect is on, no residue is attracted and the other is neither peptidase nor antibody; 0 for none.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().peptidase_weight, help_heading = SCORE)]
+    peptidase_weight: f64,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -235,6 +239,7 @@ impl KernelArguments {
             block_receptor: self.block_receptor.clone(),
             block_ligand: self.block_ligand.clone(),
             attraction_weight: self.attraction_weight,
+            peptidase_weight: self.peptidase_weight,
             attract_receptor: self.attract_receptor.clone(),
             attract_ligand: self.attract_ligand.clone(),
             ph: self.ph,

@@ -17,7 +17,7 @@ use crate::evaluate::MatchReport;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::meshes::SampledPart;
 use crate::search::outcome::MeasuredError;
-use crate::search::{Adapter, DockOutcome, DockPlan, Effect, EffectCost, StageTime};
+use crate::search::{Adapter, AssumedSite, DockOutcome, DockPlan, Effect, EffectCost, StageTime};
 use crate::tradeoff::choice::Chosen;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
@@ -143,6 +143,7 @@ pub struct Manifest<'a> {
     plan: &'a DockPlan,
     rank: usize,
     effects: &'a [EffectCost],
+    active_site: Option<&'a AssumedSite>,
     finer_search: Option<FineSearched>,
     error: ErrorRecord,
     results: Results,
@@ -189,6 +190,7 @@ impl<'a> Manifest<'a> {
             plan: parts.plan,
             rank: parts.outcome.rank,
             effects: &parts.outcome.effects,
+            active_site: parts.plan.active_site(),
             finer_search: parts.outcome.fine,
             error: ErrorRecord {
                 measured: parts.outcome.error,

@@ -1,5 +1,6 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
+use super::attracted::Attracted;
 use super::effect_choice::EffectChoice;
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
@@ -58,8 +59,8 @@ pub struct Scene {
     pub decisions: Vec<Decision>,
     /// What was assumed in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// The attracted residues of receptor and ligand, each as the places of its knots.
-    pub attracted: [Vec<Vec<usize>>; 2],
+    /// What poses should touch.
+    pub attracted: Attracted,
 }
 
 /// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch, times their number: a
@@ -180,6 +181,14 @@ impl Scene {
             };
             terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
+        let named = Attracted::named(restraints.attracted, options);
+        // What is known takes the place of what is assumed.
+        let attracted = if named.any() || !on(Effect::Contact) {
+            named
+        } else {
+            let [own, other] = &restraints.marks;
+            Attracted::assumed(molecules, [own, other], options)
+        };
         // Terms count atoms; how much a buried one weighs is a matter of shape.
         let [receptor, ligand] =
             [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
@@ -197,7 +206,7 @@ impl Scene {
             terms,
             decisions,
             labels: [receptor_report, ligand_report],
-            attracted: restraints.attracted,
+            attracted,
         })
     }
 

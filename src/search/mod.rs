@@ -1,5 +1,6 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
+pub mod attracted;
 pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
@@ -20,6 +21,7 @@ pub mod rotations;
 pub mod run;
 mod scan;
 
+pub use attracted::AssumedSite;
 pub use effect_choice::EffectChoice;
 pub use effects::{Decision, LengthUnit, Scene};
 pub use knotdock_scoring::effect::Effect;

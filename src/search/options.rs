@@ -67,6 +67,8 @@ pub struct DockOptions {
     pub restraint_weight: f64,
     /// What a pose earns in which all attracted residues touch: score.
     pub attraction_weight: f64,
+    /// What a pose earns in which all catalytic residues of a peptidase touch: score; 0: peptidases are docked as any protein.
+    pub peptidase_weight: f64,
     /// What part of an antibody may touch.
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
@@ -207,6 +209,7 @@ impl Default for DockOptions {
             // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
             restraint_weight: 1.0,
             attraction_weight: 2000.0,
+            peptidase_weight: 300.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
@@ -231,6 +234,7 @@ impl DockOptions {
             fine_contact_weight: 0.0,
             atom_pair_weight: 0.0,
             relaxed_weight: 0.0,
+            peptidase_weight: 0.0,
             antibody: AntibodySurface::Whole,
             ..Self::default()
         }
@@ -275,6 +279,7 @@ impl DockOptions {
             ("relaxed-weight", self.relaxed_weight, 1e6),
             ("restraint-weight", self.restraint_weight, 1e6),
             ("attraction-weight", self.attraction_weight, 1e6),
+            ("peptidase-weight", self.peptidase_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

@@ -1,5 +1,6 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
+use super::attracted::{AssumedSite, Attracted};
 use super::effects::{Decision, LengthUnit, Scene};
 use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
@@ -69,8 +70,9 @@ pub struct DockPlan {
     /// Which effects are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
-    /// The attracted residues of receptor and ligand, each as the places of its knots.
-    pub(super) attracted: [Vec<Vec<usize>>; 2],
+    /// What poses should touch.
+    #[serde(skip)]
+    pub(super) attracted: Attracted,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
     #[serde(skip)]
@@ -289,6 +291,11 @@ impl DockPlan {
         let bodies = [&self.receptor, &self.ligand];
         self.asked()
             .rescorer(bodies, &self.attracted, &self.options)
+    }
+
+    /// The active site that the partner of a peptidase is assumed to bind, where one is.
+    pub fn active_site(&self) -> Option<&AssumedSite> {
+        self.attracted.assumed.as_ref()
     }
 
     /// What poses are asked beside their score.

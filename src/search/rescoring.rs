@@ -1,5 +1,6 @@
 //! What poses are rescored by: the terms that the scene's effects make possible and whose weights ask for them.
 
+use super::attracted::Attracted;
 use super::effects::Decision;
 use super::options::DockOptions;
 use knotdock_scoring::effect::Effect;
@@ -16,21 +17,16 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// Potentials where the contact effect is on, and attracted residues where there are some.
-    pub fn of(
-        decisions: &[Decision],
-        attracted: &[Vec<Vec<usize>>; 2],
-        options: &DockOptions,
-    ) -> Self {
+    /// Potentials where the contact effect is on, and what should be touched where there is something.
+    pub fn of(decisions: &[Decision], attracted: &Attracted, options: &DockOptions) -> Self {
         let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
         let typed = decisions.iter().any(contact);
-        let attracts = attracted.iter().any(|side| !side.is_empty());
         let when = |asked: bool, weight: f64| if asked { weight } else { 0.0 };
         Self {
             fine_contact: when(typed, options.fine_contact_weight),
             atom_pair: when(typed, options.atom_pair_weight),
             relaxed: when(typed, options.relaxed_weight),
-            attraction: when(attracts, options.attraction_weight),
+            attraction: when(attracted.any(), attracted.weight),
         }
     }
 
@@ -49,7 +45,7 @@ impl Asked {
     pub fn rescorer(
         &self,
         [receptor, ligand]: [&Knots; 2],
-        attracted: &[Vec<Vec<usize>>; 2],
+        attracted: &Attracted,
         options: &DockOptions,
     ) -> Option<Rescorer> {
         let asked = |weight: f64| (weight > 0.0).then_some(weight);
@@ -64,7 +60,7 @@ impl Asked {
             relaxation: asked(self.relaxed)
                 .map(|weight| Relaxation::new(receptor, ligand, &pair_potential(), weight)),
             attraction: asked(self.attraction)
-                .map(|weight| Attraction::new(receptor, ligand, attracted, weight)),
+                .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
         })
     }
 }

@@ -1,6 +1,7 @@
-//! Attraction: how many of the residues that should be in contact are.
+//! Attraction: how many of the residues that should be in contact are, those that a user names or those of an enzyme's active site, of which a
+//! molecule may have several.
 //!
-//! The search draws poses to such residues by all contacts of their atoms ([`crate::effect::restraint`]), since a correlation can count
+//! The search draws poses to residues that are named by all contacts of their atoms ([`crate::effect::restraint`]), since a correlation can count
 //! nothing else; buried deep, one residue would earn what several should. So what it keeps is asked how many touch at all.
 
 use super::cells::{Atom, Cells};
@@ -12,74 +13,82 @@ use nalgebra::Vector3;
 /// Distance in Å within which two atoms of residues are in contact, as the field counts native contacts.
 const TOUCHING: f64 = 5.0;
 
-/// The residues of both sides that should be in contact.
+/// Residues of receptor and ligand, each as the places of its knots.
+pub type Residues = [Vec<Vec<usize>>; 2];
+
+/// Residues of both sides that should be in contact.
 pub struct Attraction {
+    /// Sets of residues of receptor and ligand, each as the positions of its atoms (Å); those of one set should touch.
+    sets: Vec<[Vec<Positions>; 2]>,
     receptor: Side,
     ligand: Side,
     weight: f64,
 }
 
-/// One side.
+/// Where the atoms of a residue stand (Å).
+type Positions = Vec<[f64; 3]>;
+
+/// All atoms of one side, about its middle.
 struct Side {
-    /// The atoms of each residue that should be in contact (Å).
-    residues: Vec<Vec<[f64; 3]>>,
-    /// All atoms, about the middle.
     atoms: Cells,
     middle: Vector3<f64>,
 }
 
 impl Attraction {
-    /// Residues as the knots that make them, of the receptor and of the ligand; `weight` is what a pose earns in which all of them touch.
-    pub fn new(
-        receptor: &Knots,
-        ligand: &Knots,
-        residues: &[Vec<Vec<usize>>; 2],
-        weight: f64,
-    ) -> Self {
-        let [of_receptor, of_ligand] = residues;
+    /// Sets of residues, any one of which should be in contact; `weight` is what a pose earns in which all residues of a set touch.
+    pub fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
+        let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Positions> {
+            let centers = |residue: &Vec<usize>| {
+                let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
+                centers.copied().collect()
+            };
+            residues.iter().map(centers).collect()
+        };
+        let sets = sets.iter();
         Self {
-            receptor: Side::new(receptor, of_receptor),
-            ligand: Side::new(ligand, of_ligand),
+            sets: sets
+                .map(|[own, other]| [of(receptor, own), of(ligand, other)])
+                .collect(),
+            receptor: Side::new(receptor),
+            ligand: Side::new(ligand),
             weight,
         }
     }
 
-    /// The weight times the share of the residues that touch the other side in a pose.
+    /// The weight times the share of a set's residues that touch the other side in a pose, of the set of which most do.
     pub fn score(&self, pose: &Pose) -> f64 {
-        let own = self.receptor.touching(&pose.inverse(), &self.ligand);
-        let other = self.ligand.touching(pose, &self.receptor);
-        let all = self.receptor.residues.len() + self.ligand.residues.len();
-        self.weight * (own + other) as f64 / all.max(1) as f64
+        let inverse = pose.inverse();
+        let shares = self.sets.iter().map(|[receptor, ligand]| {
+            let own = self.ligand.touched(receptor, &inverse);
+            let other = self.receptor.touched(ligand, pose);
+            (own + other) as f64 / (receptor.len() + ligand.len()).max(1) as f64
+        });
+        self.weight * shares.fold(0.0, f64::max)
     }
 }
 
 impl Side {
-    fn new(knots: &Knots, residues: &[Vec<usize>]) -> Self {
+    fn new(knots: &Knots) -> Self {
         let middle = center(knots);
         let atom = |x: &[f64; 3]| Atom {
             position: Vector3::from(*x) - middle,
             kind: 0,
         };
-        let centers = |residue: &Vec<usize>| {
-            let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
-            centers.copied().collect()
-        };
         Self {
-            residues: residues.iter().map(centers).collect(),
             atoms: Cells::new(knots.centers.iter().map(atom).collect()),
             middle,
         }
     }
 
-    /// Residues, carried by `pose` into the other side's frame, that have an atom within [`TOUCHING`] of one of its.
-    fn touching(&self, pose: &Pose, other: &Self) -> usize {
+    /// How many of the other side's residues, carried by `pose` into this one's frame, have an atom within [`TOUCHING`] of one of its.
+    fn touched(&self, residues: &[Positions], pose: &Pose) -> usize {
         let touches = |atom: &[f64; 3]| {
-            let x = Vector3::from(pose.apply(*atom)) - other.middle;
+            let x = Vector3::from(pose.apply(*atom)) - self.middle;
             let mut near = false;
-            other.atoms.near(x, TOUCHING, |_, _| near = true);
+            self.atoms.near(x, TOUCHING, |_, _| near = true);
             near
         };
-        let residues = self.residues.iter();
+        let residues = residues.iter();
         residues.filter(|atoms| atoms.iter().any(touches)).count()
     }
 }
@@ -94,7 +103,7 @@ mod tests {
         let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
         let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
         let residues = [vec![vec![0], vec![2, 3]], vec![vec![1]]];
-        let attraction = Attraction::new(&knots, &knots, &residues, 300.0);
+        let attraction = Attraction::new(&knots, &knots, &[residues], 300.0);
         let at = |quaternion, x: f64, y: f64| {
             attraction.score(&Pose::from_parts(quaternion, [x, y, 0.0]))
         };
@@ -107,5 +116,22 @@ mod tests {
         // Half a turn about z takes atoms to -10 ... -40 Å, and 50 Å bring them back in reverse.
         assert_eq!(at([0.0, 0.0, 0.0, 1.0], 50.0, 3.0), 300.0);
         assert_eq!(at([0.0, 0.0, 0.0, 1.0], 20.0, 3.0), 100.0);
+    }
+
+    /// Of copies of a site the one counts that is touched more, and nothing is earned by touching one with some residues and the other with the rest.
+    #[test]
+    fn one_set_of_several_is_enough() {
+        let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
+        let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
+        let ligand = Knots::new(vec![[0.0; 3], [10.0, 0.0, 0.0]], vec![1.9; 2]).unwrap();
+        let set = |first: usize, second: usize| [vec![vec![first], vec![second]], Vec::new()];
+        let sets = [set(0, 1), set(2, 3)];
+        let attraction = Attraction::new(&knots, &ligand, &sets, 300.0);
+        let at = |x: f64| attraction.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]));
+        assert_eq!(at(10.0), 300.0);
+        assert_eq!(at(30.0), 300.0);
+        assert_eq!(at(20.0), 150.0);
+        assert_eq!(at(40.0), 150.0);
+        assert_eq!(at(60.0), 0.0);
     }
 }

@@ -21,7 +21,7 @@ mod relaxation;
 mod rescorer;
 
 pub use atom_pairs::AtomPairs;
-pub use attraction::Attraction;
+pub use attraction::{Attraction, Residues};
 pub use contacts::FineContacts;
 pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use potential::{FinePotential, RANGES};

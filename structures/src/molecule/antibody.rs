@@ -7,8 +7,8 @@
 //! left alone, since superantigens hold them by their frameworks.
 
 use super::Molecule;
-use super::groups::{GroupKind, Residue, residue_runs};
-use super::residues::parent;
+use super::groups::{Residue, residue_runs};
+use super::sequence::{letter, number, peptides};
 use immunum::numbering::region_for_position;
 use immunum::types::{IG_CHAINS, Region};
 use immunum::{Annotator, Chain, Scheme};
@@ -115,20 +115,6 @@ impl Molecule {
     }
 }
 
-/// Runs of amino acids that stand in one chain, each in file order.
-fn peptides<'a, 'b>(groups: &'b [Residue<'a>]) -> Vec<&'b [Residue<'a>]> {
-    let is_peptide = |residue: &Residue<'_>| {
-        matches!(
-            residue.kind,
-            GroupKind::AminoAcid | GroupKind::ModifiedResidue
-        )
-    };
-    groups
-        .chunk_by(|a, b| a.key.0 == b.key.0 && is_peptide(a) == is_peptide(b))
-        .filter(|run| run.first().is_some_and(is_peptide))
-        .collect()
-}
-
 /// The variable domains of one chain, each with the CDR (0 to 2) that each of the chain's residues belongs to, if to one of this domain.
 fn variable_domains(chain: &[Residue<'_>]) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
     let sequence: String = chain.iter().map(|residue| letter(residue.key.3)).collect();
@@ -183,42 +169,6 @@ fn cdr(region: Region) -> Option<usize> {
         Region::CDR2 => Some(1),
         Region::CDR3 => Some(2),
         Region::FR1 | Region::FR2 | Region::FR3 | Region::FR4 => None,
-    }
-}
-
-/// A residue's number with its insertion code.
-fn number(residue: &Residue<'_>) -> String {
-    let (_, number, insertion, _) = residue.key;
-    match insertion {
-        Some(insertion) => format!("{number}{insertion}"),
-        None => number.to_string(),
-    }
-}
-
-/// One letter of an amino acid, X of one outside the twenty.
-fn letter(residue_name: &str) -> char {
-    match parent(residue_name) {
-        "ALA" => 'A',
-        "ARG" => 'R',
-        "ASN" => 'N',
-        "ASP" => 'D',
-        "CYS" | "SEC" => 'C',
-        "GLN" => 'Q',
-        "GLU" => 'E',
-        "GLY" => 'G',
-        "HIS" => 'H',
-        "ILE" => 'I',
-        "LEU" => 'L',
-        "LYS" => 'K',
-        "MET" | "MSE" => 'M',
-        "PHE" => 'F',
-        "PRO" => 'P',
-        "SER" => 'S',
-        "THR" => 'T',
-        "TRP" => 'W',
-        "TYR" => 'Y',
-        "VAL" => 'V',
-        _ => 'X',
     }
 }
 
