@@ -139,7 +139,7 @@ fn told(
         }
     }
     if !active_sites.is_empty() {
-        lines.push(format!("A peptidase {}", sites_told(active_sites)));
+        lines.push(format!("A peptidase, {}", sites_told(active_sites)));
     }
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(

@@ -104,7 +104,7 @@ impl std::fmt::Display for AssumedSite {
 pub fn sites_told(sites: &[ActiveSite]) -> String {
     let told = |site: &ActiveSite| {
         format!(
-            "of family {} as {} (catalytic {})",
+            "of family {} like {} (catalytic {})",
             site.family,
             site.known_by,
             site.residues.join(", ")
@@ -145,7 +145,7 @@ mod tests {
         let site = default.assumed.clone().unwrap();
         assert_eq!(
             site.to_string(),
-            "the receptor is a peptidase, of family S1 as trypsin (catalytic A:57, A:195)"
+            "the receptor is a peptidase, of family S1 like trypsin (catalytic A:57, A:195)"
         );
         let [[receptor, ligand]] = &default.sets[..] else {
             panic!("{:?}", default.sets);
