@@ -305,6 +305,17 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
         assert!(!error["remedy"].as_str().unwrap().is_empty());
         assert!(!folder.path().join("out").exists(), "{table}");
     }
+    // What is the whole batch's is told to go there.
+    write_pairs(folder.path(), &format!("receptor,ligand\n{pair}\n"));
+    for word in ["--quiet", "--json"] {
+        let words = format!("batch in/pairs.csv -o out --json -- --rotations 6 {word}");
+        let output = batch(folder.path(), &words);
+        assert_eq!(output.status.code(), Some(2));
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let remedy = object["error"]["remedy"].as_str().unwrap();
+        assert!(remedy.starts_with(&format!("give {word} before --")));
+        assert!(!folder.path().join("out").exists());
+    }
     // Nor is a table of somebody else's replaced.
     write_pairs(folder.path(), &format!("receptor,ligand\n{pair}\n"));
     fs::create_dir(folder.path().join("out")).unwrap();

@@ -31,6 +31,9 @@ pub struct Batch {
     options: Vec<String>,
 }
 
+/// Options of the whole program, which no pair has for itself.
+const OF_BATCH: [&str; 2] = ["--json", "--quiet"];
+
 impl Batch {
     /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
     pub fn run(self, console: Console) -> Result<u8, Failure> {
@@ -38,6 +41,14 @@ impl Batch {
             let stem = self.pairs.file_stem().unwrap_or_default();
             PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
         });
+        let of_batch = |word: &&String| OF_BATCH.contains(&word.as_str());
+        if let Some(word) = self.options.iter().find(of_batch) {
+            return Err(
+                Failure::input(format!("{word} after -- would be an option of each pair")).remedy(
+                    format!("give {word} before --, where it is the whole batch's"),
+                ),
+            );
+        }
         let pairs = pairs(&self.pairs, &directory, &self.options)?;
         let results = directory.join(RESULTS);
         if !is_ours(&results) {
