@@ -241,6 +241,31 @@ mod tests {
         }
     }
 
+    /// Their relatives by the same stretches: urokinase, a peptidase of Streptomyces, furin, proteinase K, cathepsins B, L and D, the protease of HIV (of a family
+    /// next to A1), ADAM17 and carboxypeptidase B.
+    #[test]
+    fn relatives_are_told_by_the_same() {
+        for (family, stretches) in [
+            ("S1", &["WVISATHCFIDY", "CQGDSGGPLVC"][..]),
+            ("S1", &["ALTAGHCTNI", "CAQPGDSGGSLF"]),
+            ("S8", &["DNRHGTRCAGEVA", "THTGTSASAPLAA"]),
+            ("S8", &["RNGHGTHCAGTIG", "SISGTSMATPHVA"]),
+            ("C1", &["RDQGSCGSCWAFGA", "MGGHAIRILGWG"]),
+            ("C1", &["KNQGQCGSCWAFSA", "LDHGVLVVGYG"]),
+            ("A1", &["TVVFDTGSSNLWV", "AIVDTGTSLMVG"]),
+            ("A1", &["EALLDTGADDTVL", "EALLDTGADDTVL"]),
+            ("M10", &["VTTHELGHNFGAEHD"]),
+            ("M14", &["CGFHAREWISPA", "HSYSQMMIYPYSY"]),
+        ] {
+            let names = ["A", "B"].iter().zip(stretches);
+            let near: Vec<i64> = (1..20).collect();
+            let atoms = names.map(|(name, stretch)| chain(name, stretch, 1, &near));
+            let found = sites(atoms.collect::<Vec<_>>().concat());
+            let families: Vec<&str> = found.iter().map(|(family, _)| *family).collect();
+            assert_eq!(families, [family], "{stretches:?}");
+        }
+    }
+
     /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two copies, whose
     /// residues go with the nearer.
     #[test]

@@ -93,11 +93,13 @@ pub(super) const FAMILIES: [Family; 6] = [
         known_by: "carboxypeptidase A",
         anchors: &[
             Anchor {
-                stretches: &[&["H", "ST", "", "E", "", "LIVMF", "STAG"]],
+                stretches: &[&["H", "STAG", "", "E", "", "LIVMF", "STAG"]],
                 catalytic: &[0, 3],
             },
             Anchor {
-                stretches: &[&["H", "ST", "", "", "", "LIVM", "", "", "LIVMFYW", "P", "FYW"]],
+                stretches: &[&[
+                    "H", "STAG", "", "", "", "LIVM", "", "", "LIVMFYW", "P", "FYW",
+                ]],
                 catalytic: &[0],
             },
         ],
