@@ -167,11 +167,15 @@ mod tests {
 
         let two = of([&trypsin, &trypsin], &DockOptions::default());
         assert!(!two.any() && two.assumed.is_none());
-        let changes: [fn(&mut DockOptions); 4] = [
+        let changes: [fn(&mut DockOptions); 5] = [
             |options| options.peptidase_weight = 0.0,
             |options| options.effects = "shape,electrostatics".parse().unwrap(),
             |options| options.block_receptor = Some("A:195".parse().unwrap()),
             |options| options.attract_ligand = Some("B:5".parse().unwrap()),
+            |options| {
+                options.attract_receptor = Some("A:20".parse().unwrap());
+                options.attraction_weight = 0.0;
+            },
         ];
         for change in changes {
             assert_eq!(with(change).assumed, None);

@@ -183,7 +183,7 @@ impl Scene {
         }
         let named = Attracted::named(restraints.attracted, options);
         // What is known takes the place of what is assumed.
-        let attracted = if named.any() || !on(Effect::Contact) {
+        let attracted = if !named.sets.is_empty() || !on(Effect::Contact) {
             named
         } else {
             let [own, other] = &restraints.marks;

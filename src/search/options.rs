@@ -209,7 +209,7 @@ impl Default for DockOptions {
             // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
             restraint_weight: 1.0,
             attraction_weight: 2000.0,
-            // Two units of log-odds, of which one is worth about 225 to 250 on training pairs.
+            // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
             peptidase_weight: 500.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
