@@ -114,7 +114,7 @@ pub(super) fn candidates(
     candidates
 }
 
-/// Drops refined poses that ended within `distance` (ligand RMSD) of where a better one did.
+/// Drops refined poses that ended where a better one did.
 pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
     let poses: Vec<Pose> = candidates
         .iter()

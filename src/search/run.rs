@@ -33,8 +33,8 @@ pub trait Progress: Sync {
 
 /// Grid poses over which the fast path's error is measured.
 const ERROR_POSES: usize = 100;
-/// Refined poses closer than this share of the grid spacing (ligand RMSD) are one: so near, a row for each would say little more.
-const MERGE_SPACINGS: f64 = 1.0;
+/// Refined poses closer than this share of the grid spacing (ligand RMSD) are one.
+const MERGE_SPACINGS: f64 = 0.25;
 
 struct Clock {
     stages: Vec<StageTime>,
