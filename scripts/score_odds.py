@@ -6,7 +6,8 @@
 DIR is the benchmark folder; each RUNS is the --out folder of a `scripts/benchmark.py` run on training pairs. A pose of rank score s is taken to
 be right with odds in proportion to exp(s / T), T the same for all pairs: printed is the T under which the right poses of all runs together are
 most likely, each run's probabilities adding up to one over its poses, with a 95% interval by bootstrap over pairs. What active sites earned is taken off
-the scores first. Then, of each pair whose run assumed a site, the share of its residues that all poses touch on average, the best hundred, and the acceptable ones.
+the scores first. Then, of each pair whose run assumed a site, the share of its residues that all poses touch on average, the best hundred, and the
+acceptable ones; the means of the first and the last, a pair without acceptable poses counting as 0; and the log-odds between a pose that touches and one that does not.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -49,9 +50,13 @@ def main():
         drawn = np.random.default_rng(0).integers(len(likelihood), size=(RESAMPLED, len(likelihood)))
         low, high = np.quantile([most_likely(likelihood[pairs]) for pairs in drawn], [0.025, 0.975])
         print(f"{name}: a unit of log-odds is worth {most_likely(likelihood):.0f} [{low:.0f}, {high:.0f}], {len(likelihood)} pairs")
-    for pair, turns in sorted(sites.items()):
-        every, best, acceptable = np.mean(turns, axis=0)
+    means = {pair: np.mean(turns, axis=0) for pair, turns in sorted(sites.items())}
+    for pair, (every, best, acceptable) in means.items():
         print(f"{pair}: of its active site all poses touch {every:.2f}, the best 100 {best:.2f}, the acceptable ones {acceptable:.2f}")
+    if means:
+        every, _, right = np.nan_to_num(list(means.values())).mean(axis=0)
+        units = np.log(right / every) + np.log((1 - every) / (1 - right))
+        print(f"of {len(means)} pairs: all poses touch {every:.2f}, acceptable ones {right:.2f}; {units:.1f} units of log-odds")
 
 
 def parse_arguments():

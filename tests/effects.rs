@@ -385,6 +385,20 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
         site["sites"][0]["residues"],
         serde_json::json!(["A:57", "A:195"])
     );
+    let (told, words) = run(
+        folder.path(),
+        &[
+            "score",
+            &receptor,
+            &ligand,
+            "--pose",
+            "1,0,0,0,0,0,0",
+            "--json",
+        ],
+    );
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(told["active_site"], site);
+    assert!(words.contains("family S1 like trypsin (catalytic A:57, A:195)"));
     let number = |text: &String| text.parse::<f64>().unwrap();
     let place = |row: &std::collections::BTreeMap<String, String>| {
         let parts = ["rotation", "tx", "ty", "tz", "score", "relaxed"];

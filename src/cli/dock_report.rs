@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use knotdock::search::{DockOutcome, DockPlan, Effect};
+use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect};
 use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.
@@ -23,9 +23,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         });
     let mut lines: Vec<String> = effects.collect();
     if let Some(site) = plan.active_site() {
-        lines.push(format!(
-            "Active site: {site}; poses that touch it rank higher, --peptidase-weight 0 leaves that out"
-        ));
+        lines.push(site_told(site));
     }
     if let Some(adapter) = &outcome.adapter {
         lines.insert(
@@ -88,6 +86,13 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         outcome.poses_kept, outcome.clusters
     ));
     lines.join("\n")
+}
+
+/// That an active site is assumed, and what follows.
+pub fn site_told(site: &AssumedSite) -> String {
+    format!(
+        "Active site: {site}; poses that touch it rank higher, --peptidase-weight 0 leaves that out"
+    )
 }
 
 /// Names with commas between them, and the last after an "and".

@@ -11,6 +11,7 @@ use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::at_least_one;
 use super::console::Console;
+use super::dock_report::site_told;
 use super::failure::Failure;
 use super::input::Input;
 use super::reading_arguments::ReadingArguments;
@@ -84,6 +85,9 @@ impl Score {
         let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
         let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
+        if let Some(site) = scene.active_site() {
+            console.say(site_told(site));
+        }
         if let Some(rescored) = rescored {
             let terms = [
                 ("Fine contacts", rescored.fine_contact),
@@ -109,6 +113,8 @@ impl Score {
         if let Some(object) = object.as_object_mut() {
             let geometry = serde_json::to_value(geometry).map_err(Failure::other)?;
             object.insert("geometry".to_owned(), geometry);
+            let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
+            object.insert("active_site".to_owned(), site);
             let [qw, qx, qy, qz] = pose.quaternion();
             let [tx, ty, tz]: [f64; 3] = pose.translation.into();
             object.insert(

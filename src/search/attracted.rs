@@ -3,7 +3,7 @@
 use super::options::DockOptions;
 use knotdock_scoring::effect::restraint::Mark;
 use knotdock_scoring::rescoring::Residues;
-use knotdock_structures::molecule::{ActiveSite, Molecule};
+use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
 use serde::Serialize;
 
 /// Sets of residues, of which poses should touch all of one, and what those earn.
@@ -20,8 +20,8 @@ pub struct Attracted {
 /// A peptidase, and where its partner is assumed to bind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssumedSite {
-    /// Which of the two it is: `receptor` or `ligand`.
-    pub partner: &'static str,
+    /// Which of the two it is.
+    pub partner: Partner,
     /// Its active sites, any of which may be the one.
     pub sites: Vec<ActiveSite>,
 }
@@ -68,8 +68,8 @@ impl AssumedSite {
     /// likely to be anywhere.
     fn of(molecules: [&Molecule; 2], marks: [&[Mark]; 2]) -> Option<Self> {
         let (partner, mut sites, marks) = match molecules.map(Molecule::active_sites) {
-            [own, other] if other.is_empty() => ("receptor", own, marks[0]),
-            [own, other] if own.is_empty() => ("ligand", other, marks[1]),
+            [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
+            [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
             _ => return None,
         };
         sites.retain(|site| {
@@ -83,18 +83,21 @@ impl AssumedSite {
     /// Residues of the peptidase, and none of its partner.
     fn side(&self, residues: Vec<Vec<usize>>) -> Residues {
         match self.partner {
-            "receptor" => [residues, Vec::new()],
-            _ => [Vec::new(), residues],
+            Partner::Receptor => [residues, Vec::new()],
+            Partner::Ligand => [Vec::new(), residues],
         }
     }
 }
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let partner = match self.partner {
+            Partner::Receptor => "receptor",
+            Partner::Ligand => "ligand",
+        };
         write!(
             f,
-            "the {} is a peptidase, {}",
-            self.partner,
+            "the {partner} is a peptidase, {}",
             sites_told(&self.sites)
         )
     }
@@ -162,7 +165,7 @@ mod tests {
         });
         assert_eq!(names.collect::<Vec<_>>(), ["HIS", "SER"]);
         let turned = of([&inhibitor, &trypsin], &DockOptions::default());
-        assert_eq!(turned.assumed.unwrap().partner, "ligand");
+        assert_eq!(turned.assumed.unwrap().partner, Partner::Ligand);
         assert_eq!(turned.sets, [[Vec::new(), receptor.clone()]]);
 
         let two = of([&trypsin, &trypsin], &DockOptions::default());

@@ -1,6 +1,6 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
-use super::attracted::Attracted;
+use super::attracted::{AssumedSite, Attracted};
 use super::effect_choice::EffectChoice;
 use super::meshes::MeshPair;
 use super::options::{DockOptions, SearchError};
@@ -246,6 +246,11 @@ impl Scene {
             labels: [LabelReport::default(), LabelReport::default()],
             attracted: Default::default(),
         })
+    }
+
+    /// The active site that the partner of a peptidase is assumed to bind, where one is.
+    pub fn active_site(&self) -> Option<&AssumedSite> {
+        self.attracted.assumed.as_ref()
     }
 
     /// What poses are rescored with; `None` where there is nothing to ask.

@@ -38,7 +38,7 @@ pub struct RankedPose {
     pub atom_pair: Option<f64>,
     /// Weighted energy there once the pose has given way; `None` likewise.
     pub relaxed: Option<f64>,
-    /// What the residues earn that touch of those that are attracted; `None` where none are.
+    /// What the residues earn that touch of those that are attracted, or of a peptidase's active site; `None` where there are none.
     pub attraction: Option<f64>,
     /// What rows are ranked by: `score`, and where poses are rescored `fine_contact`, `atom_pair`, `relaxed` and `attraction` besides.
     pub rank_score: f64,

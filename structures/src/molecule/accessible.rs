@@ -1,7 +1,7 @@
 //! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points on the atoms'
 //! expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
-use super::Molecule;
+use super::{Molecule, squared_distance};
 use std::collections::HashMap;
 
 /// Radius of the water probe, in Å.
@@ -21,9 +21,6 @@ impl Molecule {
         for (index, atom) in self.atoms.iter().enumerate() {
             cells.entry(cell(atom.position)).or_default().push(index);
         }
-        let square = |a: [f64; 3], b: [f64; 3]| -> f64 {
-            (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum()
-        };
         let mut near: Vec<usize> = Vec::new();
         self.atoms
             .iter()
@@ -39,7 +36,8 @@ impl Molecule {
                             near.extend(members.into_iter().flatten().copied().filter(|&other| {
                                 let touch = radius + grown[other];
                                 let at = self.atoms[other].position;
-                                other != index && square(atom.position, at) < touch * touch
+                                other != index
+                                    && squared_distance(atom.position, at) < touch * touch
                             }));
                         }
                     }
@@ -48,7 +46,8 @@ impl Molecule {
                     let point =
                         std::array::from_fn(|axis| atom.position[axis] + radius * direction[axis]);
                     near.iter().all(|&other| {
-                        square(point, self.atoms[other].position) >= grown[other] * grown[other]
+                        squared_distance(point, self.atoms[other].position)
+                            >= grown[other] * grown[other]
                     })
                 });
                 let share = free.count() as f64 / sphere.len() as f64;

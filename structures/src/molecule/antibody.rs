@@ -6,9 +6,9 @@
 //! Proteins of Immunological Interest, 1991) counts among them: either alone misses residues that touch antigens. T-cell receptors are
 //! left alone, since superantigens hold them by their frameworks.
 
-use super::Molecule;
 use super::groups::{Residue, residue_runs};
 use super::sequence::{letter, number, peptides};
+use super::{Molecule, squared_distance};
 use immunum::numbering::region_for_position;
 use immunum::types::{IG_CHAINS, Region};
 use immunum::{Annotator, Chain, Scheme};
@@ -106,10 +106,9 @@ impl Molecule {
             .filter_map(|(position, chosen)| chosen.then_some(position))
             .collect();
         let is_near = |position: [f64; 3]| {
-            chosen.iter().any(|other| {
-                let squares = (0..3).map(|axis| (position[axis] - other[axis]).powi(2));
-                squares.sum::<f64>() <= distance * distance
-            })
+            chosen
+                .iter()
+                .any(|other| squared_distance(position, *other) <= distance * distance)
         };
         positions().map(is_near).collect()
     }
@@ -175,7 +174,7 @@ fn cdr(region: Region) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::{Atom, Format};
+    use crate::molecule::{Atom, Format, sequence};
 
     /// Variable domains of trastuzumab (its heavy and its kappa chain).
     const HEAVY: &str = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLRAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
@@ -185,30 +184,8 @@ mod tests {
 
     /// Alpha carbons 3.8 Å apart on a line, numbered from `first`.
     fn chain(name: &str, sequence: &str, first: i64) -> Vec<Atom> {
-        const NAMES: [&str; 20] = [
-            "ALA", "ARG", "ASN", "ASP", "CYX", "GLN", "GLU", "GLY", "HIE", "ILE", "LEU", "LYS",
-            "MSE", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL",
-        ];
-        let atom = |(place, one): (i64, char)| Atom {
-            name: "CA".to_owned(),
-            residue_name: NAMES
-                .iter()
-                .find(|name| letter(name) == one)
-                .unwrap()
-                .to_string(),
-            chain: name.to_owned(),
-            residue_number: first + place,
-            insertion_code: None,
-            alternate_location: None,
-            element: "C".to_owned(),
-            position: [3.8 * (first + place) as f64, 0.0, 0.0],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
-        };
-        (0..).zip(sequence.chars()).map(atom).collect()
+        let position = |number: i64| [3.8 * number as f64, 0.0, 0.0];
+        sequence::tests::chain(name, sequence, first, &["CA"], position)
     }
 
     /// The CDRs of each domain as letters of `sequence`, whose first residue has number 1.

@@ -10,7 +10,7 @@ use super::charge_table::{
 };
 use super::contact_types::atom_types;
 use super::groups::{GroupKind, Residue, residues};
-use super::{Atom, Molecule};
+use super::{Atom, Molecule, squared_distance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -181,10 +181,7 @@ impl Molecule {
     /// Distance in Å of the C of one residue from the N of the next.
     fn distance(&self, before: &Residue<'_>, after: &Residue<'_>) -> Option<f64> {
         let (c, n) = (self.atom(before, "C")?, self.atom(after, "N")?);
-        let square: f64 = (0..3)
-            .map(|axis| (c.position[axis] - n.position[axis]).powi(2))
-            .sum();
-        Some(square.sqrt())
+        Some(squared_distance(c.position, n.position).sqrt())
     }
 
     /// Whether one chain ends and another begins between two peptide residues in a row.

@@ -119,6 +119,11 @@ impl Atom {
     }
 }
 
+/// Square of the distance of two positions (Å²).
+fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum()
+}
+
 impl Molecule {
     /// A molecule made in memory, with an empty report.
     pub fn new(atoms: Vec<Atom>, format: Format) -> Self {

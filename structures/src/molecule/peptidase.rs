@@ -6,10 +6,10 @@
 //! mutated, modified or left out, as crystallographers have them. Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin)
 //! or that cut small things besides (lipases, esterases) are left alone.
 
-use super::Molecule;
 use super::groups::{Residue, residue_runs};
 use super::peptidase_families::{Anchor, FAMILIES};
 use super::sequence::{letter, number, peptides};
+use super::{Molecule, squared_distance};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -115,8 +115,8 @@ fn fits(sequence: &[char], stretch: &[&str]) -> bool {
 /// One place of every anchor, all of whose catalytic residues stand together, in each way that there is.
 fn together<'a>(found: &[Vec<Vec<Found<'a>>>]) -> Vec<Vec<Found<'a>>> {
     let near = |a: &Found<'_>, b: &Found<'_>| {
-        let squares = (0..3).map(|axis| (a.position[axis] - b.position[axis]).powi(2));
-        a.residue.atoms != b.residue.atoms && squares.sum::<f64>() <= TOGETHER * TOGETHER
+        let square = squared_distance(a.position, b.position);
+        a.residue.atoms != b.residue.atoms && square <= TOGETHER * TOGETHER
     };
     let mut ways: Vec<Vec<Found<'_>>> = vec![Vec::new()];
     for places in found {
@@ -144,39 +144,18 @@ fn together<'a>(found: &[Vec<Vec<Found<'a>>>]) -> Vec<Vec<Found<'a>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::{Atom, Format};
+    use crate::molecule::{Atom, Format, sequence};
 
     /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and from each other.
     fn chain(chain: &str, sequence: &str, first: i64, bent: &[i64]) -> Vec<Atom> {
-        const NAMES: [&str; 20] = [
-            "ALA", "ARG", "ASN", "ASP", "CYX", "GLN", "GLU", "GLY", "HIE", "ILE", "LEU", "LYS",
-            "MSE", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL",
-        ];
-        let atom = |number: i64, one: char, name: &str| Atom {
-            name: name.to_owned(),
-            residue_name: NAMES
-                .iter()
-                .find(|name| letter(name) == one)
-                .map_or("XYZ", |name| name)
-                .to_string(),
-            chain: chain.to_owned(),
-            residue_number: number,
-            insertion_code: None,
-            alternate_location: None,
-            element: "C".to_owned(),
-            position: if bent.contains(&number) {
+        let position = |number: i64| {
+            if bent.contains(&number) {
                 [number as f64 / 100.0, 0.0, 0.0]
             } else {
                 [100.0 * number as f64, 50.0, 0.0]
-            },
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
+            }
         };
-        let residue = |(number, one)| ["N", "CA", "C"].map(|name| atom(number, one, name));
-        (first..).zip(sequence.chars()).flat_map(residue).collect()
+        sequence::tests::chain(chain, sequence, first, &["N", "CA", "C"], position)
     }
 
     /// Family and residues of each site.
