@@ -27,6 +27,7 @@ pub mod kernel;
 pub mod lifted_axis;
 pub mod rescoring;
 pub mod se3;
+pub mod symmetry;
 #[cfg(test)]
 mod test_support;
 pub mod transform;

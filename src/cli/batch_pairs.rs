@@ -57,7 +57,7 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                     .remedy(remedy)
             };
             let name = match row.name.as_str() {
-                "" => format!("{}_{}", part(&row.receptor)?, part(&row.ligand)?),
+                "" => format!("{}_{}", part(&row.receptor)?, partner(&row)?),
                 name => name.to_owned(),
             };
             if !is_name(&name) {
@@ -102,7 +102,12 @@ fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Resu
     words.push(format!("--output={}", run.display()));
     words.extend(options.iter().cloned());
     words.push("--".to_owned());
-    words.extend([&row.receptor, &row.ligand].map(|file| at(folder, file)));
+    let files = [&row.receptor, &row.ligand].into_iter();
+    words.extend(
+        files
+            .filter(|file| !file.is_empty())
+            .map(|file| at(folder, file)),
+    );
     let command = PairCommand::try_parse_from(words).map_err(|error| message(&error))?;
     Ok(command.dock)
 }
@@ -116,6 +121,15 @@ fn at(folder: &Path, file: &str) -> String {
 fn part(file: &str) -> Result<String, Failure> {
     let spec = InputSpec::parse(file)?;
     Ok(label(&spec.path, spec.chains.as_deref()))
+}
+
+/// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
+fn partner(row: &PairRow) -> Result<String, Failure> {
+    let ring = row.options.iter().find(|(name, _)| name == "symmetry");
+    match ring {
+        Some((_, symmetry)) if row.ligand.is_empty() => Ok(symmetry.clone()),
+        _ => part(&row.ligand),
+    }
 }
 
 /// Whether a pair may be called so.

@@ -11,6 +11,7 @@ use knotdock::output::poses::PoseRow;
 use knotdock::search::meshes::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
 use knotdock::search::{DockOptions, SearchError};
 use knotdock::tradeoff::pair::{Pair, Prepared, Sampling};
+use knotdock_scoring::symmetry::Cyclic;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
@@ -92,11 +93,15 @@ impl Bodies {
         }
     }
 
-    /// Says what was read, and what to beware of.
-    pub fn describe(&self, console: Console) {
+    /// Says what was read, and what to beware of; of a ring, the one molecule that it is made of.
+    pub fn describe(&self, symmetry: Option<Cyclic>, console: Console) {
         match self {
             Self::Molecules(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
+                if let Some(symmetry) = symmetry {
+                    let report = &receptor.molecule.report;
+                    return console.say(format!("Each copy of {symmetry}: {report}"));
+                }
                 console.say(format!(
                     "Receptor: {}\nLigand: {}",
                     receptor.molecule.report, ligand.molecule.report
@@ -133,6 +138,10 @@ impl Bodies {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
                 Prepared::molecules(molecules, options).map_err(refused)
             }
+            Self::Meshes(_) if options.symmetry.is_some() => Err(Failure::input(
+                "--symmetry makes rings of a molecule, and this is a mesh",
+            )
+            .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
                 if options.core_weight != 1.0 {
                     return Err(Failure::input(
@@ -166,12 +175,17 @@ impl Bodies {
         }
     }
 
-    /// Writes the bodies in the poses of `rows` into a folder.
-    pub fn write(&self, rows: &[PoseRow], folder: &Path) -> Result<WrittenBodies, Failure> {
+    /// Writes the bodies in the poses of `rows` into a folder, of a ring all its copies.
+    pub fn write(
+        &self,
+        rows: &[PoseRow],
+        symmetry: Option<Cyclic>,
+        folder: &Path,
+    ) -> Result<WrittenBodies, Failure> {
         match self {
             Self::Molecules(inputs) => {
-                let [receptor, ligand] = inputs.as_ref();
-                let written = write_complexes(&receptor.molecule, &ligand.molecule, rows, folder)?;
+                let molecules = inputs.each_ref().map(|input| &input.molecule);
+                let written = write_complexes(molecules, symmetry, rows, folder)?;
                 Ok(WrittenBodies {
                     names: written.names,
                     chains: Some(written.chains),

@@ -50,7 +50,7 @@ impl Complex {
             &run.options.reading,
         )?;
         let folder = self.output.unwrap_or_else(|| self.run.join("top"));
-        let written = bodies.write(&rows, &folder)?;
+        let written = bodies.write(&rows, run.options.dock.symmetry, &folder)?;
         let paths: Vec<String> = written
             .names
             .iter()

@@ -6,6 +6,7 @@ use clap::Args;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::choice::Wanted;
+use knotdock_scoring::symmetry::Cyclic;
 
 use super::arguments::{above_zero, duration};
 use super::bodies::Bodies;
@@ -29,8 +30,12 @@ pub struct Dock {
     #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// What moves, likewise and of the same kind.
-    #[arg(required_unless_present = "from", value_name = "LIGAND")]
+    #[arg(required_unless_present_any = ["from", "symmetry"], value_name = "LIGAND")]
     ligand: Option<String>,
+    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis. --rotations then counts axes, and each
+    /// pose is where the second copy goes.
+    #[arg(long, value_name = "Cn", conflicts_with_all = ["ligand", "angle", "accuracy", "budget"])]
+    symmetry: Option<Cyclic>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -61,9 +66,10 @@ pub struct Dock {
 }
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 53] = [
+const RECORDED: [&str; 54] = [
     "receptor",
     "ligand",
+    "symmetry",
     "waters",
     "hetatm",
     "hydrogens",
@@ -120,7 +126,12 @@ const RECORDED: [&str; 53] = [
 impl Dock {
     /// What the command line asks for.
     fn request(&self) -> Result<Request, Failure> {
-        let (Some(receptor), Some(ligand)) = (&self.receptor, &self.ligand) else {
+        // Of a ring the ligand is another copy of the receptor.
+        let ligand = self.ligand.as_ref().or(match self.symmetry {
+            Some(_) => self.receptor.as_ref(),
+            None => None,
+        });
+        let (Some(receptor), Some(ligand)) = (&self.receptor, ligand) else {
             return Err(Failure::input("a receptor and a ligand are needed"));
         };
         let reading = self.reading.options();
@@ -129,7 +140,10 @@ impl Dock {
             native: self.native.read()?,
             options: RunOptions {
                 reading,
-                dock: self.search.options()?,
+                dock: match self.symmetry {
+                    Some(symmetry) => self.search.ring_options(symmetry)?,
+                    None => self.search.options()?,
+                },
                 write_top: self.write_top,
             },
             offset: self.search.offset(),

@@ -46,7 +46,8 @@ impl Docking {
         clock: Clock,
         console: Console,
     ) -> Result<Self, Failure> {
-        request.bodies.describe(console);
+        let symmetry = request.options.dock.symmetry;
+        request.bodies.describe(symmetry, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
@@ -59,7 +60,11 @@ impl Docking {
         };
         let plan = &prepared.plan;
         console.say(format!("\n{plan}"));
-        for (side, count) in ["receptor", "ligand"].into_iter().zip(plan.unresolved()) {
+        let sides: &[&str] = match symmetry {
+            Some(_) => &["molecule"],
+            None => &["receptor", "ligand"],
+        };
+        for (side, count) in sides.iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
                     "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
@@ -67,7 +72,7 @@ impl Docking {
                 ));
             }
         }
-        for (side, labels) in ["receptor", "ligand"].into_iter().zip(&plan.labels) {
+        for (side, labels) in sides.iter().zip(&plan.labels) {
             if let Some(text) = assumed(side, labels, plan) {
                 console.say(text);
             }
@@ -137,7 +142,9 @@ impl Docking {
             .rows()
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
-        let written = request.bodies.write(top, &staging.folder().join("top"))?;
+        let symmetry = request.options.dock.symmetry;
+        let top_folder = staging.folder().join("top");
+        let written = request.bodies.write(top, symmetry, &top_folder)?;
         let inputs = request.inputs(sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,

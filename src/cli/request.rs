@@ -99,6 +99,9 @@ impl Request {
     /// The directory of a run that names none.
     pub fn directory(&self) -> PathBuf {
         let [receptor, ligand] = self.bodies.labels();
-        PathBuf::from(format!("knotdock_{receptor}_{ligand}"))
+        PathBuf::from(match self.options.dock.symmetry {
+            Some(symmetry) => format!("knotdock_{receptor}_{symmetry}"),
+            None => format!("knotdock_{receptor}_{ligand}"),
+        })
     }
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
-use knotdock::search::options::{EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE};
+use knotdock::search::options::{AXES, EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE};
 use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::symmetry::Cyclic;
 
 use knotdock_structures::molecule::ResidueSelection;
 
@@ -40,6 +41,13 @@ fn cluster_radius_help() -> String {
         "RMSD within which poses form a cluster, in Å, over the ligand's CA atoms or a mesh's sample points [default: {}; of meshes \
          {CLUSTER_RADIUS:.3} times the offset]",
         DockOptions::default().cluster_radius
+    )
+}
+
+fn rotations_help() -> String {
+    format!(
+        "Rotations of the ligand, near uniform over all [default: {}]; with `dock --symmetry` axes, over half a sphere [default: {AXES}]",
+        DockOptions::default().rotations
     )
 }
 
@@ -148,9 +156,8 @@ pub struct KernelArguments {
 /// Options of the search.
 #[derive(Args, Debug)]
 pub struct SearchArguments {
-    /// Rotations of the ligand, near uniform over all.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = DockOptions::default().rotations, help_heading = TRADE_OFFS)]
-    rotations: usize,
+    #[arg(long, value_name = "N", value_parser = at_least_one, help = rotations_help(), help_heading = TRADE_OFFS)]
+    rotations: Option<usize>,
     /// Rotations by the field's count for an angle in degrees: 3600 (15/D)^3, so 15 gives 3,600 and 6 gives 56,250.
     #[arg(long, value_name = "D", value_parser = rotations_of_angle, conflicts_with = "rotations", help_heading = TRADE_OFFS)]
     angle: Option<usize>,
@@ -256,7 +263,7 @@ impl SearchArguments {
     pub fn options(&self) -> Result<DockOptions, Failure> {
         let kernel = self.kernel.options()?;
         Ok(DockOptions {
-            rotations: self.angle.unwrap_or(self.rotations),
+            rotations: self.angle.or(self.rotations).unwrap_or(kernel.rotations),
             fine_rotations: self.fine_angle.or(self.fine_rotations),
             fine_share: self.fine_share,
             precision: self.precision,
@@ -269,6 +276,18 @@ impl SearchArguments {
             sample_weights: self.sample_weights,
             every_pose: self.no_cluster,
             ..kernel
+        })
+    }
+
+    /// The options of a search for rings.
+    ///
+    /// # Errors
+    /// As [`KernelArguments::options`].
+    pub fn ring_options(&self, symmetry: Cyclic) -> Result<DockOptions, Failure> {
+        Ok(DockOptions {
+            rotations: self.rotations.unwrap_or(AXES),
+            symmetry: Some(symmetry),
+            ..self.options()?
         })
     }
 

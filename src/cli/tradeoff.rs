@@ -81,7 +81,7 @@ impl TradeoffCommand {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
         });
-        request.bodies.describe(console);
+        request.bodies.describe(None, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));

@@ -1,8 +1,10 @@
-//! Complexes: the receptor as it was and the ligand in its place, one file a rank.
+//! Complexes: the receptor as it was and the ligand in its place, one file a rank; of rings all copies.
 
 use std::io;
 use std::path::Path;
 
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::symmetry::Cyclic;
 use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
@@ -21,37 +23,50 @@ pub struct Written {
 }
 
 /// Writes the complexes of `rows` into `folder` as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
-/// complex does not fit the PDB format.
+/// complex does not fit the PDB format. With a symmetry the ligand is a copy of the receptor, and all others of the ring are written too.
 ///
 /// # Errors
-/// [`FileError`] when the folder cannot be made or a file cannot be written.
+/// [`FileError`] when the folder cannot be made, a file cannot be written, or a row's pose is not one of such a ring.
 pub fn write_complexes(
-    receptor: &Molecule,
-    ligand: &Molecule,
+    [receptor, ligand]: [&Molecule; 2],
+    symmetry: Option<Cyclic>,
     rows: &[PoseRow],
     folder: &Path,
 ) -> Result<Written, FileError> {
     if !rows.is_empty() {
         std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
-    // Placed ligands are made twice, once to see whether they fit and once to be written: many at once may not fit
+    let poses = |row: &PoseRow| match symmetry {
+        None => Ok(vec![row.pose]),
+        Some(symmetry) => match symmetry.ring(&row.pose) {
+            Some(ring) => Ok(ring[1..].to_vec()),
+            None => Err(not_a_ring(symmetry, row, folder)),
+        },
+    };
+    let copies = rows.iter().map(poses).collect::<Result<Vec<_>, _>>()?;
+    // Placed molecules are made twice, once to see whether they fit and once to be written: many at once may not fit
     // into the memory.
-    let placed = |row: &PoseRow| ligand.map_positions(|position| row.pose.apply(position));
-    let fits = rows
+    let placed = |poses: &Vec<Pose>| -> Vec<Molecule> {
+        let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
+        poses.iter().map(moved).collect()
+    };
+    let fits = copies
         .iter()
-        .all(|row| complex_format(receptor, &placed(row)) == Format::Pdb);
+        .all(|poses| complex_format(&with(receptor, &placed(poses))) == Format::Pdb);
+    let unplaced = vec![ligand.clone(); symmetry.map_or(1, |symmetry| symmetry.copies() - 1)];
     let format = match rows {
-        [] => complex_format(receptor, ligand),
+        [] => complex_format(&with(receptor, &unplaced)),
         _ if fits => Format::Pdb,
         _ => Format::Mmcif,
     };
     let mut chains = None;
     let mut names = Vec::new();
-    for row in rows {
+    for (row, poses) in rows.iter().zip(&copies) {
         let name = format!("rank_{:04}.{}", row.rank, format.extension());
-        let ligand = placed(row);
+        let others = placed(poses);
+        let remarks = remarks(row, symmetry);
         write_whole(&folder.join(&name), |mut file| {
-            let map = write_complex(&mut file, format, receptor, &ligand, &remarks(row));
+            let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
             chains = Some(map.map_err(io_error)?);
             Ok(())
         })?;
@@ -60,19 +75,37 @@ pub fn write_complexes(
     let chains = match chains {
         Some(chains) => chains,
         // No complex was asked for: the names are what they would have been.
-        None => write_complex(&mut io::sink(), format, receptor, ligand, &[])
+        None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
             .map_err(|error| FileError::writing(folder, io_error(error)))?,
     };
     Ok(Written { names, chains })
 }
 
-/// What a complex says of itself: where it comes from and how its ligand was moved.
-fn remarks(row: &PoseRow) -> Vec<String> {
+/// The molecules of a complex: the receptor, and those placed about it.
+fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule> {
+    std::iter::once(receptor).chain(others).collect()
+}
+
+/// A row whose pose was not made by a search for such rings.
+fn not_a_ring(symmetry: Cyclic, row: &PoseRow, folder: &Path) -> FileError {
+    let rank = row.rank;
+    let error = io::Error::other(format!(
+        "the pose of rank {rank} makes no ring of {symmetry}"
+    ));
+    FileError::writing(folder, error)
+}
+
+/// What a complex says of itself: where it comes from and how its ligand, or each copy of a ring from the one before it, was moved.
+fn remarks(row: &PoseRow, symmetry: Option<Cyclic>) -> Vec<String> {
     let [w, x, y, z] = row.pose.quaternion();
     let t = row.pose.translation;
+    let (rank, what) = match symmetry {
+        Some(symmetry) => (format!("rank {} of {symmetry}", row.rank), "each copy"),
+        None => (format!("rank {}", row.rank), "ligand"),
+    };
     vec![
-        format!("knotdock {VERSION}, rank {}", row.rank),
-        format!("ligand turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
+        format!("knotdock {VERSION}, {rank}"),
+        format!("{what} turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
         format!("then moved by {:.3} {:.3} {:.3} A", t.x, t.y, t.z),
     ]
 }

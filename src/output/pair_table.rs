@@ -19,7 +19,7 @@ pub struct PairRow {
     pub name: String,
     /// What stays: a file, perhaps with chains, as on the command line of `knotdock dock`.
     pub receptor: String,
-    /// What moves, likewise.
+    /// What moves, likewise; may be empty where copies of the receptor are docked into a ring.
     pub ligand: String,
     /// Options of `knotdock dock` with their values, by the names of their columns; those without a value are left out.
     pub options: Vec<(String, String)>,
@@ -102,8 +102,9 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         let record = record.map_err(malformed)?;
         let line = record.position().map_or(0, line);
         let row = row(&header, &record, line);
+        let rings = row.options.iter().any(|(name, _)| name == "symmetry");
         for (column, field) in [("receptor", &row.receptor), ("ligand", &row.ligand)] {
-            if field.is_empty() {
+            if field.is_empty() && !(rings && column == "ligand") {
                 return Err(wrong(Some(line), format!("the pair has no {column}")));
             }
         }
@@ -155,6 +156,9 @@ mod tests {
         )
         .unwrap();
         let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        let rings = read("receptor,ligand,symmetry\na.pdb,,C3\n").unwrap();
+        assert_eq!(rings[0].ligand, "");
+        assert_eq!(rings[0].options, [option("symmetry", "C3")]);
         assert_eq!(
             (rows[0].receptor.as_str(), rows[0].ligand.as_str()),
             ("a.pdb", "b.cif:A,B")
@@ -175,6 +179,8 @@ mod tests {
             ("receptor,ligand\n", None, "no pair"),
             ("receptor,ligand\na.pdb,b.pdb\nc.pdb\n", Some(3), "fields"),
             ("receptor,ligand\na.pdb,\n", Some(2), "no ligand"),
+            ("receptor,ligand,symmetry\n,,C2\n", Some(2), "no receptor"),
+            ("receptor,ligand,symmetry\na,,\n", Some(2), "no ligand"),
         ] {
             let error = read(text).unwrap_err();
             assert_eq!(error.line(), line, "{text}");

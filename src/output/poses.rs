@@ -16,7 +16,7 @@ use super::whole_file::{FileError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 29] = [
+pub const COLUMNS: [&str; 30] = [
     "rank",
     "score",
     "cluster",
@@ -46,6 +46,7 @@ pub const COLUMNS: [&str; 29] = [
     "relaxed",
     "restraint",
     "attraction",
+    "other_copies",
 ];
 
 /// A column to append: its name and one field a row.
@@ -106,6 +107,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         row.relaxed.map_or(String::new(), number),
         term(Effect::Restraint),
         row.attraction.map_or(String::new(), number),
+        row.other_copies.map_or(String::new(), number),
     ]
 }
 
@@ -243,6 +245,7 @@ mod tests {
             atom_pair: Some(-7.0),
             relaxed: Some(2.5),
             attraction: None,
+            other_copies: None,
             rank_score: 1.0 / 3.0,
             z_score: Some(2.5),
         }
@@ -261,9 +264,9 @@ mod tests {
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
              shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
-             fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction\n\
+             fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,\n"
+             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,\n"
         );
     }
 

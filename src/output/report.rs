@@ -108,6 +108,7 @@ mod tests {
             atom_pair: None,
             relaxed: None,
             attraction: None,
+            other_copies: None,
             rank_score: score,
             z_score: None,
         }

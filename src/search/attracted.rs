@@ -84,22 +84,15 @@ impl AssumedSite {
     fn side(&self, residues: Vec<Vec<usize>>) -> Residues {
         match self.partner {
             Partner::Receptor => [residues, Vec::new()],
-            Partner::Ligand => [Vec::new(), residues],
+            _ => [Vec::new(), residues],
         }
     }
 }
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let partner = match self.partner {
-            Partner::Receptor => "receptor",
-            Partner::Ligand => "ligand",
-        };
-        write!(
-            f,
-            "the {partner} is a peptidase, {}",
-            sites_told(&self.sites)
-        )
+        let (partner, sites) = (self.partner, sites_told(&self.sites));
+        write!(f, "the {partner} is a peptidase, {sites}")
     }
 }
 

@@ -64,16 +64,34 @@ impl RigidBody {
 /// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
 /// founds one. Returns each pose's cluster, numbered from 0 in order of founding.
 pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
+    greedy_of_images(body, poses.iter().map(|pose| [*pose]), radius)
+}
+
+/// [`greedy`] of rings: a pose and its inverse are the same ring with its copies counted either way, and so one.
+pub fn greedy_of_rings(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
+    greedy_of_images(
+        body,
+        poses.iter().map(|pose| [*pose, pose.inverse()]),
+        radius,
+    )
+}
+
+/// Greedy clusters of poses each of which has several images: it is as near to a founder as its nearest.
+fn greedy_of_images<const IMAGES: usize>(
+    body: &RigidBody,
+    poses: impl Iterator<Item = [Pose; IMAGES]>,
+    radius: f64,
+) -> Vec<usize> {
     let mut founders: Vec<PlacedBody> = Vec::new();
     poses
-        .iter()
-        .map(|pose| {
-            let placed = body.place(pose);
-            let near = founders
-                .iter()
-                .position(|founder| body.mean_square(founder, &placed) <= radius * radius);
+        .map(|images| {
+            let placed = images.map(|pose| body.place(&pose));
+            let near = founders.iter().position(|founder| {
+                let mut squares = placed.iter().map(|image| body.mean_square(founder, image));
+                squares.any(|square| square <= radius * radius)
+            });
             near.unwrap_or_else(|| {
-                founders.push(placed);
+                founders.push(placed[0]);
                 founders.len() - 1
             })
         })
@@ -102,6 +120,17 @@ mod tests {
             / 4.0;
         assert!((body.mean_square(&body.place(&a), &body.place(&b)) - direct).abs() < 1e-10);
         assert!(body.mean_square(&body.place(&a), &body.place(&a)) < 1e-10);
+    }
+
+    /// A third of a turn back is the same ring as a third forward, and only where rings are asked for.
+    #[test]
+    fn rings_are_one_with_their_inverses() {
+        let body = RigidBody::new(&[[9.0, 0.0, 0.0], [10.0, 3.0, 0.0], [9.0, 1.0, 5.0]]);
+        let half = std::f64::consts::FRAC_PI_3;
+        let forward = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
+        let poses = [forward, forward.inverse()];
+        assert_eq!(greedy_of_rings(&body, &poses, 5.0), [0, 0]);
+        assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
 pub mod attracted;
+pub mod axes;
 pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
@@ -17,6 +18,7 @@ mod ranking;
 pub mod refine;
 mod rescoring;
 pub mod restraints;
+mod ring;
 pub mod rotations;
 pub mod run;
 mod scan;

@@ -8,6 +8,7 @@ use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::{EngineOptions, PlanError};
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::symmetry::Cyclic;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,8 @@ pub struct DockOptions {
     pub sample_grid: Option<usize>,
     /// Weights of a mesh's balls; `None` for molecules.
     pub sample_weights: Option<SampleWeights>,
+    /// Symmetry of the rings that copies of one molecule are to form; `None`: a receptor and a ligand are docked.
+    pub symmetry: Option<Cyclic>,
     /// Terms of the score.
     pub effects: EffectChoice,
     /// Weight of the electrostatic energy: score per kcal/mol.
@@ -174,6 +177,9 @@ impl std::str::FromStr for EngineChoice {
 /// Poses refined by default when shape is all there is: on training pairs that gained ranks, and beside other effects it cost some.
 pub const REFINED_BY_SHAPE: usize = 300;
 
+/// Axes of rings by default: 3 degrees to the nearest at most, and up to twice that for the copies about it.
+pub const AXES: usize = 900;
+
 /// Default pass length as a multiple of the resolution.
 pub const PASS_RATIO: f64 = 2.0;
 
@@ -197,6 +203,7 @@ impl Default for DockOptions {
             engine: EngineChoice::Cpu,
             sample_grid: None,
             sample_weights: None,
+            symmetry: None,
             effects: EffectChoice::Auto,
             electrostatics_weight: 24.0,
             contact_weight: 2.0,
@@ -347,7 +354,31 @@ impl DockOptions {
                 .to_owned(),
             });
         }
+        self.check_rings()?;
         self.check_engine()
+    }
+
+    /// Refuses what a search for rings has no part for.
+    fn check_rings(&self) -> Result<(), SearchError> {
+        let Some(symmetry) = self.symmetry else {
+            return Ok(());
+        };
+        let without = |name, value: String, bound: &str| SearchError::Option {
+            name,
+            value,
+            bound: format!("{bound} with --symmetry {symmetry}"),
+        };
+        if let Some(finer) = self.fine_rotations {
+            return Err(without("fine-rotations", finer.to_string(), "left out"));
+        }
+        if let Some(refined) = self.refine {
+            let bound = "left out, for every ring is refined,";
+            return Err(without("refine", refined.to_string(), bound));
+        }
+        if self.engine != EngineChoice::Cpu {
+            return Err(without("engine", self.engine.name().to_owned(), "cpu"));
+        }
+        Ok(())
     }
 
     fn check_engine(&self) -> Result<(), SearchError> {

@@ -1,6 +1,7 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use super::attracted::{AssumedSite, Attracted};
+use super::axes::{axes_radius, axis_set};
 use super::effects::{Decision, LengthUnit, Scene};
 use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE, SearchError};
 use super::peaks::Peak;
@@ -32,7 +33,7 @@ pub struct DockPlan {
     pub rotations: usize,
     /// Name of the rotation set.
     pub rotation_set: &'static str,
-    /// Measured covering radius of the set, degrees.
+    /// Measured covering radius of the set, of rings that of their axes, degrees.
     pub covering_radius_degrees: f64,
     /// Grid points per axis.
     pub grid: [usize; 3],
@@ -190,7 +191,18 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
         }
     };
-    let set = rotation_set(options.rotations);
+    let (set, set_name, covering_radius) = match options.symmetry {
+        Some(symmetry) => {
+            let axes = axis_set(options.rotations);
+            let set = axes.iter().map(|axis| symmetry.rotation(axis)).collect();
+            (set, "axes over a half sphere", axes_radius(&axes))
+        }
+        None => {
+            let set = rotation_set(options.rotations);
+            let radius = covering_radius(&set);
+            (set, set_name(options.rotations), radius)
+        }
+    };
     let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
     let (a, b) = match &engine.basis {
         knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
@@ -202,8 +214,8 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         unit,
         angstrom,
         rotations: options.rotations,
-        rotation_set: set_name(options.rotations),
-        covering_radius_degrees: covering_radius(&set).to_degrees(),
+        rotation_set: set_name,
+        covering_radius_degrees: covering_radius.to_degrees(),
         grid: engine.size(),
         spacing: engine.spacing,
         fine_grid: engine.fine,
@@ -251,6 +263,9 @@ impl DockPlan {
 
     /// A rotation by its index, those of the finer set after those of the coarse one, and which half-turn of the first of its four it is.
     pub(super) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
+        if self.options.symmetry.is_some() {
+            return (self.set[index], HalfTurn::None);
+        }
         match index.checked_sub(self.set.len()) {
             None => (self.set[index], HalfTurn::ALL[index % 4]),
             Some(fine) => (self.fine_set[fine], HalfTurn::ALL[fine % 4]),
@@ -275,8 +290,11 @@ impl DockPlan {
         )?)
     }
 
-    /// Number of poses to refine.
+    /// Number of poses to refine: of rings all, for none lies on the grid.
     pub fn refined(&self) -> usize {
+        if self.options.symmetry.is_some() {
+            return self.options.poses;
+        }
         let alone = self
             .decisions
             .iter()
@@ -319,9 +337,13 @@ impl std::fmt::Display for DockPlan {
         // Three significant digits or so, two decimals of an Ångström.
         let below = -self.angstrom.log10().floor() as i32;
         let (digits, finer) = ((2 + below).max(0) as usize, (3 - below).max(0) as usize);
+        let rotations = match self.options.symmetry {
+            Some(symmetry) => format!("axes of {symmetry}"),
+            None => "rotations".to_owned(),
+        };
         write!(
             f,
-            "{} rotations ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes below {:.finer$} per {unit}, \
+            "{} {rotations} ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes below {:.finer$} per {unit}, \
              window of {} on {} x {} x {}, lifted axis -{K}..{K}; about {:.0} MB with {} in flight",
             self.rotations,
             self.covering_radius_degrees,

@@ -4,20 +4,23 @@
 //! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
 //! pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the rank score.
+//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the rank score; of rings with what copies beyond the
+//! neighbours add to it.
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
 //! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
 
-use super::cluster::{RigidBody, greedy};
+use super::cluster::{RigidBody, greedy, greedy_of_rings};
 use super::outcome::RankedPose;
 use super::peaks::Peak;
+use super::ring::other_copies;
 use super::run::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::symmetry::Cyclic;
 use rayon::prelude::*;
 
 /// A pose in the running.
@@ -28,9 +31,9 @@ pub(super) struct Candidate {
     score: f64,
     /// What rescoring says of `pose`.
     rescored: Rescored,
-    /// The grid pose that it came from.
-    grid_pose: Pose,
-    /// All terms at `grid_pose`, where they are known already.
+    /// The pose that it was refined from.
+    start: Pose,
+    /// All terms at `start`, where they are known already.
     terms: Option<ExactScore>,
     /// Whether `pose` was moved off the grid.
     refined: bool,
@@ -47,6 +50,43 @@ pub(super) struct Judge<'a> {
     pub rescorer: Option<&'a Rescorer>,
     /// Which effects are on, by effect.
     pub on: [bool; Effect::ALL.len()],
+    /// The symmetry of rings, where they are sought.
+    pub symmetry: Option<Cyclic>,
+}
+
+/// Where a peak of the search led to.
+#[derive(Clone, Copy)]
+pub(super) struct Placed {
+    /// The pose that it was refined from: the grid's, or of rings the one nearest to it.
+    pub start: Pose,
+    /// The pose that it was refined to.
+    pub pose: Pose,
+    /// The fast path's score at `pose`, of rings that of all copies.
+    pub score: f64,
+    /// Whether the two differ.
+    pub refined: bool,
+}
+
+impl Placed {
+    /// A grid pose, and what it was refined to where that is better.
+    pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
+        let (start, score) = grid;
+        let unrefined = Self {
+            start,
+            pose: start,
+            score,
+            refined: false,
+        };
+        match refined {
+            Some((pose, higher)) if higher > score => Self {
+                pose,
+                score: higher,
+                refined: true,
+                ..unrefined
+            },
+            _ => unrefined,
+        }
+    }
 }
 
 /// What is reported of the ranking.
@@ -61,52 +101,32 @@ pub(super) fn printed(pose: &Pose) -> Pose {
     Pose::from_parts(pose.quaternion(), pose.translation.into())
 }
 
-/// Grid poses and what the first of them were refined to (with the field's score there), rescored, best first, ties in the order given.
-/// `at_grid` holds all terms of the first grid poses.
+/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
 pub(super) fn candidates(
     peaks: &[Peak],
-    grid_poses: &[Pose],
-    refined: &[(Pose, f64)],
-    at_grid: &[ExactScore],
+    placed: &[Placed],
+    at_start: &[ExactScore],
     rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = peaks
         .par_iter()
-        .zip(grid_poses)
+        .zip(placed)
         .enumerate()
-        .map_init(
-            Workspace::default,
-            |workspace, (index, (peak, grid_pose))| {
-                let score_grid = peak.score;
-                let candidate = Candidate {
-                    pose: *grid_pose,
-                    score: score_grid,
-                    rescored: Rescored::default(),
-                    grid_pose: *grid_pose,
-                    terms: at_grid.get(index).copied(),
-                    refined: false,
-                    rotation: peak.rotation as usize,
-                    score_grid,
-                };
-                let candidate = match refined.get(index) {
-                    Some(&(pose, score)) if score > score_grid => Candidate {
-                        pose,
-                        score,
-                        refined: true,
-                        ..candidate
-                    },
-                    _ => candidate,
-                };
-                let rescored = rescorer
-                    .map(|rescorer| rescorer.score(&candidate.pose, workspace))
-                    .unwrap_or_default();
-                Candidate {
-                    score: candidate.score + rescored.sum(),
-                    rescored,
-                    ..candidate
-                }
-            },
-        )
+        .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
+            let rescored = rescorer
+                .map(|rescorer| rescorer.score(&placed.pose, workspace))
+                .unwrap_or_default();
+            Candidate {
+                pose: placed.pose,
+                score: placed.score + rescored.sum(),
+                rescored,
+                start: placed.start,
+                terms: at_start.get(index).copied(),
+                refined: placed.refined,
+                rotation: peak.rotation as usize,
+                score_grid: peak.score,
+            }
+        })
         .filter(|candidate| candidate.score.is_finite())
         .collect();
     // The list comes in the order of the grid's scores, which breaks ties.
@@ -115,13 +135,13 @@ pub(super) fn candidates(
 }
 
 /// Drops refined poses that ended where a better one did.
-pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
+pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, rings: bool, distance: f64) {
     let poses: Vec<Pose> = candidates
         .iter()
         .filter(|candidate| candidate.refined)
         .map(|candidate| candidate.pose)
         .collect();
-    let groups = greedy(body, &poses, distance);
+    let groups = grouped(body, &poses, rings, distance);
     let (mut index, mut seen) = (0, 0);
     candidates.retain(|candidate| {
         if !candidate.refined {
@@ -135,9 +155,20 @@ pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance:
 }
 
 /// Each candidate's cluster, numbered from 0 in the order of their founders.
-pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
+pub(super) fn clusters_of(
+    candidates: &[Candidate],
+    body: &RigidBody,
+    rings: bool,
+    radius: f64,
+) -> Vec<usize> {
     let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
-    greedy(body, &poses, radius)
+    grouped(body, &poses, rings, radius)
+}
+
+/// Greedy clusters of poses, or of rings.
+fn grouped(body: &RigidBody, poses: &[Pose], rings: bool, radius: f64) -> Vec<usize> {
+    let by = if rings { greedy_of_rings } else { greedy };
+    by(body, poses, radius)
 }
 
 /// T as a share of the run's best score.
@@ -254,22 +285,28 @@ impl Candidate {
             scorer,
             rescorer,
             on,
+            symmetry,
         } = judge;
-        let at_grid = || self.terms.unwrap_or_else(|| scorer.score(&self.grid_pose));
-        let (pose, terms, refined) = if self.refined {
-            let terms = scorer.score(&self.pose);
+        let others = |pose: &Pose| {
+            let others = symmetry.map(|symmetry| other_copies(symmetry, scorer, pose));
+            others.flatten()
+        };
+        let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
+        let (pose, terms, others, refined) = if self.refined {
+            let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
             // A climb on the fast path's values that the exact sum does not confirm is undone.
             let before = match &self.terms {
                 Some(terms) => terms.score,
-                None => scorer.score_only(&self.grid_pose),
+                None => scorer.score_only(&self.start),
             };
-            if terms.score >= before {
-                (self.pose, terms, true)
+            let start = others(&self.start);
+            if terms.score + beyond.unwrap_or(0.0) >= before + start.unwrap_or(0.0) {
+                (self.pose, terms, beyond, true)
             } else {
-                (self.grid_pose, at_grid(), false)
+                (self.start, at_start(), start, false)
             }
         } else {
-            (self.grid_pose, at_grid(), false)
+            (self.start, at_start(), others(&self.start), false)
         };
         let rescored = match rescorer {
             // An undone climb leaves another pose than was rescored.
@@ -284,7 +321,8 @@ impl Candidate {
             atom_pair: rescored.atom_pair,
             relaxed: rescored.relaxed,
             attraction: rescored.attraction,
-            rank_score: terms.score + rescored.sum(),
+            other_copies: others,
+            rank_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
             z_score: None,
             score: terms.score,
             cluster: None,
@@ -346,8 +384,9 @@ mod tests {
                     voxel: 0,
                 })
                 .collect();
-            let poses = vec![at(0.0); scores.len()];
-            Background::of(&candidates(&peaks, &poses, &[], &[], None))
+            let placed = |peak: &Peak| Placed::best_of((at(0.0), peak.score), None);
+            let placed: Vec<Placed> = peaks.iter().map(placed).collect();
+            Background::of(&candidates(&peaks, &placed, &[], None))
         };
         let z = with(&[1.0, 2.0, 3.0, 4.0]).z_score(5.0).unwrap();
         assert!((z - 2.5 / 1.25f64.sqrt()).abs() < 1e-12);
@@ -368,12 +407,14 @@ mod tests {
                 voxel: 0,
             };
             // The fast path claims a gain of one.
-            let refined = [(at(to), peak.score + 1.0)];
-            let candidates = candidates(&[peak], &[at(from)], &refined, &[], None);
+            let refined = Some((at(to), peak.score + 1.0));
+            let placed = Placed::best_of((at(from), peak.score), refined);
+            let candidates = candidates(&[peak], &[placed], &[], None);
             let judge = Judge {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
+                symmetry: None,
             };
             let ranking = report(judge, &candidates, &[0], true, 0.0, &Silent);
             ranking.poses[0].clone()

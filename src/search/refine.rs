@@ -22,13 +22,14 @@ pub struct ClimbLimits {
     pub angstrom: f64,
 }
 
-/// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian about
-/// `ligand_center` of the ligand's frame).
+/// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian) by the moves that
+/// `moved` makes of a turn and a shift: of the ligand about its centre ([`freely`]), or of the two bodies of a ring together.
 pub fn climb(
     start: Pose,
     ligand_center: Vector3<f64>,
     limits: &ClimbLimits,
     score: impl Fn(&Pose) -> (f64, PoseGradient),
+    moved: impl Fn(&Pose, UnitQuaternion<f64>, Vector3<f64>) -> Pose,
 ) -> (Pose, f64) {
     // Variables: translation in Å and rotation times the radius of gyration, about the ligand's centre.
     let radius = limits.gyration.max(f64::MIN_POSITIVE);
@@ -38,12 +39,7 @@ pub fn climb(
     };
     let moved = |pose: &Pose, step: &Vector6<f64>| {
         let turn = UnitQuaternion::new(step.fixed_rows::<3>(3) / radius);
-        let center = pose.rotation * ligand_center + pose.translation;
-        Pose::about(
-            turn * pose.rotation,
-            ligand_center,
-            center + step.fixed_rows::<3>(0),
-        )
+        moved(pose, turn, step.fixed_rows::<3>(0).into())
     };
     let within = |pose: &Pose| {
         let from = start.rotation * ligand_center + start.translation;
@@ -106,6 +102,16 @@ pub fn climb(
     (pose, value)
 }
 
+/// Turns the ligand about its centre, and shifts it.
+pub fn freely(
+    ligand_center: Vector3<f64>,
+) -> impl Fn(&Pose, UnitQuaternion<f64>, Vector3<f64>) -> Pose {
+    move |pose, turn, shift| {
+        let center = pose.rotation * ligand_center + pose.translation;
+        Pose::about(turn * pose.rotation, ligand_center, center + shift)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,7 +137,13 @@ mod tests {
             gyration: 10.0,
             angstrom: 1.0,
         };
-        let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
+        let (found, _) = climb(
+            Pose::identity(),
+            Vector3::zeros(),
+            &limits,
+            score,
+            freely(Vector3::zeros()),
+        );
         assert!((found.translation - top.translation).norm() < 0.01);
         assert!(found.angle_to(&top) < 0.002);
     }
@@ -152,7 +164,13 @@ mod tests {
             gyration: 10.0,
             angstrom: 1.0,
         };
-        let (found, _) = climb(Pose::identity(), Vector3::zeros(), &limits, score);
+        let (found, _) = climb(
+            Pose::identity(),
+            Vector3::zeros(),
+            &limits,
+            score,
+            freely(Vector3::zeros()),
+        );
         assert!(found.translation[0] > 1.5 && found.translation.norm() <= 2.0);
     }
 }

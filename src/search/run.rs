@@ -7,9 +7,11 @@ use super::correlator::Correlator;
 use super::costs::costs;
 use super::options::{Precision, SearchError};
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
+use super::peaks::Peak;
 use super::plan::DockPlan;
-use super::ranking::{Judge, candidates, clusters_of, merge, printed, report};
-use super::refine::{ClimbLimits, climb};
+use super::ranking::{Judge, Placed, candidates, clusters_of, merge, printed, report};
+use super::refine::{ClimbLimits, climb, freely};
+use super::ring::climb_ring;
 use super::scan::{Chosen, all_rotations, choose_rank, scan};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
@@ -135,39 +137,11 @@ fn dock_in<T: Real>(
         .collect();
 
     let body = RigidBody::new(points);
-    let refined_count = plan.refined().min(peaks.len());
-    progress.stage("refine", refined_count as u64);
-    let refined: Vec<(Pose, f64)> = if refined_count == 0 {
-        Vec::new()
-    } else {
-        let field = ReceptorField::new(&plan.engine, &folded, &plan.ligand);
-        let limits = ClimbLimits {
-            evaluations: 40,
-            distance: 3.0 * plan.spacing,
-            angle: plan.covering_radius_degrees.to_radians(),
-            gyration: body.gyration(),
-            angstrom: plan.angstrom,
-        };
-        grid_poses[..refined_count]
-            .par_iter()
-            .map(|&pose| {
-                let top = climb(pose, plan.engine.ligand_center, &limits, |pose| {
-                    field.gradient(pose)
-                });
-                progress.advance(1);
-                top
-            })
-            .collect()
-    };
+    let placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
     drop(folded);
     clock.lap("refine");
 
-    // Printed poses are what is scored: a quaternion's digits survive the table's round trip.
     let grid_poses: Vec<Pose> = grid_poses.iter().map(printed).collect();
-    let refined: Vec<(Pose, f64)> = refined
-        .iter()
-        .map(|(pose, score)| (printed(pose), *score))
-        .collect();
     let at_grid: Vec<ExactScore> = grid_poses[..ERROR_POSES.min(grid_poses.len())]
         .par_iter()
         .map(|pose| scorer.score(pose))
@@ -179,14 +153,17 @@ fn dock_in<T: Real>(
     if rescorer.is_some() {
         progress.stage("rescore", 1);
     }
-    let mut candidates = candidates(&peaks, &grid_poses, &refined, &at_grid, rescorer.as_ref());
+    let rings = options.symmetry.is_some();
+    // No ring starts on the grid.
+    let at_start = if rings { &[][..] } else { &at_grid[..] };
+    let mut candidates = candidates(&peaks, &placed, at_start, rescorer.as_ref());
     if rescorer.is_some() {
         progress.advance(1);
     }
     clock.lap("rescore");
-    merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
+    merge(&mut candidates, &body, rings, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
-    let clusters = clusters_of(&candidates, &body, options.cluster_radius);
+    let clusters = clusters_of(&candidates, &body, rings, options.cluster_radius);
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
@@ -194,6 +171,7 @@ fn dock_in<T: Real>(
         scorer: &scorer,
         rescorer: rescorer.as_ref(),
         on,
+        symmetry: options.symmetry,
     };
     let ranking = report(
         judge,
@@ -221,6 +199,60 @@ fn dock_in<T: Real>(
         timing: clock.stages,
         adapter: engine.adapter,
     })
+}
+
+/// Climbs from the best grid poses, of rings from the ring nearest to each. Poses are given as they are printed, and so scored: a quaternion's digits
+/// survive the table's round trip.
+fn refine<T: Real>(
+    plan: &DockPlan,
+    folded: &Folded<T>,
+    peaks: &[Peak],
+    grid_poses: &[Pose],
+    body: &RigidBody,
+    progress: &dyn Progress,
+) -> Vec<Placed> {
+    let count = plan.refined().min(peaks.len());
+    progress.stage("refine", count as u64);
+    let field = (count > 0).then(|| ReceptorField::new(&plan.engine, folded, &plan.ligand));
+    // A copy turns by up to twice as much as its axis.
+    let turned = if plan.options.symmetry.is_some() {
+        2.0
+    } else {
+        1.0
+    };
+    let limits = ClimbLimits {
+        evaluations: 40,
+        distance: 3.0 * plan.spacing,
+        angle: turned * plan.covering_radius_degrees.to_radians(),
+        gyration: body.gyration(),
+        angstrom: plan.angstrom,
+    };
+    let center = plan.engine.ligand_center;
+    let place = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
+        let Some(field) = field.as_ref().filter(|_| index < count) else {
+            return Placed::best_of((printed(pose), peak.score), None);
+        };
+        let placed = match plan.options.symmetry {
+            Some(symmetry) => {
+                let (top, score) = climb_ring(symmetry, field, center, pose, &limits);
+                Placed {
+                    start: printed(&symmetry.nearest(pose)),
+                    pose: printed(&top),
+                    score,
+                    refined: true,
+                }
+            }
+            None => {
+                let gradient = |pose: &Pose| field.gradient(pose);
+                let (top, score) = climb(*pose, center, &limits, gradient, freely(center));
+                Placed::best_of((printed(pose), peak.score), Some((printed(&top), score)))
+            }
+        };
+        progress.advance(1);
+        placed
+    };
+    let places = peaks.par_iter().zip(grid_poses).enumerate();
+    places.map(place).collect()
 }
 
 /// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.

@@ -1,5 +1,6 @@
 //! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
 
+use super::axes::RingVoxels;
 use super::correlator::Correlator;
 use super::options::SearchError;
 use super::peaks::{Peak, find_peaks};
@@ -113,9 +114,13 @@ pub(super) struct Quartet {
     pub wanted: [bool; 4],
 }
 
-/// The coarse set, in fours.
+/// The coarse set, in fours; axes of rings one by one, for half-turns make no rings of rings.
 pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
     let count = plan.set.len();
+    if plan.options.symmetry.is_some() {
+        let wanted = [true, false, false, false];
+        return (0..count).map(|first| Quartet { first, wanted }).collect();
+    }
     let quartet = |first| Quartet {
         first,
         wanted: std::array::from_fn(|image| first + image < count),
@@ -189,6 +194,7 @@ fn scan_on_cores<T: Real>(
     progress: &dyn Progress,
 ) -> Vec<Peak> {
     let options = &plan.options;
+    let rings = options.symmetry.map(|_| RingVoxels::new(engine));
     let next = AtomicUsize::new(0);
     (0..plan.in_flight)
         .into_par_iter()
@@ -204,6 +210,9 @@ fn scan_on_cores<T: Real>(
                         continue;
                     }
                     engine.correlate_turned(half_turn, &mut work);
+                    if let Some(rings) = &rings {
+                        rings.keep(&rotation, &mut work.grid, &mut work.row_best);
+                    }
                     find_peaks(
                         plan.grid,
                         &mut work.grid,

@@ -80,8 +80,7 @@ fn a_complex_comes_back_under_unique_chain_names() {
         let map = write_complex(
             &mut text,
             format,
-            &receptor,
-            &ligand,
+            &[&receptor, &ligand],
             &["pose 1".to_string()],
         )
         .unwrap();
@@ -167,7 +166,7 @@ fn what_does_not_fit_pdb_becomes_mmcif() {
         change(&mut changed);
         molecule(vec![changed])
     };
-    assert_eq!(complex_format(&one, &one), Format::Pdb);
+    assert_eq!(complex_format(&[&one, &one]), Format::Pdb);
     let misfits = [
         ("1e6 Å", with(&|a| a.position[1] = 1e6)),
         ("-1000 Å", with(&|a| a.position[2] = -1000.0)),
@@ -183,21 +182,21 @@ fn what_does_not_fit_pdb_becomes_mmcif() {
         ("B of 1,000", with(&|a| a.b_factor = 1000.0)),
     ];
     for (what, misfit) in &misfits {
-        assert_eq!(complex_format(&one, misfit), Format::Mmcif, "{what}");
-        let refused = write_complex(&mut Vec::new(), Format::Pdb, &one, misfit, &[]);
+        assert_eq!(complex_format(&[&one, misfit]), Format::Mmcif, "{what}");
+        let refused = write_complex(&mut Vec::new(), Format::Pdb, &[&one, misfit], &[]);
         assert!(
             matches!(refused, Err(WriteError::DoesNotFit { .. })),
             "{what}"
         );
         let mut text = Vec::new();
-        write_complex(&mut text, Format::Mmcif, &one, misfit, &[]).unwrap();
+        write_complex(&mut text, Format::Mmcif, &[&one, misfit], &[]).unwrap();
         assert_same(&misfit.atoms[0], &read_again(&text, Format::Mmcif).atoms[1]);
     }
     let mut mmcif = one.clone();
     mmcif.format = Format::Mmcif;
-    assert_eq!(complex_format(&mmcif, &one), Format::Mmcif);
+    assert_eq!(complex_format(&[&mmcif, &one]), Format::Mmcif);
     let broken = with(&|a| a.position[0] = f64::NAN);
-    let refused = write_complex(&mut Vec::new(), Format::Mmcif, &one, &broken, &[]);
+    let refused = write_complex(&mut Vec::new(), Format::Mmcif, &[&one, &broken], &[]);
     assert!(matches!(refused, Err(WriteError::NotFinite { .. })));
 }
 
@@ -210,10 +209,10 @@ fn the_limits_of_pdb_are_exact() {
                 .collect::<Vec<_>>(),
         )
     };
-    assert_eq!(complex_format(&chains(31), &chains(31)), Format::Pdb);
-    assert_eq!(complex_format(&chains(31), &chains(32)), Format::Mmcif);
+    assert_eq!(complex_format(&[&chains(31), &chains(31)]), Format::Pdb);
+    assert_eq!(complex_format(&[&chains(31), &chains(32)]), Format::Mmcif);
     let mut text = Vec::new();
-    let map = write_complex(&mut text, Format::Pdb, &chains(31), &chains(31), &[]).unwrap();
+    let map = write_complex(&mut text, Format::Pdb, &[&chains(31), &chains(31)], &[]).unwrap();
     let mut names: Vec<_> = map
         .chains
         .iter()
@@ -227,8 +226,7 @@ fn the_limits_of_pdb_are_exact() {
     let map = write_complex(
         &mut Vec::new(),
         Format::Mmcif,
-        &chains(31),
-        &chains(31),
+        &[&chains(31), &chains(31)],
         &[],
     )
     .unwrap();
@@ -243,21 +241,48 @@ fn the_limits_of_pdb_are_exact() {
         )
     };
     let one = molecule(vec![atom("B", 1, 0.0)]);
-    assert_eq!(complex_format(&atoms(99_998), &one), Format::Pdb);
-    assert_eq!(complex_format(&atoms(99_999), &one), Format::Mmcif);
+    assert_eq!(complex_format(&[&atoms(99_998), &one]), Format::Pdb);
+    assert_eq!(complex_format(&[&atoms(99_999), &one]), Format::Mmcif);
     // 99,999 atoms leave no serial number for TER.
     let mut text = Vec::new();
-    write_complex(&mut text, Format::Pdb, &atoms(99_998), &one, &[]).unwrap();
+    write_complex(&mut text, Format::Pdb, &[&atoms(99_998), &one], &[]).unwrap();
     let text = String::from_utf8(text).unwrap();
     assert!(text.lines().all(|line| line.len() == 80));
     assert!(text.lines().any(|line| line.starts_with("ATOM  99999")));
+}
+
+/// Every copy of a ring has a chain of its own, whatever chains its molecule has, and the map tells them apart.
+#[test]
+fn copies_of_a_ring_have_chains_of_their_own() {
+    let one = molecule(vec![atom("B", 1, 0.0), atom("A", 1, 1.0)]);
+    let mut text = Vec::new();
+    let map = write_complex(&mut text, Format::Pdb, &[&one, &one, &one, &one], &[]).unwrap();
+    let third = Partner::Copy(3);
+    let names = [
+        (Partner::Receptor, "B", "B"),
+        (Partner::Receptor, "A", "A"),
+        (Partner::Ligand, "B", "C"),
+        (Partner::Ligand, "A", "D"),
+        (third, "B", "E"),
+        (third, "A", "F"),
+        (Partner::Copy(4), "B", "G"),
+        (Partner::Copy(4), "A", "H"),
+    ];
+    for (partner, original, written) in names {
+        assert_eq!(map.written(partner, original), written);
+    }
+    let found = read_again(&text, Format::Pdb);
+    let chains: Vec<&str> = found.atoms.iter().map(|a| a.chain.as_str()).collect();
+    assert_eq!(chains, names.map(|(_, _, written)| written));
+    let text = String::from_utf8(text).unwrap();
+    assert!(text.contains("chain F is copy 3 chain A"));
 }
 
 #[test]
 fn names_that_are_free_stay_and_blank_ones_are_filled() {
     let receptor = molecule(vec![atom("B", 1, 0.0), atom("", 1, 1.0)]);
     let ligand = molecule(vec![atom("A", 1, 2.0), atom("B", 1, 3.0)]);
-    let map = write_complex(&mut Vec::new(), Format::Pdb, &receptor, &ligand, &[]).unwrap();
+    let map = write_complex(&mut Vec::new(), Format::Pdb, &[&receptor, &ligand], &[]).unwrap();
     let names: Vec<_> = map
         .chains
         .iter()
@@ -290,9 +315,9 @@ proptest! {
         one.position = position.map(|x| x * scale);
         (one.insertion_code, one.occupancy, one.b_factor, one.hetero) = (insertion, occupancy, b_factor, hetero);
         let receptor = molecule(vec![one]);
-        let format = complex_format(&receptor, &receptor);
+        let format = complex_format(&[&receptor, &receptor]);
         let mut text = Vec::new();
-        let map = write_complex(&mut text, format, &receptor, &receptor, &[]).unwrap();
+        let map = write_complex(&mut text, format, &[&receptor, &receptor], &[]).unwrap();
         let found = read_again(&text, format);
         prop_assert_eq!(found.atoms.len(), 2);
         assert_same(&receptor.atoms[0], &found.atoms[0]);

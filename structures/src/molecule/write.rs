@@ -59,21 +59,21 @@ struct Row<'a> {
     ends_chain: bool,
 }
 
-/// The format that a complex is written in: PDB when both partners came as PDB and it fits the columns (at most 99,999
+/// The format that a complex is written in: PDB when all partners came as PDB and it fits the columns (at most 99,999
 /// atoms and 62 chains, coordinates from -999.999 to 9999.999 Å), mmCIF otherwise.
-pub fn complex_format(receptor: &Molecule, ligand: &Molecule) -> Format {
-    if receptor.format != Format::Pdb || ligand.format != Format::Pdb {
+pub fn complex_format(molecules: &[&Molecule]) -> Format {
+    if molecules.iter().any(|one| one.format != Format::Pdb) {
         return Format::Mmcif;
     }
-    let fits = ChainMap::assign(Format::Pdb, receptor, ligand)
-        .and_then(|map| pdb::check(&complex_rows(receptor, ligand, &map)));
+    let fits = ChainMap::assign(Format::Pdb, molecules)
+        .and_then(|map| pdb::check(&complex_rows(molecules, &map)));
     match fits {
         Ok(()) => Format::Pdb,
         Err(_) => Format::Mmcif,
     }
 }
 
-/// Writes receptor and already placed ligand as one structure.
+/// Writes receptor and already placed ligand, and of a ring its further copies, as one structure.
 ///
 /// `remarks` are free lines; the chain map is added to them. Use [`complex_format`] to choose the format.
 ///
@@ -82,14 +82,13 @@ pub fn complex_format(receptor: &Molecule, ligand: &Molecule) -> Format {
 pub fn write_complex<W: Write>(
     writer: &mut W,
     format: Format,
-    receptor: &Molecule,
-    ligand: &Molecule,
+    molecules: &[&Molecule],
     remarks: &[String],
 ) -> Result<ChainMap, WriteError> {
-    let map = ChainMap::assign(format, receptor, ligand)?;
+    let map = ChainMap::assign(format, molecules)?;
     let mut remarks = remarks.to_vec();
     remarks.extend(map.remarks());
-    let rows = complex_rows(receptor, ligand, &map);
+    let rows = complex_rows(molecules, &map);
     write_rows(writer, format, &rows, &remarks)?;
     Ok(map)
 }
@@ -108,18 +107,13 @@ pub fn write_molecule<W: Write>(
     write_rows(writer, format, &rows, remarks)
 }
 
-fn complex_rows<'a>(
-    receptor: &'a Molecule,
-    ligand: &'a Molecule,
-    map: &'a ChainMap,
-) -> Vec<Row<'a>> {
-    let mut all = rows(&receptor.atoms, |atom| {
-        map.written(Partner::Receptor, &atom.chain)
-    });
-    all.extend(rows(&ligand.atoms, |atom| {
-        map.written(Partner::Ligand, &atom.chain)
-    }));
-    all
+fn complex_rows<'a>(molecules: &[&'a Molecule], map: &'a ChainMap) -> Vec<Row<'a>> {
+    let of_molecule = |(place, molecule): (usize, &&'a Molecule)| {
+        rows(&molecule.atoms, move |atom| {
+            map.written(Partner::at(place), &atom.chain)
+        })
+    };
+    molecules.iter().enumerate().flat_map(of_molecule).collect()
 }
 
 fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'a>> {

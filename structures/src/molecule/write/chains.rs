@@ -1,21 +1,50 @@
 //! Unique chain names for a complex.
 
 use std::collections::HashSet;
+use std::fmt;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::WriteError;
 use crate::molecule::report::show_chain;
 use crate::molecule::{Format, Molecule};
 
-/// One of the two molecules of a complex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+/// One of the molecules of a complex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Partner {
     /// The molecule that stays.
     Receptor,
     /// The molecule that is placed.
     Ligand,
+    /// Of a ring of one molecule a further copy, the receptor being the first and the ligand the second.
+    Copy(usize),
+}
+
+impl Partner {
+    /// The molecule by its place in a complex, counted from 0.
+    pub(super) fn at(place: usize) -> Self {
+        match place {
+            0 => Self::Receptor,
+            1 => Self::Ligand,
+            _ => Self::Copy(place + 1),
+        }
+    }
+}
+
+impl fmt::Display for Partner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Receptor => f.write_str("receptor"),
+            Self::Ligand => f.write_str("ligand"),
+            Self::Copy(number) => write!(f, "copy {number}"),
+        }
+    }
+}
+
+impl Serialize for Partner {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }
 
 /// One chain's name before and after.
@@ -33,7 +62,7 @@ pub struct ChainName {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct ChainMap {
-    /// Receptor's chains first, each in order of first appearance.
+    /// Receptor's chains first, then the ligand's, then those of further copies, each in order of first appearance.
     pub chains: Vec<ChainName>,
 }
 
@@ -50,13 +79,10 @@ impl ChainMap {
     }
 
     /// Gives every chain a unique name in the given format.
-    pub(super) fn assign(
-        format: Format,
-        receptor: &Molecule,
-        ligand: &Molecule,
-    ) -> Result<Self, WriteError> {
+    pub(super) fn assign(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
         let mut chains: Vec<ChainName> = Vec::new();
-        for (partner, molecule) in [(Partner::Receptor, receptor), (Partner::Ligand, ligand)] {
+        for (place, molecule) in molecules.iter().enumerate() {
+            let partner = Partner::at(place);
             let mut seen: HashSet<&str> = HashSet::new();
             for atom in &molecule.atoms {
                 if seen.insert(&atom.chain) {
@@ -99,11 +125,7 @@ impl ChainMap {
         self.chains
             .iter()
             .map(|chain| {
-                let partner = match chain.partner {
-                    Partner::Receptor => "receptor",
-                    Partner::Ligand => "ligand",
-                };
-                let original = show_chain(&chain.original);
+                let (partner, original) = (chain.partner, show_chain(&chain.original));
                 format!("chain {} is {partner} chain {original}", chain.written)
             })
             .collect()

@@ -1,0 +1,265 @@
+//! Rings: a known one is found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
+
+mod molecules;
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::symmetry::Cyclic;
+use knotdock_structures::molecule::{
+    Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
+};
+use nalgebra::{Unit, Vector3};
+use program::succeed;
+use serde_json::Value;
+
+type Row = BTreeMap<String, String>;
+
+fn example(name: &str) -> String {
+    format!(
+        "{}/structures/examples/1ppe_{name}.pdb",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+fn molecule(path: &str) -> Molecule {
+    read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
+}
+
+fn rows(run: &Path) -> Vec<Row> {
+    let mut table = csv::Reader::from_path(run.join("poses.csv")).unwrap();
+    table.deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+fn pose(row: &Row) -> Pose {
+    Pose::from_parts(
+        ["qw", "qx", "qy", "qz"].map(|column| number(row, column)),
+        ["tx", "ty", "tz"].map(|column| number(row, column)),
+    )
+}
+
+fn cyclic(text: &str) -> Cyclic {
+    text.parse().unwrap()
+}
+
+/// Root mean square distance of a molecule's atoms in two poses.
+fn rmsd(molecule: &Molecule, a: &Pose, b: &Pose) -> f64 {
+    let squares = molecule.atoms.iter().map(|atom| {
+        let [a, b] = [a, b].map(|pose| Vector3::from(pose.apply(atom.position)));
+        (a - b).norm_squared()
+    });
+    (squares.sum::<f64>() / molecule.atoms.len() as f64).sqrt()
+}
+
+fn center(molecule: &Molecule) -> Vector3<f64> {
+    let positions = molecule
+        .atoms
+        .iter()
+        .map(|atom| Vector3::from(atom.position));
+    positions.sum::<Vector3<f64>>() / molecule.atoms.len() as f64
+}
+
+/// Trypsin with the inhibitor of its neighbour in a ring of two: each then holds the other's inhibitor, as the complex has it, and no fit is as good.
+#[test]
+fn a_ring_that_is_known_to_fit_is_found_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let [trypsin, inhibitor] =
+        ["receptor_bound", "ligand_bound"].map(|name| molecule(&example(name)));
+    let (symmetry, from) = (cyclic("C2"), center(&trypsin));
+    let out = (center(&inhibitor) - from).normalize();
+    // An axis behind the inhibitor, so far that its images stand clear of each other.
+    let axis = Unit::new_normalize(out.cross(&Vector3::new(0.3, 0.5, -0.8)));
+    let point = center(&inhibitor) + 14.0 * out;
+    let rotation = symmetry.rotation(&axis);
+    let known = Pose {
+        rotation,
+        translation: point - rotation * point,
+    };
+    let mut both = trypsin.clone();
+    let neighbours = inhibitor.map_positions(|position| known.inverse().apply(position));
+    both.atoms.extend(neighbours.atoms);
+    let path = folder.path().join("both.pdb");
+    let mut file = fs::File::create(&path).unwrap();
+    write_molecule(&mut file, Format::Pdb, &both, &[]).unwrap();
+
+    let options =
+        "dock both.pdb --symmetry C2 --rotations 200 --poses 400 --effects shape -o run --quiet";
+    succeed(folder.path(), options.split(' '));
+    let rows = rows(&folder.path().join("run"));
+    assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.0);
+    assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
+}
+
+/// Docks a small protein into rings of shape alone; the run's object and rows.
+fn small(folder: &Path, symmetry: &str, more: &[&str]) -> (Value, Vec<Row>) {
+    let molecule = example("ligand_unbound");
+    let mut arguments = vec!["dock", &molecule, "--symmetry", symmetry, "-o", "run"];
+    arguments.extend(["--rotations", "40", "--poses", "60", "--effects", "shape"]);
+    arguments.extend(["--write-top", "2", "--force", "--json"]);
+    arguments.extend(more);
+    let output = succeed(folder, arguments);
+    (
+        serde_json::from_slice(&output.stdout).unwrap(),
+        rows(&folder.join("run")),
+    )
+}
+
+/// Every row closes into a ring, and its parts are the exact sums of neighbours and of the others at the printed pose.
+#[test]
+fn rows_are_rings_and_score_as_their_pairs_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = example("ligand_unbound");
+    let score = |pose: &Pose| {
+        let [w, x, y, z] = pose.quaternion();
+        let [a, b, c]: [f64; 3] = pose.translation.into();
+        let pose = format!("--pose={w},{x},{y},{z},{a},{b},{c}");
+        let options = ["score", &file, &file, &pose, "--effects", "shape", "--json"];
+        let output = succeed(folder.path(), options);
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        told["exact"].as_f64().unwrap()
+    };
+    for name in ["C2", "C3", "C4", "C5"] {
+        let (told, rows) = small(folder.path(), name, &["--no-cluster"]);
+        assert_eq!(told["run"]["options"]["symmetry"], name);
+        assert_eq!(told["run"]["options"]["rotations"], 40);
+        assert!(rows.len() > 20);
+        for row in &rows {
+            assert!(cyclic(name).ring(&pose(row)).is_some(), "{name}");
+        }
+        for row in &rows[..3] {
+            let pose = pose(row);
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b.abs().max(1.0);
+            let own = number(row, "score");
+            assert!(close(score(&pose), own));
+            let others = match name {
+                "C4" => 0.5 * score(&pose.after(&pose)),
+                "C5" => score(&pose.after(&pose)),
+                _ => {
+                    assert_eq!(row["other_copies"], "");
+                    0.0
+                }
+            };
+            if !row["other_copies"].is_empty() {
+                assert!(close(number(row, "other_copies"), others), "{name}");
+            }
+            assert!(close(number(row, "rank_score"), own + others), "{name}");
+        }
+    }
+}
+
+/// The files hold every copy, each where the pose takes the one before it; they are the same for any number of threads, from the record, and written later.
+#[test]
+fn all_copies_are_written_and_runs_repeat() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |path: &str| folder.path().join(path);
+    let (told, rows) = small(folder.path(), "C5", &["--threads", "1"]);
+    let first = fs::read(at("run/top/rank_0002.pdb")).unwrap();
+    let table = fs::read(at("run/poses.csv")).unwrap();
+    let ring = molecule(at("run/top/rank_0002.pdb").to_str().unwrap());
+    let atoms = molecule(&example("ligand_unbound")).atoms.len();
+    assert_eq!(ring.atoms.len(), 5 * atoms);
+    let pose = pose(&rows[1]);
+    let places: Vec<[f64; 3]> = ring.atoms.iter().map(|atom| atom.position).collect();
+    for copy in 0..5 {
+        let next = (copy + 1) % 5;
+        for atom in 0..atoms {
+            let image = pose.apply(places[copy * atoms + atom]);
+            let there = places[next * atoms + atom];
+            let off = Vector3::from(image) - Vector3::from(there);
+            assert!(off.norm() < 3e-3, "copy {copy}, atom {atom}: {off}");
+        }
+    }
+    let partners: Vec<&Value> = told["run"]["chains"].as_array().unwrap().iter().collect();
+    let names: Vec<&str> = partners
+        .iter()
+        .map(|c| c["partner"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["receptor", "ligand", "copy 3", "copy 4", "copy 5"]);
+
+    small(folder.path(), "C5", &["--threads", "2"]);
+    assert_eq!(fs::read(at("run/poses.csv")).unwrap(), table);
+    assert_eq!(fs::read(at("run/top/rank_0002.pdb")).unwrap(), first);
+    succeed(
+        folder.path(),
+        "dock --from run/run.json -o again --quiet".split(' '),
+    );
+    assert_eq!(fs::read(at("again/poses.csv")).unwrap(), table);
+    succeed(
+        folder.path(),
+        "complex run --rank 2 -o later --quiet".split(' '),
+    );
+    assert_eq!(fs::read(at("later/rank_0002.pdb")).unwrap(), first);
+
+    // A pose from elsewhere makes no ring.
+    let text = String::from_utf8(table).unwrap();
+    let row = text.lines().nth(1).unwrap();
+    let mut fields: Vec<&str> = row.split(',').collect();
+    fields[10] = "99";
+    fs::write(at("run/poses.csv"), text.replace(row, &fields.join(","))).unwrap();
+    let refused = cargo_bin_cmd!("knotdock")
+        .current_dir(folder.path())
+        .args("complex run --rank 1 -o never".split(' '))
+        .output()
+        .unwrap();
+    assert!(!refused.status.success() && !at("never").join("rank_0001.pdb").exists());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("no ring of C5"));
+}
+
+/// A batch takes rings beside pairs.
+#[test]
+fn a_batch_holds_rings_too() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.pdb"), molecules::ligand()).unwrap();
+    let table = "receptor,ligand,symmetry\na.pdb,,C3\na.pdb,a.pdb,\n";
+    fs::write(folder.path().join("pairs.csv"), table).unwrap();
+    succeed(
+        folder.path(),
+        "batch pairs.csv -o runs --quiet -- --rotations 12 --effects shape".split(' '),
+    );
+    let ring = rows(&folder.path().join("runs/a_C3"));
+    assert!(cyclic("C3").ring(&pose(&ring[0])).is_some());
+    let pair = rows(&folder.path().join("runs/a_a"));
+    assert!(cyclic("C3").ring(&pose(&pair[0])).is_none());
+}
+
+#[test]
+fn what_no_ring_can_have_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.pdb"), molecules::ligand()).unwrap();
+    let mesh = "solid a\nendsolid a\n";
+    fs::write(folder.path().join("a.stl"), mesh).unwrap();
+    for (options, said) in [
+        ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
+        ("a.pdb --symmetry D2", "no cyclic symmetry"),
+        ("a.pdb --symmetry C1", "no cyclic symmetry"),
+        ("a.pdb --symmetry C3 --angle 12", "cannot be used with"),
+        ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
+        ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
+        ("a.pdb --symmetry C3 --refine 5", "refine is 5"),
+        (
+            "a.pdb --symmetry C3 --fine-rotations 9000",
+            "fine-rotations is 9000",
+        ),
+        ("a.pdb --symmetry C3 --engine gpu", "engine is gpu"),
+        ("a.pdb", "LIGAND"),
+    ] {
+        let mut arguments = vec!["dock"];
+        arguments.extend(options.split(' '));
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{options}: {told}");
+        assert!(told.contains(said), "{options}: {told}");
+    }
+}
