@@ -174,8 +174,9 @@ impl std::str::FromStr for EngineChoice {
     }
 }
 
-/// Poses refined by default when shape is all there is: on training pairs that gained ranks, and beside other effects it cost some.
-pub const REFINED_BY_SHAPE: usize = 300;
+/// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on how the ligand was turned
+/// (docs/defaults.md). Beside other effects refining cost ranks.
+pub const REFINED_BY_SHAPE: usize = 600;
 
 /// Axes of rings by default: 3 degrees to the nearest at most, and up to twice that for the copies about it.
 pub const AXES: usize = 900;

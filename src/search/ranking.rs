@@ -171,21 +171,56 @@ fn grouped(body: &RigidBody, poses: &[Pose], rings: bool, radius: f64) -> Vec<us
     by(body, poses, radius)
 }
 
+/// Which candidates may be rows: all but refined poses within `distance` of a better refined one of their cluster. What is left out here still counts
+/// in its cluster: how many climbs end about a pose tells how broad its hill is, while a list of poses has use for one of them.
+pub(super) fn listed(
+    candidates: &[Candidate],
+    clusters: &[usize],
+    body: &RigidBody,
+    rings: bool,
+    distance: f64,
+) -> Vec<bool> {
+    let count = clusters.iter().max().map_or(0, |last| last + 1);
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (index, (candidate, &cluster)) in candidates.iter().zip(clusters).enumerate() {
+        if candidate.refined {
+            members[cluster].push(index);
+        }
+    }
+    let mut listed = vec![true; candidates.len()];
+    for members in members {
+        let poses: Vec<Pose> = members
+            .iter()
+            .map(|&index| candidates[index].pose)
+            .collect();
+        let mut seen = 0;
+        for (index, group) in members
+            .into_iter()
+            .zip(grouped(body, &poses, rings, distance))
+        {
+            listed[index] = group == seen;
+            seen += usize::from(listed[index]);
+        }
+    }
+    listed
+}
+
 /// T as a share of the run's best score.
 const CLUSTER_TEMPERATURE: f64 = 0.1;
 
-/// Exactly scored rows: every pose, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
+/// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
 /// clusters are numbered; ties in the order given.
 ///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
 pub(super) fn report(
     judge: Judge,
     candidates: &[Candidate],
-    clusters: &[usize],
+    clusters: (&[usize], &[bool]),
     every_pose: bool,
     margin: f64,
     progress: &dyn Progress,
 ) -> Ranking {
+    let (clusters, listed) = clusters;
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -194,13 +229,13 @@ pub(super) fn report(
     let background = Background::of(candidates);
     let mut founders = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
-    for (candidate, &cluster) in candidates.iter().zip(clusters) {
+    for ((candidate, &cluster), &listed) in candidates.iter().zip(clusters).zip(listed) {
         sizes[cluster] += 1;
         // The founder comes first, being the best by the fast path.
         founders[cluster] = founders[cluster].max(candidate.score);
         // Scores against the founder's, so that nothing overflows.
         weights[cluster] += ((candidate.score - founders[cluster]) / temperature).exp();
-        if every_pose || candidate.score >= founders[cluster] - margin {
+        if listed && (every_pose || candidate.score >= founders[cluster] - margin) {
             wanted.push((candidate, cluster));
         }
     }
@@ -393,6 +428,35 @@ mod tests {
         assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
     }
 
+    /// Of refined poses near each other the best of each cluster is listed; grid poses always are.
+    #[test]
+    fn repeats_are_not_listed_within_their_cluster() {
+        let body = RigidBody::new(&[[0.0; 3]]);
+        let found = |x: f64, score: f64, refined: bool| {
+            let peak = Peak {
+                score: 0.0,
+                rotation: 0,
+                voxel: 0,
+            };
+            let grid = (at(x), if refined { 0.0 } else { score });
+            let placed = Placed::best_of(grid, refined.then_some((at(x), score)));
+            (peak, placed)
+        };
+        let (peaks, placed): (Vec<Peak>, Vec<Placed>) = [
+            found(0.0, 9.0, true),
+            found(1.0, 8.0, true),
+            found(0.5, 7.0, false),
+            found(3.0, 6.0, true),
+            found(2.5, 5.0, true),
+        ]
+        .into_iter()
+        .unzip();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let of = |clusters: &[usize]| listed(&candidates, clusters, &body, false, 2.0);
+        assert_eq!(of(&[0, 0, 0, 0, 0]), [true, false, true, true, false]);
+        assert_eq!(of(&[0, 1, 0, 1, 1]), [true, true, true, false, false]);
+    }
+
     /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
     #[test]
     fn an_undone_climb_is_reported_as_unrefined() {
@@ -416,7 +480,7 @@ mod tests {
                 on: [true, false, false, false],
                 symmetry: None,
             };
-            let ranking = report(judge, &candidates, &[0], true, 0.0, &Silent);
+            let ranking = report(judge, &candidates, (&[0], &[true]), true, 0.0, &Silent);
             ranking.poses[0].clone()
         };
         let undone = climbed(touching, overlapping);

@@ -9,7 +9,7 @@ use super::options::{Precision, SearchError};
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::peaks::Peak;
 use super::plan::DockPlan;
-use super::ranking::{Judge, Placed, candidates, clusters_of, merge, printed, report};
+use super::ranking::{Judge, Placed, candidates, clusters_of, listed, merge, printed, report};
 use super::refine::{ClimbLimits, climb, freely};
 use super::ring::climb_ring;
 use super::scan::{Chosen, all_rotations, choose_rank, scan};
@@ -37,6 +37,8 @@ pub trait Progress: Sync {
 const ERROR_POSES: usize = 100;
 /// Refined poses closer than this share of the grid spacing (ligand RMSD) are one.
 const MERGE_SPACINGS: f64 = 0.25;
+/// Of refined poses of a cluster that are closer than this many spacings one is listed.
+const LIST_SPACINGS: f64 = 1.0;
 
 struct Clock {
     stages: Vec<StageTime>,
@@ -164,6 +166,13 @@ fn dock_in<T: Real>(
     merge(&mut candidates, &body, rings, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
     let clusters = clusters_of(&candidates, &body, rings, options.cluster_radius);
+    let listed = listed(
+        &candidates,
+        &clusters,
+        &body,
+        rings,
+        LIST_SPACINGS * plan.spacing,
+    );
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
@@ -176,7 +185,7 @@ fn dock_in<T: Real>(
     let ranking = report(
         judge,
         &candidates,
-        &clusters,
+        (&clusters, &listed),
         options.every_pose,
         2.0 * options.tolerance * best_peak.abs(),
         progress,
