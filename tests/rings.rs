@@ -1,6 +1,5 @@
 //! Rings: a known one is found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
 
-mod molecules;
 mod program;
 
 use std::collections::BTreeMap;
@@ -217,7 +216,7 @@ fn all_copies_are_written_and_runs_repeat() {
 #[test]
 fn a_batch_holds_rings_too() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.pdb"), molecules::ligand()).unwrap();
+    fs::copy(example("ligand_unbound"), folder.path().join("a.pdb")).unwrap();
     let table = "receptor,ligand,symmetry\na.pdb,,C3\na.pdb,a.pdb,\n";
     fs::write(folder.path().join("pairs.csv"), table).unwrap();
     succeed(
@@ -233,9 +232,9 @@ fn a_batch_holds_rings_too() {
 #[test]
 fn what_no_ring_can_have_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.pdb"), molecules::ligand()).unwrap();
-    let mesh = "solid a\nendsolid a\n";
-    fs::write(folder.path().join("a.stl"), mesh).unwrap();
+    fs::copy(example("ligand_unbound"), folder.path().join("a.pdb")).unwrap();
+    let bunny = concat!(env!("CARGO_MANIFEST_DIR"), "/structures/examples/bunny.obj");
+    fs::copy(bunny, folder.path().join("a.obj")).unwrap();
     for (options, said) in [
         ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
         ("a.pdb --symmetry D2", "no cyclic symmetry"),
@@ -249,6 +248,7 @@ fn what_no_ring_can_have_is_refused() {
             "fine-rotations is 9000",
         ),
         ("a.pdb --symmetry C3 --engine gpu", "engine is gpu"),
+        ("a.obj --symmetry C3", "this is a mesh"),
         ("a.pdb", "LIGAND"),
     ] {
         let mut arguments = vec!["dock"];

@@ -15,7 +15,7 @@
 //! [`kernel`] defines what shape scores and [`effect`] what may come beside it, [`exact`] scores one pose by the plain
 //! pair sum, [`lifted_axis`] and [`transform`] carry kernel and knots to modes, [`engine`] correlates over all translations at a
 //! rotation, [`configuration`] sums chosen modes at one pose, and [`field`] reads the correlation between its grid points. Of the poses that
-//! a search keeps, [`rescoring`] asks what is too dear for the grid. Fast paths stand beside a slow exact one that tests hold them to.
+//! a search keeps, [`rescoring`] asks what is too dear for the grid. [`symmetry`] has the poses of rings. Fast paths stand beside a slow exact one that tests hold them to.
 
 pub mod affinity;
 pub mod configuration;

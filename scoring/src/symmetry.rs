@@ -269,17 +269,17 @@ mod tests {
         let step = 1e-5;
         for axis in 0..3 {
             let unit = Vector3::ith(axis, step);
-            let slope = |moved: fn(Vector3<f64>) -> (UnitQuaternion<f64>, Vector3<f64>)| {
+            let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
                 let at = |sign: f64| {
-                    let (turn, shift) = moved(sign * unit);
-                    let there = conjugated(&pose, center, turn, shift);
+                    let turn = UnitQuaternion::new(sign * turn);
+                    let there = conjugated(&pose, center, turn, sign * shift);
                     assert!(symmetry.ring(&there).is_some());
                     score(&there)
                 };
                 (at(1.0) - at(-1.0)) / (2.0 * step)
             };
-            let shifted = slope(|v| (UnitQuaternion::identity(), v));
-            let turned = slope(|v| (UnitQuaternion::new(v), Vector3::zeros()));
+            let shifted = slope(Vector3::zeros(), unit);
+            let turned = slope(unit, Vector3::zeros());
             assert!((found.force[axis] - shifted).abs() < 1e-6);
             assert!((found.torque[axis] - turned).abs() < 1e-5);
         }

@@ -6,7 +6,7 @@
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
 use super::correlator::Correlator;
-use super::options::SearchError;
+use super::error::SearchError;
 use super::peaks::{NEIGHBOURS, Peak};
 use super::plan::DockPlan;
 use super::run::Progress;

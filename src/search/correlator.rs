@@ -1,6 +1,7 @@
 //! What a run correlates with: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
 
-use super::options::{EngineChoice, SearchError};
+use super::error::SearchError;
+use super::options::EngineChoice;
 use super::outcome::Adapter;
 use super::plan::DockPlan;
 use knotdock_scoring::engine::CpuEngine;

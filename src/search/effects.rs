@@ -2,8 +2,9 @@
 
 use super::attracted::{AssumedSite, Attracted};
 use super::effect_choice::EffectChoice;
+use super::error::SearchError;
 use super::meshes::MeshPair;
-use super::options::{DockOptions, SearchError};
+use super::options::DockOptions;
 use super::rescoring::Asked;
 use super::restraints::{AntibodySurface, Restraints};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};

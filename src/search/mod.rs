@@ -2,6 +2,7 @@
 
 pub mod attracted;
 pub mod axes;
+mod candidates;
 pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
@@ -9,6 +10,7 @@ mod correlator;
 mod costs;
 pub mod effect_choice;
 pub mod effects;
+pub mod error;
 pub mod meshes;
 pub mod options;
 pub mod outcome;
@@ -26,8 +28,9 @@ mod scan;
 pub use attracted::AssumedSite;
 pub use effect_choice::EffectChoice;
 pub use effects::{Decision, LengthUnit, Scene};
+pub use error::SearchError;
 pub use knotdock_scoring::effect::Effect;
-pub use options::{DockOptions, SearchError};
+pub use options::DockOptions;
 pub use outcome::{Adapter, DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
 pub use plan::{DockPlan, plan, plan_scene};
 pub use restraints::AntibodySurface;

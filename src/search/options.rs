@@ -1,22 +1,21 @@
-//! What a docking run may be asked, and why it may refuse.
+//! What a docking run may be asked.
 
 use super::effect_choice::EffectChoice;
+use super::error::SearchError;
 use super::meshes::SampleWeights;
 use super::restraints::AntibodySurface;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::effect::contact::Potential;
-use knotdock_scoring::engine::{EngineOptions, PlanError};
+use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 use knotdock_scoring::symmetry::Cyclic;
-use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 /// Options of a docking run. Lengths in Å, or in the files' unit where meshes are docked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DockOptions {
-    /// Number of rotations sampled.
+    /// Number of rotations sampled, of rings that of axes.
     pub rotations: usize,
     /// Size of the finer set of rotations that is searched about the best; `None`: no finer search.
     pub fine_rotations: Option<usize>,
@@ -178,7 +177,7 @@ impl std::str::FromStr for EngineChoice {
 /// (docs/defaults.md). Beside other effects refining cost ranks.
 pub const REFINED_BY_SHAPE: usize = 600;
 
-/// Axes of rings by default: 3 degrees to the nearest at most, and up to twice that for the copies about it.
+/// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.
 pub const AXES: usize = 900;
 
 /// Default pass length as a multiple of the resolution.
@@ -401,83 +400,5 @@ impl DockOptions {
             });
         }
         Ok(())
-    }
-}
-
-/// Why a docking run was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SearchError {
-    /// A molecule gives no usable knots.
-    #[error(transparent)]
-    Knots(#[from] KnotsError),
-    /// The engine cannot be planned.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// An option is out of its range.
-    #[error("{name} is {value}; it must be {bound}")]
-    Option {
-        /// Name of the option.
-        name: &'static str,
-        /// Its value.
-        value: String,
-        /// Its range.
-        bound: String,
-    },
-    /// An effect was asked for that the inputs cannot feed.
-    #[error("there can be no {effect}: {reason}")]
-    Effect {
-        /// The effect.
-        effect: Effect,
-        /// What is missing.
-        reason: String,
-    },
-    /// Not even one rotation in flight fits into the memory allowed.
-    #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
-    Memory {
-        /// Bytes needed.
-        needed: u64,
-        /// Bytes allowed.
-        allowed: u64,
-        /// Grid spacing that would fit, if any does.
-        spacing: Option<f64>,
-    },
-    /// The threads could not be started.
-    #[error("threads could not be started: {0}")]
-    Threads(String),
-    /// The graphics processor cannot be used.
-    #[error("--engine gpu: {0}")]
-    Graphics(String),
-    /// No rotation has a finite score.
-    #[error("no pose has a finite score")]
-    NoPose,
-}
-
-impl SearchError {
-    /// What the user may do about it.
-    pub fn remedy(&self) -> String {
-        match self {
-            Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
-            Self::Plan(PlanError::TooLarge(_)) => {
-                "use a coarser --resolution or --spacing, or check for stray atoms far away"
-                    .to_owned()
-            }
-            Self::Plan(_) | Self::Option { .. } => {
-                "give the option a value in its range".to_owned()
-            }
-            Self::Memory {
-                spacing: Some(spacing),
-                ..
-            } => format!("use --spacing {spacing}, or allow more with --memory"),
-            Self::Memory { .. } => "allow more with --memory".to_owned(),
-            Self::Graphics(_) => {
-                "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
-                    .to_owned()
-            }
-            Self::Threads(_) => "ask for fewer --threads".to_owned(),
-            Self::Effect { .. } => {
-                "leave it out of --effects, or let auto choose what the inputs call for".to_owned()
-            }
-            Self::NoPose => "check lambda and the offset".to_owned(),
-        }
     }
 }

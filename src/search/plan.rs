@@ -3,7 +3,8 @@
 use super::attracted::{AssumedSite, Attracted};
 use super::axes::{axes_radius, axis_set};
 use super::effects::{Decision, LengthUnit, Scene};
-use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE, SearchError};
+use super::error::SearchError;
+use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
 use super::peaks::Peak;
 use super::rescoring::Asked;
 use super::rotations::{
@@ -29,7 +30,7 @@ pub struct DockPlan {
     pub options: DockOptions,
     /// Unit of all lengths.
     pub unit: LengthUnit,
-    /// Number of rotations.
+    /// Number of rotations, of rings that of axes.
     pub rotations: usize,
     /// Name of the rotation set.
     pub rotation_set: &'static str,

@@ -1,6 +1,7 @@
 //! Which atoms are to stay free of contact, what of an antibody lies away from its CDRs and what the user blocks, and which are to be in contact.
 
-use super::options::{DockOptions, SearchError};
+use super::error::SearchError;
+use super::options::DockOptions;
 use knotdock_scoring::effect::restraint::Mark;
 use knotdock_structures::molecule::{
     Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,

@@ -1,15 +1,17 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
+use super::candidates::{Placed, candidates, clusters_of, listed, merge, printed};
 use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
 use super::correlator::Correlator;
 use super::costs::costs;
-use super::options::{Precision, SearchError};
+use super::error::SearchError;
+use super::options::Precision;
 use super::outcome::{DockOutcome, MeasuredError, StageTime};
 use super::peaks::Peak;
 use super::plan::DockPlan;
-use super::ranking::{Judge, Placed, candidates, clusters_of, listed, merge, printed, report};
+use super::ranking::{Judge, report};
 use super::refine::{ClimbLimits, climb, freely};
 use super::ring::climb_ring;
 use super::scan::{Chosen, all_rotations, choose_rank, scan};

@@ -2,7 +2,7 @@
 
 use super::axes::RingVoxels;
 use super::correlator::Correlator;
-use super::options::SearchError;
+use super::error::SearchError;
 use super::peaks::{Peak, find_peaks};
 use super::plan::DockPlan;
 use super::run::Progress;

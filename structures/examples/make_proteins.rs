@@ -1,11 +1,12 @@
-//! Makes the example pair in this folder from its sources; see README.md beside it.
+//! Makes the example proteins in this folder from their sources; see README.md beside it.
 //!
 //! ```text
-//! cargo run -p knotdock-structures --example make_1ppe -- RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER
+//! cargo run -p knotdock-structures --example make_proteins -- 1ppe RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER
+//! cargo run -p knotdock-structures --example make_proteins -- 4e43 DIMER FOLDER
 //! ```
 //!
-//! Everything goes through the crate's own reader and writer. The unbound ligand is turned by a rotation drawn once and
-//! for all from a seed, and its centroid is moved to the origin, so that its start says nothing of where it binds. The
+//! Everything goes through the crate's own reader and writer. What is docked, the unbound ligand or one molecule of the dimer, is turned by a rotation
+//! drawn once and for all from a seed, and its centroid is moved to the origin, so that its start says nothing of where it binds. The
 //! bound pair stays in its common frame; the bound receptor takes the residue numbers of the unbound one.
 
 use std::error::Error;
@@ -14,28 +15,32 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use knotdock_structures::molecule::{
-    Atom, Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
+    Atom, Format, Hetatm, InputSpec, Molecule, ReadOptions, read, write_molecule,
 };
 
-/// Seed of the ligand's rotation.
-const SEED: u64 = 1;
+/// Seeds of the rotations of the unbound ligand and of the dimer's molecule.
+const SEEDS: [u64; 2] = [1, 2];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [receptor, ligand, complex, folder] = arguments.as_slice() else {
-        return Err("usage: make_1ppe RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER".into());
-    };
-    let folder = Path::new(folder);
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["1ppe", receptor, ligand, complex, folder] => {
+            pair([receptor, ligand, complex], Path::new(folder))
+        }
+        ["4e43", dimer, folder] => ring(dimer, Path::new(folder)),
+        _ => Err("usage: make_proteins 1ppe RECEPTOR_UNBOUND LIGAND_UNBOUND COMPLEX FOLDER, or 4e43 DIMER FOLDER".into()),
+    }
+}
+
+/// Trypsin and its inhibitor, free and bound.
+fn pair([receptor, ligand, complex]: [&str; 3], folder: &Path) -> Result<(), Box<dyn Error>> {
     let receptor = load(receptor)?;
     let ligand = load(ligand)?;
     let receptor_bound = renumbered(&load(&format!("{complex}:A"))?, &receptor)?;
     let ligand_bound = load(&format!("{complex}:B"))?;
 
-    let rotation = random_quaternion(SEED);
-    println!("ligand turned by w, x, y, z = {rotation:?}");
-    let centroid = centroid(&ligand);
-    let turned = ligand.map_positions(|x| rotate(rotation, subtract(x, centroid)));
-
+    let turned = turned(&ligand, SEEDS[0]);
     let unbound = "coordinates of the free molecule, PDB entry";
     let bound = "coordinates in the complex, PDB entry 1PPE";
     let files = [
@@ -61,16 +66,51 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
     ];
     for (name, molecule, remark) in files {
-        let mut writer = BufWriter::new(File::create(folder.join(name))?);
-        write_molecule(&mut writer, Format::Pdb, &molecule, &[remark])?;
+        save(&folder.join(name), &molecule, remark)?;
     }
     Ok(())
 }
 
+/// The dimer of HIV-1 protease, and one of its two molecules by itself.
+fn ring(dimer: &str, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let reading = ReadOptions {
+        hetatm: Hetatm::Drop,
+        ..ReadOptions::default()
+    };
+    let load = |text: &str| load_with(text, &reading);
+    let what = "HIV-1 protease, coordinates in the dimer, PDB entry 4E43";
+    let one = turned(&load(&format!("{dimer}:A"))?, SEEDS[1]);
+    save(
+        &folder.join("4e43_molecule.pdb"),
+        &one,
+        format!("{what}, turned and moved"),
+    )?;
+    let both = load(&format!("{dimer}:A,B"))?;
+    save(&folder.join("4e43_dimer.pdb"), &both, what.to_owned())
+}
+
 fn load(text: &str) -> Result<Molecule, Box<dyn Error>> {
-    let molecule = read(&InputSpec::parse(text)?, &ReadOptions::default())?;
+    load_with(text, &ReadOptions::default())
+}
+
+fn load_with(text: &str, reading: &ReadOptions) -> Result<Molecule, Box<dyn Error>> {
+    let molecule = read(&InputSpec::parse(text)?, reading)?;
     println!("{}", molecule.report);
     Ok(molecule)
+}
+
+fn save(path: &Path, molecule: &Molecule, remark: String) -> Result<(), Box<dyn Error>> {
+    let mut writer = BufWriter::new(File::create(path)?);
+    write_molecule(&mut writer, Format::Pdb, molecule, &[remark])?;
+    Ok(())
+}
+
+/// The molecule turned at random about its centroid, which comes to lie on the origin.
+fn turned(molecule: &Molecule, seed: u64) -> Molecule {
+    let rotation = random_quaternion(seed);
+    println!("turned by w, x, y, z = {rotation:?}");
+    let centroid = centroid(molecule);
+    molecule.map_positions(|x| rotate(rotation, subtract(x, centroid)))
 }
 
 /// The molecule with its residues numbered as those of another of the same sequence.

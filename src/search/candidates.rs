@@ -1,0 +1,212 @@
+//! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
+
+use super::cluster::{RigidBody, greedy, greedy_of_rings};
+use super::peaks::Peak;
+use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
+use knotdock_scoring::se3::Pose;
+use rayon::prelude::*;
+
+/// A pose in the running.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    /// The pose.
+    pub pose: Pose,
+    /// The fast path's score at `pose`, and what rescoring adds there.
+    pub score: f64,
+    /// What rescoring says of `pose`.
+    pub rescored: Rescored,
+    /// The pose that it was refined from.
+    pub start: Pose,
+    /// All terms at `start`, where they are known already.
+    pub terms: Option<ExactScore>,
+    /// Whether `pose` was moved off the grid.
+    pub refined: bool,
+    /// Index of the rotation that it came from.
+    pub rotation: usize,
+    /// The grid's score where it came from.
+    pub score_grid: f64,
+}
+
+/// Where a peak of the search led to.
+#[derive(Clone, Copy)]
+pub(super) struct Placed {
+    /// The pose that it was refined from: the grid's, or of rings the one nearest to it.
+    pub start: Pose,
+    /// The pose that it was refined to.
+    pub pose: Pose,
+    /// The fast path's score at `pose`, of rings that of all copies.
+    pub score: f64,
+    /// Whether the two differ.
+    pub refined: bool,
+}
+
+impl Placed {
+    /// A grid pose, and what it was refined to where that is better.
+    pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
+        let (start, score) = grid;
+        let unrefined = Self {
+            start,
+            pose: start,
+            score,
+            refined: false,
+        };
+        match refined {
+            Some((pose, higher)) if higher > score => Self {
+                pose,
+                score: higher,
+                refined: true,
+                ..unrefined
+            },
+            _ => unrefined,
+        }
+    }
+}
+
+/// The pose as its printed digits give it back: normalised, w not negative.
+pub(super) fn printed(pose: &Pose) -> Pose {
+    Pose::from_parts(pose.quaternion(), pose.translation.into())
+}
+
+/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
+pub(super) fn candidates(
+    peaks: &[Peak],
+    placed: &[Placed],
+    at_start: &[ExactScore],
+    rescorer: Option<&Rescorer>,
+) -> Vec<Candidate> {
+    let mut candidates: Vec<Candidate> = peaks
+        .par_iter()
+        .zip(placed)
+        .enumerate()
+        .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
+            let rescored = rescorer
+                .map(|rescorer| rescorer.score(&placed.pose, workspace))
+                .unwrap_or_default();
+            Candidate {
+                pose: placed.pose,
+                score: placed.score + rescored.sum(),
+                rescored,
+                start: placed.start,
+                terms: at_start.get(index).copied(),
+                refined: placed.refined,
+                rotation: peak.rotation as usize,
+                score_grid: peak.score,
+            }
+        })
+        .filter(|candidate| candidate.score.is_finite())
+        .collect();
+    // The list comes in the order of the grid's scores, which breaks ties.
+    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    candidates
+}
+
+/// Drops refined poses that ended where a better one did.
+pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, rings: bool, distance: f64) {
+    let poses: Vec<Pose> = candidates
+        .iter()
+        .filter(|candidate| candidate.refined)
+        .map(|candidate| candidate.pose)
+        .collect();
+    let groups = grouped(body, &poses, rings, distance);
+    let (mut index, mut seen) = (0, 0);
+    candidates.retain(|candidate| {
+        if !candidate.refined {
+            return true;
+        }
+        let founder = groups[index] == seen;
+        index += 1;
+        seen += usize::from(founder);
+        founder
+    });
+}
+
+/// Each candidate's cluster, numbered from 0 in the order of their founders.
+pub(super) fn clusters_of(
+    candidates: &[Candidate],
+    body: &RigidBody,
+    rings: bool,
+    radius: f64,
+) -> Vec<usize> {
+    let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
+    grouped(body, &poses, rings, radius)
+}
+
+/// Greedy clusters of poses, or of rings.
+fn grouped(body: &RigidBody, poses: &[Pose], rings: bool, radius: f64) -> Vec<usize> {
+    let by = if rings { greedy_of_rings } else { greedy };
+    by(body, poses, radius)
+}
+
+/// Which candidates may be rows: all but refined poses within `distance` of a better refined one of their cluster. What is left out here still counts
+/// in its cluster: how many climbs end about a pose tells how broad its hill is, while a list of poses has use for one of them.
+pub(super) fn listed(
+    candidates: &[Candidate],
+    clusters: &[usize],
+    body: &RigidBody,
+    rings: bool,
+    distance: f64,
+) -> Vec<bool> {
+    let count = clusters.iter().max().map_or(0, |last| last + 1);
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (index, (candidate, &cluster)) in candidates.iter().zip(clusters).enumerate() {
+        if candidate.refined {
+            members[cluster].push(index);
+        }
+    }
+    let mut listed = vec![true; candidates.len()];
+    for members in members {
+        let poses: Vec<Pose> = members
+            .iter()
+            .map(|&index| candidates[index].pose)
+            .collect();
+        let mut seen = 0;
+        for (index, group) in members
+            .into_iter()
+            .zip(grouped(body, &poses, rings, distance))
+        {
+            listed[index] = group == seen;
+            seen += usize::from(listed[index]);
+        }
+    }
+    listed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// Of refined poses near each other the best of each cluster is listed; grid poses always are.
+    #[test]
+    fn repeats_are_not_listed_within_their_cluster() {
+        let body = RigidBody::new(&[[0.0; 3]]);
+        let at = |x: f64| Pose {
+            translation: Vector3::new(x, 0.0, 0.0),
+            ..Pose::identity()
+        };
+        let found = |x: f64, score: f64, refined: bool| {
+            let peak = Peak {
+                score: 0.0,
+                rotation: 0,
+                voxel: 0,
+            };
+            let grid = (at(x), if refined { 0.0 } else { score });
+            let placed = Placed::best_of(grid, refined.then_some((at(x), score)));
+            (peak, placed)
+        };
+        let (peaks, placed): (Vec<Peak>, Vec<Placed>) = [
+            found(0.0, 9.0, true),
+            found(1.0, 8.0, true),
+            found(0.5, 7.0, false),
+            found(3.0, 6.0, true),
+            found(2.5, 5.0, true),
+        ]
+        .into_iter()
+        .unzip();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let of = |clusters: &[usize]| listed(&candidates, clusters, &body, false, 2.0);
+        assert_eq!(of(&[0, 0, 0, 0, 0]), [true, false, true, true, false]);
+        assert_eq!(of(&[0, 1, 0, 1, 1]), [true, true, true, false, false]);
+    }
+}

@@ -1,0 +1,83 @@
+//! Why a search was refused or failed, and what to do about it.
+
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::engine::PlanError;
+use knotdock_structures::knots::KnotsError;
+
+/// Why a docking run was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SearchError {
+    /// A molecule gives no usable knots.
+    #[error(transparent)]
+    Knots(#[from] KnotsError),
+    /// The engine cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// An option is out of its range.
+    #[error("{name} is {value}; it must be {bound}")]
+    Option {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// Its range.
+        bound: String,
+    },
+    /// An effect was asked for that the inputs cannot feed.
+    #[error("there can be no {effect}: {reason}")]
+    Effect {
+        /// The effect.
+        effect: Effect,
+        /// What is missing.
+        reason: String,
+    },
+    /// Not even one rotation in flight fits into the memory allowed.
+    #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
+    Memory {
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes allowed.
+        allowed: u64,
+        /// Grid spacing that would fit, if any does.
+        spacing: Option<f64>,
+    },
+    /// The threads could not be started.
+    #[error("threads could not be started: {0}")]
+    Threads(String),
+    /// The graphics processor cannot be used.
+    #[error("--engine gpu: {0}")]
+    Graphics(String),
+    /// No rotation has a finite score.
+    #[error("no pose has a finite score")]
+    NoPose,
+}
+
+impl SearchError {
+    /// What the user may do about it.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
+            Self::Plan(PlanError::TooLarge(_)) => {
+                "use a coarser --resolution or --spacing, or check for stray atoms far away"
+                    .to_owned()
+            }
+            Self::Plan(_) | Self::Option { .. } => {
+                "give the option a value in its range".to_owned()
+            }
+            Self::Memory {
+                spacing: Some(spacing),
+                ..
+            } => format!("use --spacing {spacing}, or allow more with --memory"),
+            Self::Memory { .. } => "allow more with --memory".to_owned(),
+            Self::Graphics(_) => {
+                "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
+                    .to_owned()
+            }
+            Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::Effect { .. } => {
+                "leave it out of --effects, or let auto choose what the inputs call for".to_owned()
+            }
+            Self::NoPose => "check lambda and the offset".to_owned(),
+        }
+    }
+}
