@@ -212,6 +212,34 @@ fn all_copies_are_written_and_runs_repeat() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("no ring of C5"));
 }
 
+/// Residues that are named are those of every copy, and poses that touch them rank first.
+#[test]
+fn residues_are_named_for_all_copies() {
+    let folder = tempfile::tempdir().unwrap();
+    let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
+    assert!(told["run"]["options"]["attract_ligand"].is_null());
+    assert!(rows.iter().all(|row| row["attraction"].is_empty()));
+    let molecule = example("ligand_unbound");
+    let options = "--rotations 40 --poses 60 --effects shape,restraint --attract-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
+    let mut arguments = vec!["dock", &molecule, "--symmetry", "C3"];
+    arguments.extend(options.split(' '));
+    let output = succeed(folder.path(), arguments);
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (side, other) in [
+        ("attract_receptor", "attract_ligand"),
+        ("block_receptor", "block_ligand"),
+    ] {
+        let options = &told["run"]["options"];
+        assert!(!options[side].is_null());
+        assert_eq!(options[side], options[other]);
+    }
+    // Two residues on either side: each that touches earns a quarter of the weight.
+    let rows = self::rows(&folder.path().join("run"));
+    let earned = |row: &Row| number(row, "attraction");
+    assert!(earned(&rows[0]) >= 1000.0);
+    assert!(rows.iter().all(|row| earned(row) % 500.0 == 0.0));
+}
+
 /// A batch takes rings beside pairs.
 #[test]
 fn a_batch_holds_rings_too() {
@@ -242,6 +270,10 @@ fn what_no_ring_can_have_is_refused() {
         ("a.pdb --symmetry C3 --angle 12", "cannot be used with"),
         ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
+        (
+            "a.pdb --symmetry C3 --attract-ligand B:5",
+            "cannot be used with",
+        ),
         ("a.pdb --symmetry C3 --refine 5", "refine is 5"),
         (
             "a.pdb --symmetry C3 --fine-rotations 9000",
@@ -262,4 +294,34 @@ fn what_no_ring_can_have_is_refused() {
         assert_eq!(output.status.code(), Some(2), "{options}: {told}");
         assert!(told.contains(said), "{options}: {told}");
     }
+}
+
+/// The example ring, with all effects that it calls for and a third of the default's axes: the dimer is the first row.
+#[test]
+fn the_example_s_dimer_is_put_together_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| {
+        let root = env!("CARGO_MANIFEST_DIR");
+        format!("{root}/structures/examples/4e43_{name}.pdb")
+    };
+    let (one, dimer) = (file("molecule"), file("dimer"));
+    let mut arguments = vec!["dock", &one, "--symmetry", "C2", "--native", &dimer];
+    arguments.extend([
+        "--rotations",
+        "300",
+        "--poses",
+        "300",
+        "-o",
+        "run",
+        "--json",
+    ]);
+    let output = succeed(folder.path(), arguments);
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(told["best"][0]["irmsd"].as_f64().unwrap() < 1.0);
+    assert!(told["run"]["results"]["chance_acceptable_in_10"].is_null());
+    let on = |effect: &Value| effect["on"] == true;
+    let effects = told["run"]["effects"].as_array().unwrap();
+    assert_eq!(effects.iter().filter(|effect| on(effect)).count(), 3);
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert!(words.contains("Each copy of C2") && words.contains("300 axes of C2"));
 }

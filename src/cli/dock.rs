@@ -33,8 +33,8 @@ pub struct Dock {
     #[arg(required_unless_present_any = ["from", "symmetry"], value_name = "LIGAND")]
     ligand: Option<String>,
     /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis. --rotations then counts axes, and each
-    /// pose is where the second copy goes.
-    #[arg(long, value_name = "Cn", conflicts_with_all = ["ligand", "angle", "accuracy", "budget"])]
+    /// pose is where the second copy goes. Residues that --block-receptor and --attract-receptor name are those of every copy.
+    #[arg(long, value_name = "Cn", conflicts_with_all = NO_RING)]
     symmetry: Option<Cyclic>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
     #[arg(short, long, value_name = "DIR")]
@@ -64,6 +64,16 @@ pub struct Dock {
     #[command(flatten)]
     machine: MachineArguments,
 }
+
+/// What no ring can have.
+const NO_RING: [&str; 6] = [
+    "ligand",
+    "angle",
+    "accuracy",
+    "budget",
+    "block_ligand",
+    "attract_ligand",
+];
 
 /// What run.json records, so that none of it goes with --from.
 const RECORDED: [&str; 54] = [

@@ -279,15 +279,18 @@ impl SearchArguments {
         })
     }
 
-    /// The options of a search for rings.
+    /// The options of a search for rings, whose residues are alike on both sides.
     ///
     /// # Errors
     /// As [`KernelArguments::options`].
     pub fn ring_options(&self, symmetry: Cyclic) -> Result<DockOptions, Failure> {
+        let options = self.options()?;
         Ok(DockOptions {
             rotations: self.rotations.unwrap_or(AXES),
             symmetry: Some(symmetry),
-            ..self.options()?
+            block_ligand: options.block_receptor.clone(),
+            attract_ligand: options.attract_receptor.clone(),
+            ..options
         })
     }
 

@@ -378,6 +378,24 @@ impl DockOptions {
         if self.engine != EngineChoice::Cpu {
             return Err(without("engine", self.engine.name().to_owned(), "cpu"));
         }
+        // A ring's poses score as their inverses do.
+        let sides = [
+            ("block-ligand", &self.block_receptor, &self.block_ligand),
+            (
+                "attract-ligand",
+                &self.attract_receptor,
+                &self.attract_ligand,
+            ),
+        ];
+        for (name, receptor, ligand) in sides {
+            if receptor != ligand {
+                let value = match ligand {
+                    Some(residues) => residues.clone().into(),
+                    None => "left out".to_owned(),
+                };
+                return Err(without(name, value, "the receptor's"));
+            }
+        }
         Ok(())
     }
 
