@@ -17,7 +17,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Most copies in a ring: proteins with more are rare, and their neighbours are all but parallel.
 const MOST: usize = 24;
-/// How far from a ring's a pose may be: radians of its angle, and its slide along the axis as a share of how far it moves in all.
+/// How far from a ring's a pose may be: radians of its angle, and its slide along the axis in Å and besides as a share of how far it moves in all, which
+/// is far where the file's origin is.
 const OFF: f64 = 1e-6;
 
 /// Cyclic symmetry Cn: n copies about an axis.
@@ -97,7 +98,7 @@ impl Cyclic {
         let t = pose.translation;
         let turn = pose.rotation.angle_to(&self.rotation(&axis));
         let slide = axis.dot(&t).abs();
-        if turn > OFF || slide > OFF * t.norm() {
+        if turn > OFF || slide > OFF * (1.0 + t.norm()) {
             return None;
         }
         Some(self.images(pose).collect())
@@ -175,9 +176,13 @@ mod tests {
 
     /// A pose of a ring with an axis somewhere.
     fn some(symmetry: Cyclic) -> Pose {
+        through(symmetry, Vector3::new(11.0, 4.0, -7.0))
+    }
+
+    /// A pose of a ring whose axis runs through a point.
+    fn through(symmetry: Cyclic, point: Vector3<f64>) -> Pose {
         let axis = Unit::new_normalize(Vector3::new(0.3, -0.8, 0.5));
         let rotation = symmetry.rotation(&axis);
-        let point = Vector3::new(11.0, 4.0, -7.0);
         Pose {
             rotation,
             translation: point - rotation * point,
@@ -214,6 +219,22 @@ mod tests {
                 power = pose.after(&power);
             }
             assert!(apart(&power, &Pose::identity()) < 1e-10, "{symmetry}");
+        }
+    }
+
+    /// Where the file's origin lies on the axis nothing moves it, and where it lies far off it moves far: either is a ring, as printed too.
+    #[test]
+    fn rings_are_known_wherever_the_origin_lies() {
+        for copies in [2, 3, 7, MOST] {
+            let symmetry = Cyclic { copies };
+            for scale in [0.0, 1e-12, 1e-6, 1.0, 1e6] {
+                let point = scale * Vector3::new(1.0, 0.7, -0.4);
+                let pose = through(symmetry, point);
+                let printed = Pose::from_parts(pose.quaternion(), pose.translation.into());
+                let images = symmetry.ring(&symmetry.nearest(&printed)).unwrap();
+                let last = pose.after(&images[copies - 1]);
+                assert!(apart(&last, &Pose::identity()) < 1e-9 * (1.0 + scale));
+            }
         }
     }
 

@@ -44,13 +44,24 @@ impl Complex {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
+        let symmetry = run.options.dock.symmetry;
+        if let Some(symmetry) = symmetry
+            && let Some(row) = rows.iter().find(|row| symmetry.ring(&row.pose).is_none())
+        {
+            let rank = row.rank;
+            return Err(Failure::input(format!(
+                "the pose of rank {rank} makes no ring of {symmetry}"
+            ))
+            .at(&table_path)
+            .remedy("take the table as the run wrote it; `knotdock dock --from` makes it again"));
+        }
         let bodies = Bodies::recorded(
             [&run.receptor, &run.ligand],
             &run_path,
             &run.options.reading,
         )?;
         let folder = self.output.unwrap_or_else(|| self.run.join("top"));
-        let written = bodies.write(&rows, run.options.dock.symmetry, &folder)?;
+        let written = bodies.write(&rows, symmetry, &folder)?;
         let paths: Vec<String> = written
             .names
             .iter()

@@ -53,7 +53,10 @@ pub fn write_complexes(
     let fits = copies
         .iter()
         .all(|poses| complex_format(&with(receptor, &placed(poses))) == Format::Pdb);
-    let unplaced = vec![ligand.clone(); symmetry.map_or(1, |symmetry| symmetry.copies() - 1)];
+    let unplaced = match rows {
+        [] => vec![ligand.clone(); symmetry.map_or(1, |symmetry| symmetry.copies() - 1)],
+        _ => Vec::new(),
+    };
     let format = match rows {
         [] => complex_format(&with(receptor, &unplaced)),
         _ if fits => Format::Pdb,
