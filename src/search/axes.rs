@@ -98,6 +98,60 @@ impl RingVoxels {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::search::DockOptions;
+    use knotdock_scoring::engine::{Folded, Plan};
+    use knotdock_scoring::lifted_axis::Fold;
+    use knotdock_scoring::se3::Pose;
+    use knotdock_scoring::symmetry::Cyclic;
+    use knotdock_structures::Knots;
+    use std::sync::Arc;
+
+    /// The voxels that stay are those about whose position the pose can slide both ways along its axis, wherever the molecule stands in its file; and each
+    /// row's largest value is its own.
+    #[test]
+    fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
+        let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
+        let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
+        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
+        let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
+        let voxels = RingVoxels::new(&engine);
+        let [nx, ny, nz] = plan.size();
+        let symmetry: Cyclic = "C3".parse().unwrap();
+        for axis in &axis_set(7) {
+            let rotation = symmetry.rotation(axis);
+            let value = |voxel: usize| (voxel * 7919 % 1009) as f64;
+            let mut grid: Vec<f64> = (0..nx * ny * nz).map(value).collect();
+            let mut rows = vec![f64::INFINITY; nx * ny];
+            voxels.keep(&rotation, &mut grid, &mut rows);
+            let mut kept = 0;
+            for (voxel, &left) in grid.iter().enumerate() {
+                let slide = |corner: [f64; 3]| {
+                    let place = plan.receptor_center
+                        + engine.position(voxel)
+                        + 0.5 * plan.spacing * Vector3::from(corner);
+                    let pose = Pose::about(rotation, plan.ligand_center, place);
+                    axis.dot(&pose.translation)
+                };
+                let signs = [-1.0, 1.0];
+                let corners = signs.map(|x| signs.map(|y| signs.map(|z| slide([x, y, z]))));
+                let slides = corners.as_flattened().as_flattened();
+                let through = slides.iter().any(|&s| s > -1e-9) && slides.iter().any(|&s| s < 1e-9);
+                let expected = if through {
+                    value(voxel)
+                } else {
+                    f64::NEG_INFINITY
+                };
+                assert_eq!(left, expected, "voxel {voxel}");
+                kept += usize::from(through);
+            }
+            // The plane is a layer or so of the box.
+            assert!(kept >= nx.min(ny).min(nz).pow(2) && kept < 3 * nx * ny.max(nz));
+            for (row, best) in grid.chunks_exact(nz).zip(&rows) {
+                assert_eq!(*best, row.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+            }
+        }
+    }
 
     /// n caps of the covering radius hide the half sphere, so that their area is at least its own; and the set is not much worse than that.
     #[test]

@@ -56,3 +56,74 @@ pub(super) fn other_copies(symmetry: Cyclic, scorer: &ExactScorer, pose: &Pose) 
         .has_beyond()
         .then(|| symmetry.beyond(pose).map(score).sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::DockOptions;
+    use knotdock_scoring::engine::{Folded, Plan};
+    use knotdock_scoring::lifted_axis::Fold;
+    use knotdock_structures::Knots;
+    use nalgebra::{Unit, UnitQuaternion};
+
+    /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
+    /// climb ends higher, on a ring.
+    #[test]
+    fn copies_across_the_axis_are_climbed_with_the_rest() {
+        let centers = vec![
+            [0.0, 0.0, 0.0],
+            [2.6, 0.4, 1.1],
+            [-1.9, 2.2, -0.7],
+            [0.8, -2.5, 2.0],
+        ];
+        let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
+        let engine = DockOptions::default().engine();
+        let plan = Plan::new(&knots, &knots, engine).unwrap();
+        let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
+        let field = ReceptorField::new(&plan, &folded, &knots);
+        let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
+        let exact = |symmetry: Cyclic, pose: &Pose| {
+            scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
+        };
+        let symmetry: Cyclic = "C4".parse().unwrap();
+        let axis = Unit::new_normalize(Vector3::new(0.4, -0.3, 0.9));
+        let rotation = symmetry.rotation(&axis);
+        let point = 3.4 * axis.cross(&Vector3::x()).normalize();
+        let start = Pose {
+            rotation,
+            translation: point - rotation * point,
+        };
+        assert!(other_copies(symmetry, &scorer, &start).unwrap().abs() > 1.0);
+        assert_eq!(other_copies("C3".parse().unwrap(), &scorer, &start), None);
+
+        let center = plan.ligand_center;
+        let (_, gradient) = whole(symmetry, &field, center, &start);
+        let step = 1e-3;
+        let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
+            let at = |sign: f64| {
+                let turn = UnitQuaternion::new(sign * turn);
+                exact(symmetry, &conjugated(&start, center, turn, sign * shift))
+            };
+            (at(1.0) - at(-1.0)) / (2.0 * step)
+        };
+        for axis in 0..3 {
+            let unit = Vector3::ith(axis, step);
+            let (shifted, turned) = (slope(Vector3::zeros(), unit), slope(unit, Vector3::zeros()));
+            let near = |a: f64, b: f64, whole: f64| (a - b).abs() < 0.02 * whole;
+            assert!(near(gradient.force[axis], shifted, gradient.force.norm()));
+            assert!(near(gradient.torque[axis], turned, gradient.torque.norm()));
+        }
+
+        let limits = ClimbLimits {
+            evaluations: 40,
+            distance: 3.0,
+            angle: 0.3,
+            gyration: 3.0,
+            angstrom: 1.0,
+        };
+        let (top, score) = climb_ring(symmetry, &field, center, &start, &limits);
+        assert!(symmetry.ring(&top).is_some());
+        assert!(exact(symmetry, &top) > exact(symmetry, &start) + 1.0);
+        assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
+    }
+}
