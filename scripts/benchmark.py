@@ -87,12 +87,26 @@ def main():
     sys.exit(1 if any("error" in result for result in results.values()) else 0)
 
 
-def parse_arguments():
+def split_arguments():
+    """The script's own arguments, and what follows -- for `knotdock dock`."""
     arguments = sys.argv[1:]
-    dock_options = []
-    if "--" in arguments:
-        cut = arguments.index("--")
-        arguments, dock_options = arguments[:cut], arguments[cut + 1 :]
+    cut = arguments.index("--") if "--" in arguments else len(arguments)
+    return arguments[:cut], arguments[cut + 1 :]
+
+
+def seeds(text):
+    return [int(part) for part in text.split(",")]
+
+
+def find_program(parser, name):
+    found = shutil.which(name)
+    if found is None:
+        parser.error(f"no program {name}; build it and name it with --knotdock target/release/knotdock")
+    return found
+
+
+def parse_arguments():
+    arguments, dock_options = split_arguments()
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0], epilog="what follows -- is handed to `knotdock dock`"
     )
@@ -107,7 +121,7 @@ def parse_arguments():
     parser.add_argument("--ids", type=lambda text: text.split(","), help="only these pairs, separated by commas")
     parser.add_argument(
         "--seeds",
-        type=lambda text: [int(part) for part in text.split(",")],
+        type=seeds,
         default=[0, 1, 2],
         help="turns of the ligand, separated by commas (default: 0,1,2)",
     )
@@ -120,10 +134,7 @@ def parse_arguments():
         if owned in dock_options:
             parser.error(f"{owned} is this script's own to set")
     options.dock_options = dock_options
-    found = shutil.which(options.knotdock)
-    if found is None:
-        parser.error(f"no program {options.knotdock}; build it and name it with --knotdock target/release/knotdock")
-    options.knotdock = found
+    options.knotdock = find_program(parser, options.knotdock)
     return options
 
 

@@ -7,7 +7,8 @@ Each folder (or several, with commas between them, which hold a setting's pairs 
 is the number of pairs, as the mean over seeds. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
 a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none. A second table has
 the mean logarithm of the first rank, which a rank that is merely better moves, too: over turns, then over pairs; with its difference from
-the first setting's and the standard error of that over pairs. What was not found counts as rank 3,000.
+the first setting's and the standard error of that over pairs. What was not found counts as rank 3,000. Below it
+stands how far a pair's turns disagree: the standard deviation of its log rank over them, averaged over pairs.
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -113,6 +114,14 @@ def log_ranks(runs, pairs, seeds):
             cells += [f"{statistics.fmean(values):.2f}", gain]
         first = first or means
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    if len(seeds) > 1:
+        lines += ["", "Spread of a pair's log rank over its turns (standard deviation, mean over pairs):", ""]
+        for name, rows in runs.items():
+            parts = []
+            for criterion, column in CRITERIA:
+                ranks = [[math.log(min(rows[pair, seed][column], NOT_FOUND)) for seed in seeds] for pair in pairs]
+                parts.append(f"{criterion} {statistics.fmean(statistics.stdev(turns) for turns in ranks):.2f}")
+            lines.append(f"- {name}: " + ", ".join(parts))
     return lines
 
 

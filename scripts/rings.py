@@ -16,12 +16,11 @@ Needs Python 3.9 or later and nothing else.
 import argparse
 import csv
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-from benchmark import first_ranks, measured, read_text, turn
+from benchmark import find_program, first_ranks, measured, read_text, seeds, split_arguments, turn
 
 
 def main():
@@ -53,24 +52,16 @@ def columns(with_symmetry):
 
 
 def parse_arguments():
-    arguments = sys.argv[1:]
-    dock_options = []
-    if "--" in arguments:
-        cut = arguments.index("--")
-        arguments, dock_options = arguments[:cut], arguments[cut + 1 :]
+    arguments, dock_options = split_arguments()
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0], epilog="what follows -- is handed to `knotdock dock`")
     parser.add_argument("rings", nargs="+", type=ring_of, metavar="FILE:CHAINS", help="a known ring and its molecules, a chain each")
-    seeds = lambda text: [int(part) for part in text.split(",")]  # noqa: E731
     parser.add_argument("--seeds", type=seeds, default=[0, 1, 2], help="turns of the molecule, separated by commas (default: 0,1,2)")
     parser.add_argument("--knotdock", default="knotdock", help="the program (default: the one on the path)")
     parser.add_argument("--out", type=Path, default=Path("rings"), help="folder for the runs (default: rings)")
     parser.add_argument("--pairs", action="store_true", help="dock two copies without symmetry, too")
     options = parser.parse_args(arguments)
     options.dock_options = dock_options
-    found = shutil.which(options.knotdock)
-    if found is None:
-        parser.error(f"no program {options.knotdock}; build it and name it with --knotdock target/release/knotdock")
-    options.knotdock = found
+    options.knotdock = find_program(parser, options.knotdock)
     return options
 
 

@@ -111,11 +111,13 @@ fn small(folder: &Path, symmetry: &str, more: &[&str]) -> (Value, Vec<Row>) {
     )
 }
 
-/// Every row closes into a ring, and its parts are the exact sums of neighbours and of the others at the printed pose.
+/// Every row closes into a ring and repeats no better one of its cluster, and its parts are the exact sums of neighbours and of the others at the printed pose.
 #[test]
 fn rows_are_rings_and_score_as_their_pairs_do() {
     let folder = tempfile::tempdir().unwrap();
     let file = example("ligand_unbound");
+    let mut alphas = molecule(&file);
+    alphas.atoms.retain(|atom| atom.name == "CA");
     let score = |pose: &Pose| {
         let [w, x, y, z] = pose.quaternion();
         let [a, b, c]: [f64; 3] = pose.translation.into();
@@ -132,6 +134,17 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         assert!(rows.len() > 20);
         for row in &rows {
             assert!(cyclic(name).ring(&pose(row)).is_some(), "{name}");
+        }
+        for (index, row) in rows.iter().enumerate() {
+            let of_cluster = |other: &&Row| {
+                other["cluster"] == row["cluster"]
+                    && [row, other].iter().all(|row| row["refined"] == "true")
+            };
+            for better in rows[..index].iter().filter(of_cluster) {
+                let apart = |pose: Pose| rmsd(&alphas, &self::pose(better), &pose);
+                let apart = apart(pose(row)).min(apart(pose(row).inverse()));
+                assert!(apart > 2.25, "{name}: {apart} Å");
+            }
         }
         for row in &rows[..3] {
             let pose = pose(row);

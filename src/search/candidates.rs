@@ -1,6 +1,6 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
-use super::cluster::{RigidBody, greedy, greedy_of_rings};
+use super::cluster::{RigidBody, greedy};
 use super::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
@@ -102,13 +102,13 @@ pub(super) fn candidates(
 }
 
 /// Drops refined poses that ended where a better one did.
-pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, rings: bool, distance: f64) {
+pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
     let poses: Vec<Pose> = candidates
         .iter()
         .filter(|candidate| candidate.refined)
         .map(|candidate| candidate.pose)
         .collect();
-    let groups = grouped(body, &poses, rings, distance);
+    let groups = greedy(body, &poses, distance);
     let (mut index, mut seen) = (0, 0);
     candidates.retain(|candidate| {
         if !candidate.refined {
@@ -122,20 +122,9 @@ pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, rings: bo
 }
 
 /// Each candidate's cluster, numbered from 0 in the order of their founders.
-pub(super) fn clusters_of(
-    candidates: &[Candidate],
-    body: &RigidBody,
-    rings: bool,
-    radius: f64,
-) -> Vec<usize> {
+pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
     let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
-    grouped(body, &poses, rings, radius)
-}
-
-/// Greedy clusters of poses, or of rings.
-fn grouped(body: &RigidBody, poses: &[Pose], rings: bool, radius: f64) -> Vec<usize> {
-    let by = if rings { greedy_of_rings } else { greedy };
-    by(body, poses, radius)
+    greedy(body, &poses, radius)
 }
 
 /// Which candidates may be rows: all but refined poses within `distance` of a better refined one of their cluster. What is left out here still counts
@@ -144,7 +133,6 @@ pub(super) fn listed(
     candidates: &[Candidate],
     clusters: &[usize],
     body: &RigidBody,
-    rings: bool,
     distance: f64,
 ) -> Vec<bool> {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
@@ -161,10 +149,7 @@ pub(super) fn listed(
             .map(|&index| candidates[index].pose)
             .collect();
         let mut seen = 0;
-        for (index, group) in members
-            .into_iter()
-            .zip(grouped(body, &poses, rings, distance))
-        {
+        for (index, group) in members.into_iter().zip(greedy(body, &poses, distance)) {
             listed[index] = group == seen;
             seen += usize::from(listed[index]);
         }
@@ -205,7 +190,7 @@ mod tests {
         .into_iter()
         .unzip();
         let candidates = candidates(&peaks, &placed, &[], None);
-        let of = |clusters: &[usize]| listed(&candidates, clusters, &body, false, 2.0);
+        let of = |clusters: &[usize]| listed(&candidates, clusters, &body, 2.0);
         assert_eq!(of(&[0, 0, 0, 0, 0]), [true, false, true, true, false]);
         assert_eq!(of(&[0, 1, 0, 1, 1]), [true, true, true, false, false]);
     }

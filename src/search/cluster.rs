@@ -11,6 +11,8 @@ use nalgebra::{Matrix3, Vector3};
 pub struct RigidBody {
     mean: Vector3<f64>,
     covariance: Matrix3<f64>,
+    /// Whether a pose and its inverse are one, as of a ring with its copies counted either way.
+    in_ring: bool,
 }
 
 /// A pose with what its distances to others need.
@@ -34,7 +36,19 @@ impl RigidBody {
             let d = Vector3::from(p) - mean;
             sum + d * d.transpose()
         }) / count;
-        Self { mean, covariance }
+        Self {
+            mean,
+            covariance,
+            in_ring: false,
+        }
+    }
+
+    /// The body as a copy in a ring, of which a pose and its inverse are the same with its copies counted either way.
+    pub fn in_ring(self) -> Self {
+        Self {
+            in_ring: true,
+            ..self
+        }
     }
 
     /// Radius of gyration, Å.
@@ -64,34 +78,18 @@ impl RigidBody {
 /// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
 /// founds one. Returns each pose's cluster, numbered from 0 in order of founding.
 pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
-    greedy_of_images(body, poses.iter().map(|pose| [*pose]), radius)
-}
-
-/// [`greedy`] of rings: a pose and its inverse are the same ring with its copies counted either way, and so one.
-pub fn greedy_of_rings(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
-    greedy_of_images(
-        body,
-        poses.iter().map(|pose| [*pose, pose.inverse()]),
-        radius,
-    )
-}
-
-/// Greedy clusters of poses each of which has several images: it is as near to a founder as its nearest.
-fn greedy_of_images<const IMAGES: usize>(
-    body: &RigidBody,
-    poses: impl Iterator<Item = [Pose; IMAGES]>,
-    radius: f64,
-) -> Vec<usize> {
     let mut founders: Vec<PlacedBody> = Vec::new();
     poses
-        .map(|images| {
-            let placed = images.map(|pose| body.place(&pose));
+        .iter()
+        .map(|pose| {
+            let placed = body.place(pose);
+            let inverse = body.in_ring.then(|| body.place(&pose.inverse()));
             let near = founders.iter().position(|founder| {
-                let mut squares = placed.iter().map(|image| body.mean_square(founder, image));
-                squares.any(|square| square <= radius * radius)
+                let within = |image| body.mean_square(founder, image) <= radius * radius;
+                within(&placed) || inverse.as_ref().is_some_and(within)
             });
             near.unwrap_or_else(|| {
-                founders.push(placed[0]);
+                founders.push(placed);
                 founders.len() - 1
             })
         })
@@ -129,8 +127,8 @@ mod tests {
         let half = std::f64::consts::FRAC_PI_3;
         let forward = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
         let poses = [forward, forward.inverse()];
-        assert_eq!(greedy_of_rings(&body, &poses, 5.0), [0, 0]);
         assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
+        assert_eq!(greedy(&body.in_ring(), &poses, 5.0), [0, 0]);
     }
 
     #[test]

@@ -140,7 +140,10 @@ fn dock_in<T: Real>(
         })
         .collect();
 
-    let body = RigidBody::new(points);
+    let body = match options.symmetry {
+        Some(_) => RigidBody::new(points).in_ring(),
+        None => RigidBody::new(points),
+    };
     let placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
     drop(folded);
     clock.lap("refine");
@@ -157,24 +160,20 @@ fn dock_in<T: Real>(
     if rescorer.is_some() {
         progress.stage("rescore", 1);
     }
-    let rings = options.symmetry.is_some();
     // No ring starts on the grid.
-    let at_start = if rings { &[][..] } else { &at_grid[..] };
+    let at_start = match options.symmetry {
+        Some(_) => &[][..],
+        None => &at_grid[..],
+    };
     let mut candidates = candidates(&peaks, &placed, at_start, rescorer.as_ref());
     if rescorer.is_some() {
         progress.advance(1);
     }
     clock.lap("rescore");
-    merge(&mut candidates, &body, rings, MERGE_SPACINGS * plan.spacing);
+    merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
-    let clusters = clusters_of(&candidates, &body, rings, options.cluster_radius);
-    let listed = listed(
-        &candidates,
-        &clusters,
-        &body,
-        rings,
-        LIST_SPACINGS * plan.spacing,
-    );
+    let clusters = clusters_of(&candidates, &body, options.cluster_radius);
+    let listed = listed(&candidates, &clusters, &body, LIST_SPACINGS * plan.spacing);
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
