@@ -6,6 +6,7 @@
 FILE is a PDB file, perhaps gzipped, and the chains after the colon, one letter for each molecule, are its ring; their number is its symmetry's. The
 first of them is docked as it stands there, so that its side chains know their places: ranks say whether the search finds a fit that is there, not how well
 unbound molecules are docked. Each is centred and turned by a rotation drawn uniformly from SO(3), from the file's name and the seed alone.
+FILE:A,C+B,D names two rings face to face, of dihedral symmetry: the first of them is docked, and copies stand for neighbours in what follows.
 
 A cluster is acceptable where its best pose has a ligand RMSD of at most 10 A or an interface RMSD of at most 4 A between neighbours, and near-native
 with an interface RMSD of at most 2.5 A. With --pairs the same is done without symmetry, two copies docked as any pair.
@@ -67,35 +68,49 @@ def parse_arguments():
 
 def ring_of(text):
     path, _, chains = text.rpartition(":")
-    if not re.fullmatch(r"\w(,\w)+", chains):
-        raise argparse.ArgumentTypeError(f"{text}: a file and two or more chains are needed, as in dimer.pdb:A,B")
-    return Path(path), chains.split(",")
+    if not re.fullmatch(r"\w(,\w)+(\+\w(,\w)+)?", chains):
+        raise argparse.ArgumentTypeError(f"{text}: a file and two or more chains are needed, as in dimer.pdb:A,B, or two rings, as in tetramer.pdb:A,C+B,D")
+    rings = [ring.split(",") for ring in chains.split("+")]
+    if len({len(ring) for ring in rings}) > 1:
+        raise argparse.ArgumentTypeError(f"{text}: two rings have as many chains each")
+    return Path(path), rings
 
 
 def name_of(ring):
-    path, chains = ring
-    return f"{path.name.split('.')[0]} C{len(chains)}"
+    path, rings = ring
+    chains = f" {','.join(rings[0])}" if len(rings) == 2 else ""
+    return f"{path.name.split('.')[0]} {symmetry_of(rings)}{chains}"
+
+
+def symmetry_of(rings):
+    return f"{'D' if len(rings) == 2 else 'C'}{len(rings[0])}"
 
 
 def dock(options, ring, seed, with_symmetry):
-    """Docks the first chain of a ring and measures the clusters."""
-    path, chains = ring
-    folder = options.out / f"{name_of(ring).replace(' ', '_')}_{seed}"
+    """Docks the first chain of a ring, or the first of two rings, and measures the clusters."""
+    path, rings = ring
+    if len(rings) == 2:
+        docked = rings[0]
+        sides = [f"{path}:{','.join(side)}" for side in rings]
+        native = ["--native-receptor", sides[0], "--native-ligand", sides[1]]
+    else:
+        # Neighbours of a ring stand to each other as the first two do.
+        docked = rings[0][:1]
+        native = ["--native", f"{path}:{','.join(rings[0][:2])}"]
+    folder = options.out / f"{re.sub('[ ,]', '_', name_of(ring))}_{seed}"
     folder.mkdir(parents=True, exist_ok=True)
     molecule = folder / "molecule.pdb"
     lines = read_text(path).splitlines()
     ends = [index for index, line in enumerate(lines) if line.startswith("ENDMDL")]
     first_model = lines[: ends[0]] if ends else lines
-    atoms = [line for line in first_model if line.startswith(("ATOM  ", "HETATM")) and line[21] == chains[0]]
+    atoms = [line for line in first_model if line.startswith(("ATOM  ", "HETATM")) and line[21] in docked]
     molecule.write_text(turn("\n".join(atoms), path.name, seed))
     run = folder / ("ring" if with_symmetry else "pair")
-    partner = ["--symmetry", f"C{len(chains)}"] if with_symmetry else [str(molecule)]
-    # Neighbours of a ring stand to each other as the first two do.
-    native = f"{path}:{','.join(chains[:2])}"
+    partner = ["--symmetry", symmetry_of(rings)] if with_symmetry else [str(molecule)]
     command = [options.knotdock, "dock", str(molecule), *partner, "-o", str(run), "--force", "--quiet", "--write-top", "1"]
     cost = measured(command + options.dock_options, folder / "dock.log")
     evaluation = subprocess.run(
-        [options.knotdock, "evaluate", str(run), "--native", native, "-o", str(folder / "measured.csv"), "--quiet"],
+        [options.knotdock, "evaluate", str(run), *native, "-o", str(folder / "measured.csv"), "--quiet"],
         capture_output=True,
         text=True,
     )

@@ -11,7 +11,7 @@ use knotdock::output::poses::PoseRow;
 use knotdock::search::meshes::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
 use knotdock::search::{DockOptions, SearchError};
 use knotdock::tradeoff::pair::{Pair, Prepared, Sampling};
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
@@ -94,13 +94,17 @@ impl Bodies {
     }
 
     /// Says what was read, and what to beware of; of a ring, the one molecule that it is made of.
-    pub fn describe(&self, symmetry: Option<Cyclic>, console: Console) {
+    pub fn describe(&self, symmetry: Option<Symmetry>, console: Console) {
         match self {
             Self::Molecules(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 if let Some(symmetry) = symmetry {
                     let report = &receptor.molecule.report;
-                    return console.say(format!("Each copy of {symmetry}: {report}"));
+                    let what = match symmetry.folds() {
+                        Some(_) => "ring",
+                        None => "copy",
+                    };
+                    return console.say(format!("Each {what} of {symmetry}: {report}"));
                 }
                 console.say(format!(
                     "Receptor: {}\nLigand: {}",
@@ -179,7 +183,7 @@ impl Bodies {
     pub fn write(
         &self,
         rows: &[PoseRow],
-        symmetry: Option<Cyclic>,
+        symmetry: Option<Symmetry>,
         folder: &Path,
     ) -> Result<WrittenBodies, Failure> {
         match self {

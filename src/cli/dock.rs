@@ -6,7 +6,7 @@ use clap::Args;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::choice::Wanted;
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 
 use super::arguments::{above_zero, duration};
 use super::bodies::Bodies;
@@ -32,10 +32,11 @@ pub struct Dock {
     /// What moves, likewise and of the same kind.
     #[arg(required_unless_present_any = ["from", "symmetry"], value_name = "LIGAND")]
     ligand: Option<String>,
-    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis. --rotations then counts axes, and each
-    /// pose is where the second copy goes. Residues that --block-receptor and --attract-receptor name are those of every copy.
-    #[arg(long, value_name = "Cn", conflicts_with_all = NO_RING)]
-    symmetry: Option<Cyclic>,
+    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is itself a ring of 2, 3 ...
+    /// copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where the second copy or ring goes. Residues that
+    /// --block-receptor and --attract-receptor name are those of every copy.
+    #[arg(long, value_name = "Cn|Dn", conflicts_with_all = NO_RING)]
+    symmetry: Option<Symmetry>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
-use knotdock::search::options::{AXES, EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE};
+use knotdock::search::options::{
+    AXES, AXES_ACROSS, EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE,
+};
 use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 
 use knotdock_structures::molecule::ResidueSelection;
 
@@ -46,7 +48,7 @@ fn cluster_radius_help() -> String {
 
 fn rotations_help() -> String {
     format!(
-        "Rotations of the ligand, near uniform over all [default: {}]; with `dock --symmetry` axes, over half a sphere [default: {AXES}]",
+        "Rotations of the ligand, near uniform over all [default: {}]; with `dock --symmetry` axes, over half a sphere [default: {AXES}] or across a ring's own [default: {AXES_ACROSS}]",
         DockOptions::default().rotations
     )
 }
@@ -283,10 +285,13 @@ impl SearchArguments {
     ///
     /// # Errors
     /// As [`KernelArguments::options`].
-    pub fn ring_options(&self, symmetry: Cyclic) -> Result<DockOptions, Failure> {
+    pub fn ring_options(&self, symmetry: Symmetry) -> Result<DockOptions, Failure> {
         let options = self.options()?;
         Ok(DockOptions {
-            rotations: self.rotations.unwrap_or(AXES),
+            rotations: self.rotations.unwrap_or(match symmetry.folds() {
+                Some(_) => AXES_ACROSS,
+                None => AXES,
+            }),
             symmetry: Some(symmetry),
             block_ligand: options.block_receptor.clone(),
             attract_ligand: options.attract_receptor.clone(),

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
@@ -29,7 +29,7 @@ pub struct Written {
 /// [`FileError`] when the folder cannot be made, a file cannot be written, or a row's pose is not one of such a ring.
 pub fn write_complexes(
     [receptor, ligand]: [&Molecule; 2],
-    symmetry: Option<Cyclic>,
+    symmetry: Option<Symmetry>,
     rows: &[PoseRow],
     folder: &Path,
 ) -> Result<Written, FileError> {
@@ -90,7 +90,7 @@ fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule>
 }
 
 /// A row whose pose was not made by a search for such rings.
-fn not_a_ring(symmetry: Cyclic, row: &PoseRow, folder: &Path) -> FileError {
+fn not_a_ring(symmetry: Symmetry, row: &PoseRow, folder: &Path) -> FileError {
     let rank = row.rank;
     let error = io::Error::other(format!(
         "the pose of rank {rank} makes no ring of {symmetry}"
@@ -99,11 +99,17 @@ fn not_a_ring(symmetry: Cyclic, row: &PoseRow, folder: &Path) -> FileError {
 }
 
 /// What a complex says of itself: where it comes from and how its ligand, or each copy of a ring from the one before it, was moved.
-fn remarks(row: &PoseRow, symmetry: Option<Cyclic>) -> Vec<String> {
+fn remarks(row: &PoseRow, symmetry: Option<Symmetry>) -> Vec<String> {
     let [w, x, y, z] = row.pose.quaternion();
     let t = row.pose.translation;
     let (rank, what) = match symmetry {
-        Some(symmetry) => (format!("rank {} of {symmetry}", row.rank), "each copy"),
+        Some(symmetry) => {
+            let what = match symmetry.folds() {
+                Some(_) => "ring",
+                None => "each copy",
+            };
+            (format!("rank {} of {symmetry}", row.rank), what)
+        }
         None => (format!("rank {}", row.rank), "ligand"),
     };
     vec![

@@ -4,6 +4,7 @@
 //! of the points' mean and C their covariance: O(1) a pair of poses.
 
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::symmetry::RingAxis;
 use nalgebra::{Matrix3, Vector3};
 
 /// The body whose RMSD is taken: mean and covariance of its points in its own frame.
@@ -11,8 +12,19 @@ use nalgebra::{Matrix3, Vector3};
 pub struct RigidBody {
     mean: Vector3<f64>,
     covariance: Matrix3<f64>,
-    /// Whether a pose and its inverse are one, as of a ring with its copies counted either way.
-    in_ring: bool,
+    /// Poses that are one with a pose.
+    alike: Alike,
+}
+
+/// Which poses are one with a pose M of a body.
+#[derive(Clone, Debug, PartialEq)]
+enum Alike {
+    /// No others.
+    None,
+    /// Its inverse: a ring with its copies counted the other way.
+    Inverse,
+    /// M after a turn of the body onto itself: a second ring with its copies counted from another one.
+    Turned(Vec<Pose>),
 }
 
 /// A pose with what its distances to others need.
@@ -39,16 +51,31 @@ impl RigidBody {
         Self {
             mean,
             covariance,
-            in_ring: false,
+            alike: Alike::None,
         }
     }
 
-    /// The body as a copy in a ring, of which a pose and its inverse are the same with its copies counted either way.
-    pub fn in_ring(self) -> Self {
-        Self {
-            in_ring: true,
-            ..self
+    /// The body as a copy in a ring, of which a pose and its inverse are the same with its copies counted either way; or as one of two rings that have an axis,
+    /// of which a pose is the same whichever copy the turns about that axis bring first.
+    pub fn in_ring(self, axis: Option<&RingAxis>) -> Self {
+        let alike = match axis {
+            Some(axis) => Alike::Turned(axis.turns().collect()),
+            None => Alike::Inverse,
+        };
+        Self { alike, ..self }
+    }
+
+    /// The body at all poses that are one with this one, itself first.
+    fn images(&self, pose: &Pose) -> Vec<PlacedBody> {
+        let mut images = vec![self.place(pose)];
+        match &self.alike {
+            Alike::None => {}
+            Alike::Inverse => images.push(self.place(&pose.inverse())),
+            Alike::Turned(turns) => {
+                images.extend(turns.iter().map(|turn| self.place(&pose.after(turn))));
+            }
         }
+        images
     }
 
     /// Radius of gyration, Å.
@@ -82,14 +109,13 @@ pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
     poses
         .iter()
         .map(|pose| {
-            let placed = body.place(pose);
-            let inverse = body.in_ring.then(|| body.place(&pose.inverse()));
+            let images = body.images(pose);
             let near = founders.iter().position(|founder| {
                 let within = |image| body.mean_square(founder, image) <= radius * radius;
-                within(&placed) || inverse.as_ref().is_some_and(within)
+                images.iter().any(within)
             });
             near.unwrap_or_else(|| {
-                founders.push(placed);
+                founders.push(images[0]);
                 founders.len() - 1
             })
         })
@@ -128,7 +154,25 @@ mod tests {
         let forward = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
         let poses = [forward, forward.inverse()];
         assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
-        assert_eq!(greedy(&body.in_ring(), &poses, 5.0), [0, 0]);
+        assert_eq!(greedy(&body.in_ring(None), &poses, 5.0), [0, 0]);
+    }
+
+    /// A second ring is the same whichever of its copies is called the first.
+    #[test]
+    fn second_rings_are_one_with_their_turns() {
+        let copy = vec![[9.0, 0.0, 0.0], [10.0, 3.0, 0.0], [9.0, 1.0, 5.0]];
+        let other = copy
+            .iter()
+            .map(|&[x, y, z]: &[f64; 3]| [-x, -y, z])
+            .collect();
+        let copies = [copy, other];
+        let axis = RingAxis::of(&copies).unwrap();
+        let body = RigidBody::new(&copies.concat());
+        let pose = Pose::from_parts([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 12.0]);
+        let turned = pose.after(&axis.turns().next().unwrap());
+        assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 1]);
+        let body = body.in_ring(Some(&axis));
+        assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 0]);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::rescoring::Asked;
 use super::restraints::{AntibodySurface, Restraints};
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::symmetry::RingAxis;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
@@ -62,6 +63,8 @@ pub struct Scene {
     pub labels: [LabelReport; 2],
     /// What poses should touch.
     pub attracted: Attracted,
+    /// The axis of the ring that the molecule is, where two such rings are asked for.
+    pub ring_axis: Option<RingAxis>,
 }
 
 /// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch, times their number: a
@@ -82,6 +85,7 @@ impl Scene {
         options: &DockOptions,
     ) -> Result<Self, SearchError> {
         options.check_effects()?;
+        let ring_axis = ring_axis(receptor, options)?;
         let molecules = [receptor, ligand];
         let labels = molecules.map(|molecule| molecule.labels(options.ph));
         let restraints = Restraints::new(molecules, options)?;
@@ -208,6 +212,7 @@ impl Scene {
             decisions,
             labels: [receptor_report, ligand_report],
             attracted,
+            ring_axis,
         })
     }
 
@@ -246,6 +251,7 @@ impl Scene {
             decisions: decisions.collect::<Result<_, _>>()?,
             labels: [LabelReport::default(), LabelReport::default()],
             attracted: Default::default(),
+            ring_axis: None,
         })
     }
 
@@ -260,6 +266,18 @@ impl Scene {
         let bodies = [&self.receptor, &self.ligand];
         asked.rescorer(bodies, &self.attracted, options)
     }
+}
+
+/// The axis of a molecule that is a ring, where two such rings are asked for.
+fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, SearchError> {
+    let Some((symmetry, folds)) = options.symmetry.and_then(|of| Some((of, of.folds()?))) else {
+        return Ok(None);
+    };
+    let no_ring = |reason: String| SearchError::Ring { symmetry, reason };
+    let copies = molecule.copies(folds);
+    let copies = copies.map_err(|error| no_ring(error.to_string()))?;
+    let axis = RingAxis::of(&copies).map_err(|error| no_ring(error.to_string()))?;
+    Ok(Some(axis))
 }
 
 /// Points a sphere at which atoms are asked whether water reaches them.

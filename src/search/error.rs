@@ -2,6 +2,7 @@
 
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::PlanError;
+use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::knots::KnotsError;
 
 /// Why a docking run was refused.
@@ -29,6 +30,14 @@ pub enum SearchError {
         /// The effect.
         effect: Effect,
         /// What is missing.
+        reason: String,
+    },
+    /// Two rings were asked for of a molecule that is none.
+    #[error("{symmetry} lays two rings together, and this molecule is no ring for it: {reason}")]
+    Ring {
+        /// The symmetry.
+        symmetry: Symmetry,
+        /// What it lacks.
         reason: String,
     },
     /// Not even one rotation in flight fits into the memory allowed.
@@ -76,6 +85,13 @@ impl SearchError {
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
             Self::Effect { .. } => {
                 "leave it out of --effects, or let auto choose what the inputs call for".to_owned()
+            }
+            Self::Ring { symmetry, .. } => {
+                let folds = symmetry.folds().unwrap_or(1);
+                format!(
+                    "dock the single molecule with --symmetry C{folds} first and give a complex of that run, such as its top/rank_0001.pdb: copies one after \
+                     another, each with all its chains"
+                )
             }
             Self::NoPose => "check lambda and the offset".to_owned(),
         }

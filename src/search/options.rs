@@ -8,7 +8,7 @@ use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
 use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
@@ -45,8 +45,8 @@ pub struct DockOptions {
     pub sample_grid: Option<usize>,
     /// Weights of a mesh's balls; `None` for molecules.
     pub sample_weights: Option<SampleWeights>,
-    /// Symmetry of the rings that copies of one molecule are to form; `None`: a receptor and a ligand are docked.
-    pub symmetry: Option<Cyclic>,
+    /// Symmetry of the rings that copies of one molecule are to form, or two rings with each other; `None`: a receptor and a ligand are docked.
+    pub symmetry: Option<Symmetry>,
     /// Terms of the score.
     pub effects: EffectChoice,
     /// Weight of the electrostatic energy: score per kcal/mol.
@@ -179,6 +179,9 @@ pub const REFINED_BY_SHAPE: usize = 600;
 
 /// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.
 pub const AXES: usize = 900;
+
+/// Axes of two rings by default: of D2 a degree apart, of Dn 2 / n of one.
+pub const AXES_ACROSS: usize = 90;
 
 /// Default pass length as a multiple of the resolution.
 pub const PASS_RATIO: f64 = 2.0;

@@ -1,12 +1,12 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use super::attracted::{AssumedSite, Attracted};
-use super::axes::{axes_radius, axis_set};
 use super::effects::{Decision, LengthUnit, Scene};
 use super::error::SearchError;
 use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
 use super::peaks::Peak;
 use super::rescoring::Asked;
+use super::ring::Rings;
 use super::rotations::{
     BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
 };
@@ -77,6 +77,9 @@ pub struct DockPlan {
     pub(super) attracted: Attracted,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
+    /// The rings that are sought, if any are.
+    #[serde(skip)]
+    pub(super) rings: Option<Rings>,
     #[serde(skip)]
     pub(super) engine: Arc<Plan>,
     #[serde(skip)]
@@ -124,6 +127,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         labels,
         attracted,
+        ring_axis,
     } = scene;
     let planned = |options: &DockOptions| {
         Plan::with_effects(
@@ -192,11 +196,19 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
         }
     };
-    let (set, set_name, covering_radius) = match options.symmetry {
-        Some(symmetry) => {
-            let axes = axis_set(options.rotations);
-            let set = axes.iter().map(|axis| symmetry.rotation(axis)).collect();
-            (set, "axes over a half sphere", axes_radius(&axes))
+    let rings = options.symmetry.map(|symmetry| Rings {
+        symmetry,
+        axis: ring_axis,
+    });
+    let (set, set_name, covering_radius) = match &rings {
+        Some(rings) => {
+            let (axes, radius) = rings.axes(options.rotations);
+            let rotation = |axis| rings.symmetry.rotation(axis);
+            let name = match rings.axis {
+                Some(_) => "axes across the ring's own",
+                None => "axes over a half sphere",
+            };
+            (axes.iter().map(rotation).collect(), name, radius)
         }
         None => {
             let set = rotation_set(options.rotations);
@@ -234,6 +246,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         attracted,
         labels,
+        rings,
         engine: Arc::new(engine),
         options: options.clone(),
         receptor,

@@ -19,7 +19,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::rescoring::{Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::Cyclic;
+use knotdock_scoring::symmetry::Symmetry;
 use rayon::prelude::*;
 
 /// What rows of the table are scored by.
@@ -32,7 +32,7 @@ pub(super) struct Judge<'a> {
     /// Which effects are on, by effect.
     pub on: [bool; Effect::ALL.len()],
     /// The symmetry of rings, where they are sought.
-    pub symmetry: Option<Cyclic>,
+    pub symmetry: Option<Symmetry>,
 }
 
 /// What is reported of the ranking.

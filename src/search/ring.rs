@@ -1,34 +1,75 @@
-//! Poses of rings off the grid: what the search's peaks become, and their climb among rings.
+//! Poses of rings off the grid: what the search's peaks become, and their climb among rings, about any axis or, of Dn, about those across a ring's own.
 
+use super::axes::{axes_radius, axis_set};
 use super::refine::{ClimbLimits, climb};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
 use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::{Cyclic, conjugated, conjugated_gradient};
-use nalgebra::Vector3;
+use knotdock_scoring::symmetry::{RingAxis, Symmetry, conjugated, conjugated_gradient};
+use nalgebra::{Unit, Vector3};
 
-/// The ring that climbs highest from `pose`, which the grid found, and its score with that of copies beyond the neighbours, by the fast path.
-pub(super) fn climb_ring(
-    symmetry: Cyclic,
-    field: &ReceptorField,
-    center: Vector3<f64>,
-    pose: &Pose,
-    limits: &ClimbLimits,
-) -> (Pose, f64) {
-    let (top, score) = climb(
-        symmetry.nearest(pose),
-        center,
-        limits,
-        |pose| whole(symmetry, field, center, pose),
-        |pose, turn, shift| conjugated(pose, center, turn, shift),
-    );
-    // Rounding adds up over the steps.
-    (symmetry.nearest(&top), score)
+/// The rings that are sought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rings {
+    /// How copies stand to each other.
+    pub symmetry: Symmetry,
+    /// The axis of the molecule's own ring, of Dn.
+    pub axis: Option<RingAxis>,
+}
+
+impl Rings {
+    /// Directions of axes to be searched, and the largest angle in radians from any that may be meant to the nearest of them.
+    pub fn axes(&self, count: usize) -> (Vec<Unit<Vector3<f64>>>, f64) {
+        match &self.axis {
+            Some(axis) => (axis.across(count), axis.half_step(count)),
+            None => {
+                let axes = axis_set(count);
+                let radius = axes_radius(&axes);
+                (axes, radius)
+            }
+        }
+    }
+
+    /// The pose of a ring that lies nearest to one of the grid.
+    pub fn nearest(&self, pose: &Pose) -> Pose {
+        match &self.axis {
+            Some(axis) => axis.nearest(pose),
+            None => self.symmetry.nearest(pose),
+        }
+    }
+
+    /// The ring that climbs highest from `pose`, which the grid found, and its score with that of copies beyond the neighbours, by the fast path.
+    pub fn climb(
+        &self,
+        field: &ReceptorField,
+        center: Vector3<f64>,
+        pose: &Pose,
+        limits: &ClimbLimits,
+    ) -> (Pose, f64) {
+        let (top, score) = climb(
+            self.nearest(pose),
+            center,
+            limits,
+            |pose| {
+                let (score, gradient) = whole(self.symmetry, field, center, pose);
+                match &self.axis {
+                    Some(axis) => (score, axis.along(center, &gradient)),
+                    None => (score, gradient),
+                }
+            },
+            |pose, turn, shift| match &self.axis {
+                Some(axis) => axis.moved(pose, turn, shift),
+                None => conjugated(pose, center, turn, shift),
+            },
+        );
+        // Rounding adds up over the steps.
+        (self.nearest(&top), score)
+    }
 }
 
 /// Score of a ring for each pair of neighbours, with its gradient by moves of the molecule under the axis.
 fn whole(
-    symmetry: Cyclic,
+    symmetry: Symmetry,
     field: &ReceptorField,
     center: Vector3<f64>,
     pose: &Pose,
@@ -50,7 +91,7 @@ fn whole(
 }
 
 /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
-pub(super) fn other_copies(symmetry: Cyclic, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
+pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
     let score = |(pose, pairs): (Pose, f64)| pairs * scorer.score_only(&pose);
     symmetry
         .has_beyond()
@@ -64,7 +105,7 @@ mod tests {
     use knotdock_scoring::engine::{Folded, Plan};
     use knotdock_scoring::lifted_axis::Fold;
     use knotdock_structures::Knots;
-    use nalgebra::{Unit, UnitQuaternion};
+    use nalgebra::UnitQuaternion;
 
     /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
     /// climb ends higher, on a ring.
@@ -82,10 +123,10 @@ mod tests {
         let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
         let field = ReceptorField::new(&plan, &folded, &knots);
         let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
-        let exact = |symmetry: Cyclic, pose: &Pose| {
+        let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
         };
-        let symmetry: Cyclic = "C4".parse().unwrap();
+        let symmetry: Symmetry = "C4".parse().unwrap();
         let axis = Unit::new_normalize(Vector3::new(0.4, -0.3, 0.9));
         let rotation = symmetry.rotation(&axis);
         let point = 3.4 * axis.cross(&Vector3::x()).normalize();
@@ -121,7 +162,11 @@ mod tests {
             gyration: 3.0,
             angstrom: 1.0,
         };
-        let (top, score) = climb_ring(symmetry, &field, center, &start, &limits);
+        let rings = Rings {
+            symmetry,
+            axis: None,
+        };
+        let (top, score) = rings.climb(&field, center, &start, &limits);
         assert!(symmetry.ring(&top).is_some());
         assert!(exact(symmetry, &top) > exact(symmetry, &start) + 1.0);
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());

@@ -13,7 +13,6 @@ use super::peaks::Peak;
 use super::plan::DockPlan;
 use super::ranking::{Judge, report};
 use super::refine::{ClimbLimits, climb, freely};
-use super::ring::climb_ring;
 use super::scan::{Chosen, all_rotations, choose_rank, scan};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
@@ -140,8 +139,8 @@ fn dock_in<T: Real>(
         })
         .collect();
 
-    let body = match options.symmetry {
-        Some(_) => RigidBody::new(points).in_ring(),
+    let body = match &plan.rings {
+        Some(rings) => RigidBody::new(points).in_ring(rings.axis.as_ref()),
         None => RigidBody::new(points),
     };
     let placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
@@ -242,11 +241,11 @@ fn refine<T: Real>(
         let Some(field) = field.as_ref().filter(|_| index < count) else {
             return Placed::best_of((printed(pose), peak.score), None);
         };
-        let placed = match plan.options.symmetry {
-            Some(symmetry) => {
-                let (top, score) = climb_ring(symmetry, field, center, pose, &limits);
+        let placed = match &plan.rings {
+            Some(rings) => {
+                let (top, score) = rings.climb(field, center, pose, &limits);
                 Placed {
-                    start: printed(&symmetry.nearest(pose)),
+                    start: printed(&rings.nearest(pose)),
                     pose: printed(&top),
                     score,
                     refined: true,

@@ -194,7 +194,7 @@ fn scan_on_cores<T: Real>(
     progress: &dyn Progress,
 ) -> Vec<Peak> {
     let options = &plan.options;
-    let rings = options.symmetry.map(|_| RingVoxels::new(engine));
+    let rings = plan.rings.map(|rings| RingVoxels::new(engine, rings.axis));
     let next = AtomicUsize::new(0);
     (0..plan.in_flight)
         .into_par_iter()

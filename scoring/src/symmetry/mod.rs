@@ -6,6 +6,11 @@
 //!
 //! A molecule that is moved by C under the axis, or an axis that is moved by C over the molecule, makes C M C^-1 of M: that is how a ring is
 //! varied without ceasing to be one.
+//!
+//! Dihedral symmetry Dn is a ring of two whose molecule is a ring of n itself: half a turn about an axis that crosses that ring's own at a right
+//! angle ([`RingAxis`]) lays one ring face to face with the other.
+
+mod ring_axis;
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,61 +18,77 @@ use std::str::FromStr;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
+pub use ring_axis::{NotARing, RingAxis};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Most copies in a ring: proteins with more are rare, and their neighbours are all but parallel.
 const MOST: usize = 24;
+/// Most copies in each of two rings.
+const MOST_FOLDS: usize = 12;
 /// How far from a ring's a pose may be: radians of its angle, and its slide along the axis in Å and besides as a share of how far it moves in all, which
 /// is far where the file's origin is.
 const OFF: f64 = 1e-6;
 
-/// Cyclic symmetry Cn: n copies about an axis.
+/// How copies of a molecule stand to each other: Cn, n of them about an axis, or Dn, two rings of n face to face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cyclic {
+pub struct Symmetry {
+    /// Molecules that a pose relates: of Dn the two rings.
     copies: usize,
+    /// Copies in each molecule: 1 of Cn.
+    folds: usize,
 }
 
 /// A text that is not C2, C3 and so on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no cyclic symmetry: C2 to C{MOST} are known")]
-pub struct CyclicError(String);
+#[error("'{0}' is no symmetry that is known: C2 to C{MOST} and D2 to D{MOST_FOLDS} are")]
+pub struct SymmetryError(String);
 
-impl FromStr for Cyclic {
-    type Err = CyclicError;
+impl FromStr for Symmetry {
+    type Err = SymmetryError;
 
-    fn from_str(text: &str) -> Result<Self, CyclicError> {
-        let copies = text
-            .strip_prefix(['C', 'c'])
-            .filter(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
-            .and_then(|digits| digits.parse().ok())
-            .filter(|copies| (2..=MOST).contains(copies));
-        copies
-            .map(|copies| Self { copies })
-            .ok_or_else(|| CyclicError(text.to_owned()))
+    fn from_str(text: &str) -> Result<Self, SymmetryError> {
+        let wrong = || SymmetryError(text.to_owned());
+        let (kind, digits) = text.split_at_checked(1).ok_or_else(wrong)?;
+        let count = (digits.bytes().all(|byte| byte.is_ascii_digit()))
+            .then(|| digits.parse().ok())
+            .flatten();
+        match (kind, count) {
+            ("C" | "c", Some(copies @ 2..=MOST)) => Ok(Self { copies, folds: 1 }),
+            ("D" | "d", Some(folds @ 2..=MOST_FOLDS)) => Ok(Self { copies: 2, folds }),
+            _ => Err(wrong()),
+        }
     }
 }
 
-impl fmt::Display for Cyclic {
+impl fmt::Display for Symmetry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "C{}", self.copies)
+        match self.folds {
+            1 => write!(f, "C{}", self.copies),
+            folds => write!(f, "D{folds}"),
+        }
     }
 }
 
-impl Serialize for Cyclic {
+impl Serialize for Symmetry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
 
-impl<'de> Deserialize<'de> for Cyclic {
+impl<'de> Deserialize<'de> for Symmetry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
         text.parse().map_err(serde::de::Error::custom)
     }
 }
 
-impl Cyclic {
-    /// Number of copies, n.
+impl Symmetry {
+    /// Copies in each of the two rings of Dn; `None` of Cn, whose copies are single molecules.
+    pub fn folds(self) -> Option<usize> {
+        (self.folds > 1).then_some(self.folds)
+    }
+
+    /// Number of copies of what is docked: n of Cn, of Dn the two rings.
     pub fn copies(self) -> usize {
         self.copies
     }
@@ -170,17 +191,17 @@ pub fn conjugated_gradient(
 mod tests {
     use super::*;
 
-    fn cyclic(text: &str) -> Cyclic {
+    fn cyclic(text: &str) -> Symmetry {
         text.parse().unwrap()
     }
 
     /// A pose of a ring with an axis somewhere.
-    fn some(symmetry: Cyclic) -> Pose {
+    fn some(symmetry: Symmetry) -> Pose {
         through(symmetry, Vector3::new(11.0, 4.0, -7.0))
     }
 
     /// A pose of a ring whose axis runs through a point.
-    fn through(symmetry: Cyclic, point: Vector3<f64>) -> Pose {
+    fn through(symmetry: Symmetry, point: Vector3<f64>) -> Pose {
         let axis = Unit::new_normalize(Vector3::new(0.3, -0.8, 0.5));
         let rotation = symmetry.rotation(&axis);
         Pose {
@@ -200,8 +221,16 @@ mod tests {
             assert_eq!(cyclic(&text).to_string(), text);
             assert_eq!(cyclic(&text.to_lowercase()).copies(), copies);
         }
-        for wrong in ["", "C", "3", "C1", "C0", "C25", "D2", "C+3", "C 3", "Ｃ3"] {
-            assert!(wrong.parse::<Cyclic>().is_err(), "{wrong}");
+        for folds in [2, 3, 12] {
+            let dihedral = cyclic(&format!("D{folds}"));
+            assert_eq!(dihedral.to_string(), format!("D{folds}"));
+            assert_eq!((dihedral.folds(), dihedral.copies()), (Some(folds), 2));
+        }
+        assert_eq!(cyclic("C4").folds(), None);
+        for wrong in [
+            "", "C", "3", "C1", "C0", "C25", "D1", "D13", "E2", "C+3", "C 3", "Ｃ3", "é",
+        ] {
+            assert!(wrong.parse::<Symmetry>().is_err(), "{wrong}");
         }
     }
 
@@ -209,7 +238,7 @@ mod tests {
     #[test]
     fn images_are_powers_and_close() {
         for copies in 2..=MOST {
-            let symmetry = Cyclic { copies };
+            let symmetry = Symmetry { copies, folds: 1 };
             let pose = some(symmetry);
             let images = symmetry.ring(&pose).unwrap();
             assert_eq!(images.len(), copies);
@@ -226,7 +255,7 @@ mod tests {
     #[test]
     fn rings_are_known_wherever_the_origin_lies() {
         for copies in [2, 3, 7, MOST] {
-            let symmetry = Cyclic { copies };
+            let symmetry = Symmetry { copies, folds: 1 };
             for scale in [0.0, 1e-12, 1e-6, 1.0, 1e6] {
                 let point = scale * Vector3::new(1.0, 0.7, -0.4);
                 let pose = through(symmetry, point);
@@ -242,7 +271,7 @@ mod tests {
     #[test]
     fn pairs_beyond_neighbours_are_counted_once() {
         for copies in 2..=MOST {
-            let symmetry = Cyclic { copies };
+            let symmetry = Symmetry { copies, folds: 1 };
             let beyond: f64 = symmetry
                 .beyond(&some(symmetry))
                 .map(|(_, pairs)| pairs)

@@ -1,70 +1,6 @@
-//! Rings: a known one is found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
+//! Cn: copies of one molecule about an axis.
 
-mod program;
-
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
-
-use assert_cmd::cargo::cargo_bin_cmd;
-use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::Cyclic;
-use knotdock_structures::molecule::{
-    Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
-};
-use nalgebra::{Unit, Vector3};
-use program::succeed;
-use serde_json::Value;
-
-type Row = BTreeMap<String, String>;
-
-fn example(name: &str) -> String {
-    format!(
-        "{}/structures/examples/1ppe_{name}.pdb",
-        env!("CARGO_MANIFEST_DIR")
-    )
-}
-
-fn molecule(path: &str) -> Molecule {
-    read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
-}
-
-fn rows(run: &Path) -> Vec<Row> {
-    let mut table = csv::Reader::from_path(run.join("poses.csv")).unwrap();
-    table.deserialize().map(Result::unwrap).collect()
-}
-
-fn number(row: &Row, column: &str) -> f64 {
-    row[column].parse().unwrap()
-}
-
-fn pose(row: &Row) -> Pose {
-    Pose::from_parts(
-        ["qw", "qx", "qy", "qz"].map(|column| number(row, column)),
-        ["tx", "ty", "tz"].map(|column| number(row, column)),
-    )
-}
-
-fn cyclic(text: &str) -> Cyclic {
-    text.parse().unwrap()
-}
-
-/// Root mean square distance of a molecule's atoms in two poses.
-fn rmsd(molecule: &Molecule, a: &Pose, b: &Pose) -> f64 {
-    let squares = molecule.atoms.iter().map(|atom| {
-        let [a, b] = [a, b].map(|pose| Vector3::from(pose.apply(atom.position)));
-        (a - b).norm_squared()
-    });
-    (squares.sum::<f64>() / molecule.atoms.len() as f64).sqrt()
-}
-
-fn center(molecule: &Molecule) -> Vector3<f64> {
-    let positions = molecule
-        .atoms
-        .iter()
-        .map(|atom| Vector3::from(atom.position));
-    positions.sum::<Vector3<f64>>() / molecule.atoms.len() as f64
-}
+use super::*;
 
 /// Trypsin with the inhibitor of its neighbour in a ring of two: each then holds the other's inhibitor, as the complex has it, and no fit is as good.
 #[test]
@@ -72,12 +8,12 @@ fn a_ring_that_is_known_to_fit_is_found_first() {
     let folder = tempfile::tempdir().unwrap();
     let [trypsin, inhibitor] =
         ["receptor_bound", "ligand_bound"].map(|name| molecule(&example(name)));
-    let (symmetry, from) = (cyclic("C2"), center(&trypsin));
+    let (pair, from) = (symmetry("C2"), center(&trypsin));
     let out = (center(&inhibitor) - from).normalize();
     // An axis behind the inhibitor, so far that its images stand clear of each other.
     let axis = Unit::new_normalize(out.cross(&Vector3::new(0.3, 0.5, -0.8)));
     let point = center(&inhibitor) + 14.0 * out;
-    let rotation = symmetry.rotation(&axis);
+    let rotation = pair.rotation(&axis);
     let known = Pose {
         rotation,
         translation: point - rotation * point,
@@ -133,7 +69,7 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         assert_eq!(told["run"]["options"]["rotations"], 40);
         assert!(rows.len() > 20);
         for row in &rows {
-            assert!(cyclic(name).ring(&pose(row)).is_some(), "{name}");
+            assert!(symmetry(name).ring(&pose(row)).is_some(), "{name}");
         }
         for (index, row) in rows.iter().enumerate() {
             let of_cluster = |other: &&Row| {
@@ -216,14 +152,9 @@ fn all_copies_are_written_and_runs_repeat() {
     let mut fields: Vec<&str> = row.split(',').collect();
     fields[10] = "99";
     fs::write(at("run/poses.csv"), text.replace(row, &fields.join(","))).unwrap();
-    let refused = cargo_bin_cmd!("knotdock")
-        .current_dir(folder.path())
-        .args("complex run --rank 1 -o never".split(' '))
-        .output()
-        .unwrap();
-    assert_eq!(refused.status.code(), Some(2));
+    let told = refused(folder.path(), "complex run --rank 1 -o never");
     assert!(!at("never").exists());
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("no ring of C5"));
+    assert!(told.contains("no ring of C5"));
 }
 
 /// Residues that are named are those of every copy, and poses that touch them rank first.
@@ -266,9 +197,9 @@ fn a_batch_holds_rings_too() {
         "batch pairs.csv -o runs --quiet -- --rotations 12 --effects shape".split(' '),
     );
     let ring = rows(&folder.path().join("runs/a_C3"));
-    assert!(cyclic("C3").ring(&pose(&ring[0])).is_some());
+    assert!(symmetry("C3").ring(&pose(&ring[0])).is_some());
     let pair = rows(&folder.path().join("runs/a_a"));
-    assert!(cyclic("C3").ring(&pose(&pair[0])).is_none());
+    assert!(symmetry("C3").ring(&pose(&pair[0])).is_none());
 }
 
 #[test]
@@ -279,8 +210,8 @@ fn what_no_ring_can_have_is_refused() {
     fs::copy(bunny, folder.path().join("a.obj")).unwrap();
     for (options, said) in [
         ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
-        ("a.pdb --symmetry D2", "no cyclic symmetry"),
-        ("a.pdb --symmetry C1", "no cyclic symmetry"),
+        ("a.pdb --symmetry T", "no symmetry"),
+        ("a.pdb --symmetry C1", "no symmetry"),
         ("a.pdb --symmetry C3 --angle 12", "cannot be used with"),
         ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
@@ -297,15 +228,7 @@ fn what_no_ring_can_have_is_refused() {
         ("a.obj --symmetry C3", "this is a mesh"),
         ("a.pdb", "LIGAND"),
     ] {
-        let mut arguments = vec!["dock"];
-        arguments.extend(options.split(' '));
-        let output = cargo_bin_cmd!("knotdock")
-            .current_dir(folder.path())
-            .args(arguments)
-            .output()
-            .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{options}: {told}");
+        let told = refused(folder.path(), &format!("dock {options}"));
         assert!(told.contains(said), "{options}: {told}");
     }
 }
