@@ -140,7 +140,10 @@ impl Bodies {
                     .remedy("leave them out: the balls of a molecule are its atoms"));
                 }
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                Prepared::molecules(molecules, options).map_err(refused)
+                Prepared::molecules(molecules, options).map_err(|error| match error {
+                    SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
+                    error => refused(error),
+                })
             }
             Self::Meshes(_) if options.symmetry.is_some() => Err(Failure::input(
                 "--symmetry makes rings of a molecule, and this is a mesh",

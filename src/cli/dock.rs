@@ -34,7 +34,7 @@ pub struct Dock {
     ligand: Option<String>,
     /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is itself a ring of 2, 3 ...
     /// copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where the second copy or ring goes. Residues that
-    /// --block-receptor and --attract-receptor name are those of every copy.
+    /// --block-receptor and --attract-receptor name are those of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn", conflicts_with_all = NO_RING)]
     symmetry: Option<Symmetry>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].

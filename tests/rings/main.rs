@@ -1,0 +1,82 @@
+//! Rings: known ones are found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
+
+mod cyclic;
+mod dihedral;
+#[path = "../program/mod.rs"]
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::symmetry::Symmetry;
+use knotdock_structures::molecule::{
+    Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
+};
+use nalgebra::{Unit, Vector3};
+use program::succeed;
+use serde_json::Value;
+
+type Row = BTreeMap<String, String>;
+
+fn example(name: &str) -> String {
+    format!(
+        "{}/structures/examples/1ppe_{name}.pdb",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+fn molecule(path: &str) -> Molecule {
+    read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
+}
+
+fn rows(run: &Path) -> Vec<Row> {
+    let mut table = csv::Reader::from_path(run.join("poses.csv")).unwrap();
+    table.deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+fn pose(row: &Row) -> Pose {
+    Pose::from_parts(
+        ["qw", "qx", "qy", "qz"].map(|column| number(row, column)),
+        ["tx", "ty", "tz"].map(|column| number(row, column)),
+    )
+}
+
+fn symmetry(text: &str) -> Symmetry {
+    text.parse().unwrap()
+}
+
+/// Root mean square distance of a molecule's atoms in two poses.
+fn rmsd(molecule: &Molecule, a: &Pose, b: &Pose) -> f64 {
+    let squares = molecule.atoms.iter().map(|atom| {
+        let [a, b] = [a, b].map(|pose| Vector3::from(pose.apply(atom.position)));
+        (a - b).norm_squared()
+    });
+    (squares.sum::<f64>() / molecule.atoms.len() as f64).sqrt()
+}
+
+fn center(molecule: &Molecule) -> Vector3<f64> {
+    let positions = molecule
+        .atoms
+        .iter()
+        .map(|atom| Vector3::from(atom.position));
+    positions.sum::<Vector3<f64>>() / molecule.atoms.len() as f64
+}
+
+/// What is said of a command that is bad input.
+fn refused(folder: &Path, command: &str) -> String {
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args(command.split(' '))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{command}: {told}");
+    told
+}
