@@ -45,6 +45,9 @@ pub(super) struct Ranking {
 /// T as a share of the run's best score.
 const CLUSTER_TEMPERATURE: f64 = 0.1;
 
+/// Most rows that a thread takes at once: refined ones take longer and come first.
+const ROWS_TOGETHER: usize = 8;
+
 /// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
 /// clusters are numbered; ties in the order given.
 ///
@@ -79,6 +82,7 @@ pub(super) fn report(
     progress.stage("score", wanted.len() as u64);
     let mut rows: Vec<(RankedPose, usize)> = wanted
         .into_par_iter()
+        .with_max_len(ROWS_TOGETHER)
         .map(|(candidate, cluster)| {
             let row = candidate.reported(judge);
             progress.advance(1);

@@ -41,6 +41,9 @@ const MERGE_SPACINGS: f64 = 0.25;
 /// Of refined poses of a cluster that are closer than this many spacings one is listed.
 const LIST_SPACINGS: f64 = 1.0;
 
+/// Most climbs that a thread takes at once.
+const CLIMBS_TOGETHER: usize = 4;
+
 struct Clock {
     stages: Vec<StageTime>,
     wall: Instant,
@@ -260,8 +263,9 @@ fn refine<T: Real>(
         progress.advance(1);
         placed
     };
+    // Those that climb come first, so long shares would leave some threads without any.
     let places = peaks.par_iter().zip(grid_poses).enumerate();
-    places.map(place).collect()
+    places.with_max_len(CLIMBS_TOGETHER).map(place).collect()
 }
 
 /// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.
