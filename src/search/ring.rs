@@ -102,10 +102,17 @@ pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose
 mod tests {
     use super::*;
     use crate::search::DockOptions;
+    use crate::search::correlator::Correlator;
+    use crate::search::plan::plan;
+    use crate::search::restraints::tests::peptide;
+    use crate::search::run::Progress;
+    use crate::search::scan::{all_rotations, choose_rank, scan};
     use knotdock_scoring::engine::{Folded, Plan};
     use knotdock_scoring::lifted_axis::Fold;
     use knotdock_structures::Knots;
+    use knotdock_structures::molecule::{Format, Molecule};
     use nalgebra::UnitQuaternion;
+    use std::f64::consts::PI;
 
     /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
     /// climb ends higher, on a ring.
@@ -170,5 +177,77 @@ mod tests {
         assert!(symmetry.ring(&top).is_some());
         assert!(exact(symmetry, &top) > exact(symmetry, &start) + 1.0);
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
+    }
+
+    struct Silent;
+    impl Progress for Silent {
+        fn stage(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64) {}
+    }
+
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the climb from one ends where neither a turn about that axis nor a
+    /// shift along it gains anything by the exact sum.
+    #[test]
+    fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
+        let turn = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+        let strand = |chain: &str, angle: f64| {
+            let tilt = UnitQuaternion::new(Vector3::new(0.2, -0.5, 0.3));
+            let place = |x| turn(angle) * (tilt * x + Vector3::new(2.0, 6.0, 1.0));
+            let mut strand = peptide(4.0).map_positions(|x| place(Vector3::from(x)).into());
+            strand
+                .atoms
+                .iter_mut()
+                .for_each(|atom| atom.chain = chain.to_owned());
+            strand.atoms
+        };
+        let atoms = [strand("A", 0.0), strand("B", PI)].concat();
+        let ring = Molecule::new(atoms, Format::Pdb);
+        // Off the file's origin.
+        let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
+        let options = DockOptions {
+            symmetry: Some("D2".parse().unwrap()),
+            rotations: 12,
+            threads: 1,
+            ..DockOptions::default()
+        };
+        let plan = plan(&ring, &ring, &options).unwrap();
+        let rings = plan.rings.unwrap();
+        let folded = Folded::<f32>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
+        let engine = Correlator::new(&plan, choose_rank(&plan, &folded).engine).unwrap();
+        let peaks = scan(&plan, &engine, &all_rotations(&plan), 20, &Silent).unwrap();
+        assert_eq!(peaks.len(), 20);
+        let center = plan.engine.ligand_center;
+        let starts: Vec<Pose> = peaks
+            .iter()
+            .map(|peak| {
+                let place = plan.engine.receptor_center + engine.cpu.position(peak.voxel as usize);
+                Pose::about(plan.rotation(peak.rotation as usize).0, center, place)
+            })
+            .collect();
+        for start in &starts {
+            let off = rings.nearest(start).translation - start.translation;
+            assert!(off.norm() < 1.8 * plan.spacing, "{off}");
+        }
+
+        let field = ReceptorField::new(&plan.engine, &folded, &plan.ligand);
+        let scorer = plan.exact_scorer().unwrap();
+        let limits = ClimbLimits {
+            evaluations: 60,
+            distance: 6.0,
+            angle: 0.5,
+            gyration: 8.0,
+            angstrom: 1.0,
+        };
+        let (top, _) = rings.climb(&field, center, &starts[4], &limits);
+        let highest = scorer.score_only(&top);
+        assert!(highest > scorer.score_only(&rings.nearest(&starts[4])) + 1.0);
+        for sign in [-1.0, 1.0] {
+            let aside = [(sign * 0.05, 0.0), (0.0, sign * 0.3)];
+            for (turned, shifted) in aside {
+                let shift = Vector3::new(0.0, 0.0, shifted);
+                let moved = rings.axis.unwrap().moved(&top, turn(turned), shift);
+                assert!(scorer.score_only(&moved) < highest, "{turned} {shifted}");
+            }
+        }
     }
 }

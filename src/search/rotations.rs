@@ -189,7 +189,7 @@ const LANES: usize = 8;
 /// Largest angle in radians from any rotation to the nearest of the set: measured by climbing away from the set from a fixed
 /// sample of starts, so a lower bound that is within a few per cent.
 pub fn covering_radius(set: &[UnitQuaternion<f64>]) -> f64 {
-    // |q.p| is the cosine of half the angle. Eight points at a time, component by component, fill vector registers; the last ones are there twice.
+    // |q.p| is the cosine of half the angle. Eight points at a time, component by component, fill vector registers; the last one fills what is left.
     let points: Vec<[[f32; LANES]; 4]> = set
         .chunks(LANES)
         .map(|chunk| {
