@@ -1,37 +1,39 @@
-//! Receptor knots in compact blocks of eight, side by side for vector registers, and the blocks within reach of a point.
+//! Receptor knots in compact blocks of eight, side by side for vector registers, and the knots within reach of a point.
 //!
 //! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last branch, so
-//! sixteen blocks in a row share a branch: one box test passes or drops them all.
+//! sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass, those knots that lie
+//! within reach are listed one after another, so that what follows, which costs more, is done for none but these.
 
+use super::near::{Near, vectors, vectors_mut};
 use nalgebra::Vector3;
+use pulp::Simd;
 
 /// Knots in a block.
 pub(super) const LANES: usize = 8;
 /// Blocks in a group.
 const GROUP: usize = 16;
-/// Blocks that are listed before they are handed on.
-const LISTED: usize = 256;
 
-/// Eight neighbouring knots; where fewer are left, copies of the last with weight 0 fill it.
+/// Eight neighbouring knots; where fewer are left, places infinitely far away fill it.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+struct Block {
     /// [axis][knot], relative to the receptor's centre, in Å.
-    pub positions: [[f64; LANES]; 3],
-    pub weights: [f64; LANES],
-    /// Radius classes.
-    pub classes: [u32; LANES],
+    positions: [[f64; LANES]; 3],
 }
 
 impl Block {
     /// Squared distances in Å^2 to a point.
     #[inline(always)]
-    pub fn squares(&self, x: &[f64; 3]) -> [f64; LANES] {
+    fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; LANES] {
         let mut squares = [0.0; LANES];
-        for (positions, x) in self.positions.iter().zip(x) {
-            for (square, position) in squares.iter_mut().zip(positions) {
-                let d = x - position;
-                *square += d * d;
-            }
+        let [xs, ys, zs] = self.positions.each_ref().map(|own| vectors::<S>(own));
+        for (index, square) in vectors_mut::<S>(&mut squares).iter_mut().enumerate() {
+            let [x, y, z] = [
+                simd.sub_f64s(x[0], xs[index]),
+                simd.sub_f64s(x[1], ys[index]),
+                simd.sub_f64s(x[2], zs[index]),
+            ];
+            let sum = simd.mul_add_e_f64s(y, y, simd.mul_f64s(x, x));
+            *square = simd.mul_add_e_f64s(z, z, sum);
         }
         squares
     }
@@ -45,6 +47,29 @@ struct Group {
     block_high: [[f64; GROUP]; 3],
 }
 
+impl Group {
+    /// Squared distances in Å^2 of a point to its blocks' boxes.
+    #[inline(always)]
+    fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; GROUP] {
+        let mut squares = [0.0; GROUP];
+        let zero = simd.splat_f64s(0.0);
+        let lows = self.block_low.each_ref().map(|own| vectors::<S>(own));
+        let highs = self.block_high.each_ref().map(|own| vectors::<S>(own));
+        for (index, square) in vectors_mut::<S>(&mut squares).iter_mut().enumerate() {
+            let mut gaps = [zero; 3];
+            for axis in 0..3 {
+                let below = simd.sub_f64s(lows[axis][index], x[axis]);
+                let above = simd.sub_f64s(x[axis], highs[axis][index]);
+                gaps[axis] = simd.max_f64s(simd.max_f64s(below, above), zero);
+            }
+            let [x, y, z] = gaps;
+            let sum = simd.mul_add_e_f64s(y, y, simd.mul_f64s(x, x));
+            *square = simd.mul_add_e_f64s(z, z, sum);
+        }
+        squares
+    }
+}
+
 /// All knots of a receptor.
 pub(super) struct Blocks {
     blocks: Vec<Block>,
@@ -54,21 +79,19 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    pub fn new(points: &[Vector3<f64>], weights: &[f64], classes: &[usize]) -> Self {
+    pub fn new(points: &[Vector3<f64>]) -> Self {
         let mut order: Vec<usize> = (0..points.len()).collect();
         halve(points, &mut order);
         let blocks: Vec<Block> = order
             .chunks(LANES)
-            .map(|members| {
-                let member = |lane: usize| members[lane.min(members.len() - 1)];
-                Block {
-                    positions: [0, 1, 2]
-                        .map(|axis| std::array::from_fn(|lane| points[member(lane)][axis])),
-                    weights: std::array::from_fn(|lane| {
-                        members.get(lane).map_or(0.0, |&index| weights[index])
-                    }),
-                    classes: std::array::from_fn(|lane| classes[member(lane)] as u32),
-                }
+            .map(|members| Block {
+                positions: [0, 1, 2].map(|axis| {
+                    std::array::from_fn(|lane| {
+                        members
+                            .get(lane)
+                            .map_or(f64::INFINITY, |&index| points[index][axis])
+                    })
+                }),
             })
             .collect();
         let groups = blocks
@@ -78,7 +101,8 @@ impl Blocks {
                     [0, 1, 2].map(|axis| {
                         std::array::from_fn::<f64, GROUP, _>(|index| {
                             members.get(index).map_or(start, |block| {
-                                block.positions[axis].iter().copied().fold(start, of)
+                                let places = block.positions[axis].into_iter();
+                                places.filter(|x| x.is_finite()).fold(start, of)
                             })
                         })
                     })
@@ -101,59 +125,61 @@ impl Blocks {
         }
     }
 
-    /// Something of each knot, laid out as the blocks are, `filler` where a block is not full.
-    pub fn arranged<L: Copy>(&self, filler: L, of: impl Fn(usize) -> L) -> Vec<[L; LANES]> {
-        self.order
-            .chunks(LANES)
-            .map(|members| {
-                std::array::from_fn(|lane| members.get(lane).map_or(filler, |&index| of(index)))
-            })
-            .collect()
+    /// Where a knot is, by its place in the order of the blocks, relative to the receptor's centre, in Å.
+    #[inline(always)]
+    pub fn position(&self, knot: u32) -> [f64; 3] {
+        let (index, lane) = (knot as usize / LANES, knot as usize % LANES);
+        self.blocks.get(index).map_or([f64::INFINITY; 3], |block| {
+            block.positions.map(|of| of[lane])
+        })
     }
 
-    /// Visits the blocks whose boxes lie within `reach` of `x`, with their indices, always in the same order.
-    ///
-    /// Whether a box is within reach is a coin toss that no branch predictor wins, so blocks are listed always and counted only
-    /// when near.
+    /// Something of each knot, in the order of the blocks.
+    pub fn arranged<L>(&self, of: impl Fn(usize) -> L) -> Vec<L> {
+        self.order.iter().map(|&index| of(index)).collect()
+    }
+
+    /// Lists the knots within `reach` of `x`, a part at a time and always in the same order, and visits each part.
     #[inline(always)]
-    pub fn near(&self, x: &[f64; 3], reach: f64, mut visit: impl FnMut(usize, &Block)) {
+    pub fn near<S: Simd>(
+        &self,
+        simd: S,
+        x: &[f64; 3],
+        reach: f64,
+        near: &mut Near,
+        mut visit: impl FnMut(&Near),
+    ) {
         let square_reach = reach * reach;
-        let mut listed = [0u32; LISTED + GROUP];
-        let mut groups = self.groups.iter().zip((0u32..).step_by(GROUP));
-        loop {
-            let mut count = 0;
-            for (group, first) in groups.by_ref() {
-                let square: f64 = (0..3)
-                    .map(|axis| gap(x[axis], group.low[axis], group.high[axis]).powi(2))
-                    .sum();
-                if square >= square_reach {
-                    continue;
-                }
-                let mut squares = [0.0; GROUP];
-                for axis in 0..3 {
-                    let (lows, highs) = (&group.block_low[axis], &group.block_high[axis]);
-                    for (square, (low, high)) in squares.iter_mut().zip(lows.iter().zip(highs)) {
-                        let gap = gap(x[axis], *low, *high);
-                        *square += gap * gap;
-                    }
-                }
-                for (square, block) in squares.into_iter().zip(first..) {
-                    listed[count] = block;
-                    count += usize::from(square < square_reach);
-                }
-                if count >= LISTED {
+        let everywhere = x.map(|x| simd.splat_f64s(x));
+        near.clear();
+        for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
+            let square: f64 = (0..3)
+                .map(|axis| gap(x[axis], group.low[axis], group.high[axis]).powi(2))
+                .sum();
+            if square >= square_reach {
+                continue;
+            }
+            let mut within = 0u32;
+            for (index, square) in group.squares(simd, &everywhere).into_iter().enumerate() {
+                within |= u32::from(square < square_reach) << index;
+            }
+            while within != 0 {
+                let index = first + within.trailing_zeros();
+                within &= within - 1;
+                let Some(block) = self.blocks.get(index as usize) else {
                     break;
+                };
+                if near.is_full() {
+                    near.fill();
+                    visit(near);
+                    near.clear();
                 }
-            }
-            for &index in &listed[..count] {
-                if let Some(block) = self.blocks.get(index as usize) {
-                    visit(index as usize, block);
-                }
-            }
-            if count < LISTED {
-                return;
+                let squares = block.squares(simd, &everywhere);
+                near.add(index * LANES as u32, &squares, square_reach);
             }
         }
+        near.fill();
+        visit(near);
     }
 }
 
@@ -194,6 +220,7 @@ fn halve(points: &[Vector3<f64>], members: &mut [usize]) {
 mod tests {
     use super::*;
     use crate::test_support::Numbers;
+    use pulp::Scalar;
 
     /// Every knot within reach must be visited, once, whatever the crowd: a spread cloud, coincident knots (no axis to halve
     /// along), knots 1e6 Å apart (boxes that a cell list could not hold), and counts around the sizes of blocks and groups.
@@ -206,25 +233,23 @@ mod tests {
                 let points: Vec<Vector3<f64>> = (0..count)
                     .map(|_| Vector3::new(spread * next(), spread * next(), spread * next()))
                     .collect();
-                let weights: Vec<f64> = (0..count).map(|i| f64::from(i) + 1.0).collect();
-                let blocks = Blocks::new(&points, &weights, &vec![0; points.len()]);
+                let blocks = Blocks::new(&points);
+                let numbers = blocks.arranged(|index| index);
                 for from in [points[0], points[0] + Vector3::new(3.0, -4.0, 5.0)] {
                     let reach = 9.0;
                     let x = from.into();
                     let mut found = Vec::new();
-                    blocks.near(&x, reach, |_, block| {
-                        for (square, weight) in block.squares(&x).iter().zip(block.weights) {
-                            if *square < reach * reach && weight > 0.0 {
-                                found.push(weight);
-                            }
+                    blocks.near(Scalar, &x, reach, &mut Near::new(), |near| {
+                        for (square, knot) in near.pairs() {
+                            let number = numbers[knot as usize];
+                            let distance = (from - points[number]).norm_squared();
+                            assert!((square - distance).abs() <= 1e-12 * distance);
+                            found.push(number);
                         }
                     });
-                    found.sort_by(f64::total_cmp);
-                    let expected: Vec<f64> = points
-                        .iter()
-                        .zip(&weights)
-                        .filter(|(point, _)| (from - *point).norm() < reach)
-                        .map(|(_, &weight)| weight)
+                    found.sort_unstable();
+                    let expected: Vec<usize> = (0..points.len())
+                        .filter(|&index| (from - points[index]).norm() < reach)
                         .collect();
                     assert_eq!(found, expected, "{count} knots over {spread} Å");
                 }

@@ -1,26 +1,25 @@
 //! The score's gradient over the six degrees of freedom of a pose.
 
 use super::blocks::LANES;
+use super::near::Near;
 use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 
 impl ExactScorer {
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        vectorized(
-            #[inline(always)]
-            || self.gradient_inline(pose),
-        )
+        Arch::new().dispatch(Gradient { scorer: self, pose })
     }
 
     #[inline(always)]
-    fn gradient_inline(&self, pose: &Pose) -> (f64, PoseGradient) {
+    fn gradient_with<S: Simd>(&self, simd: S, pose: &Pose) -> (f64, PoseGradient) {
         let (rotation, center) = self.placed(pose);
         let mut score = 0.0;
         let mut gradient = PoseGradient::default();
+        let mut near = Near::new();
         for (index, knot) in self.ligand.iter().enumerate() {
             let arm = rotation * knot.position;
             let x: [f64; 3] = (arm + center).into();
@@ -28,38 +27,48 @@ impl ExactScorer {
             let mut value = 0.0;
             let mut force = [0.0; 3];
             self.receptor.near(
+                simd,
                 &x,
                 self.kernel.reach(),
+                &mut near,
                 #[inline(always)]
-                |number, block| {
-                    let squares = block.squares(&x);
-                    let places = self.tables.place(&squares);
-                    for lane in 0..LANES {
-                        let (panel, u) = (places.panels[lane], places.offsets[lane]);
-                        let start = starts.get(block.classes[lane] as usize).copied();
-                        let line = self
-                            .tables
-                            .scores()
-                            .get((start.unwrap_or(0) + panel) as usize);
-                        let Some(line) = line else {
-                            continue;
-                        };
-                        let (kernel, slope) = value_and_slope(line, u);
-                        let weight = knot.weight * block.weights[lane];
-                        let (mut kernel, mut slope) = (weight * kernel, weight * slope);
-                        for term in &self.effects {
-                            let weight = term.weight(index, number, lane);
-                            let (more, steeper) = value_and_slope(term.line(panel), u);
-                            kernel += weight * more;
-                            slope += weight * steeper;
-                        }
-                        value += kernel;
-                        let distance = squares[lane].sqrt();
-                        // Coincident knots: the kernel is even and smooth there, so its force is zero.
-                        if distance > 0.0 {
-                            let pull = slope / distance;
-                            for axis in 0..3 {
-                                force[axis] += (x[axis] - block.positions[axis][lane]) * pull;
+                |near| {
+                    for (squares, knots) in near.eights() {
+                        let places = self.tables.place(simd, squares);
+                        for lane in 0..LANES {
+                            let (panel, u) = (places.panel(lane), places.low(lane)[1]);
+                            let Some(other) = self.knots.get(knots[lane] as usize) else {
+                                continue;
+                            };
+                            let start = starts.get(other.class as usize).copied();
+                            let line = self
+                                .tables
+                                .scores()
+                                .get((start.unwrap_or(0) + panel) as usize);
+                            let Some(line) = line else {
+                                continue;
+                            };
+                            let (kernel, slope) = value_and_slope(line, u);
+                            let weight = knot.weight * other.weight;
+                            let (mut kernel, mut slope) = (weight * kernel, weight * slope);
+                            for term in &self.effects {
+                                let Some((value, row)) = term.of(index) else {
+                                    continue;
+                                };
+                                let weight = value * term.weight(knots[lane], row);
+                                let (more, steeper) = value_and_slope(term.line(panel), u);
+                                kernel += weight * more;
+                                slope += weight * steeper;
+                            }
+                            value += kernel;
+                            let distance = squares[lane].sqrt();
+                            // Coincident knots: the kernel is even and smooth there, so its force is zero.
+                            if distance > 0.0 && distance.is_finite() {
+                                let pull = slope / distance;
+                                let position = self.receptor.position(knots[lane]);
+                                for axis in 0..3 {
+                                    force[axis] += (x[axis] - position[axis]) * pull;
+                                }
                             }
                         }
                     }
@@ -71,6 +80,21 @@ impl ExactScorer {
             gradient.torque += arm.cross(&force);
         }
         (score, gradient)
+    }
+}
+
+/// Score and gradient of a pose.
+struct Gradient<'a> {
+    scorer: &'a ExactScorer,
+    pose: &'a Pose,
+}
+
+impl WithSimd for Gradient<'_> {
+    type Output = (f64, PoseGradient);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        self.scorer.gradient_with(simd, self.pose)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The exact score: the pair sum over all knots in f64, with its gradient over the six degrees of freedom.
 //!
-//! O(ligand knots x receptor knots within reach): receptor knots lie in compact blocks of eight, and only blocks that come within
-//! reach of a ligand knot are summed. Kernels come from tables over distance that follow the ranking kernel to about 1e-9 of its
+//! O(ligand knots x receptor knots within reach): receptor knots lie in compact blocks of eight, and of the blocks that come within
+//! reach of a ligand knot only the knots within reach are summed. Kernels come from tables over distance that follow the ranking kernel to about 1e-9 of its
 //! largest value; `unfiltered` evaluates B&I's own kernel directly. Lengths in Å; positions are taken relative to the middles of
 //! the two sets, so that large file coordinates cost no digits. Sums run in one fixed order.
 
@@ -11,6 +11,7 @@
 mod blocks;
 mod effects;
 mod gradient;
+mod near;
 mod score;
 mod tables;
 #[cfg(test)]
@@ -53,6 +54,8 @@ pub struct ExactScorer {
     kernel: RankingKernel,
     tables: PairTables,
     receptor: Blocks,
+    /// The receptor's knots, in the order of its blocks.
+    knots: Vec<ReceptorKnot>,
     /// Terms beside shape.
     effects: Vec<PairTerm>,
     receptor_center: Vector3<f64>,
@@ -60,6 +63,13 @@ pub struct ExactScorer {
     ligand_center: Vector3<f64>,
     /// Largest radius sum and twice the offset, Å: B&I's own kernel is 0 from there on.
     unfiltered_reach: f64,
+}
+
+#[derive(Clone, Copy)]
+struct ReceptorKnot {
+    weight: f64,
+    /// Radius class.
+    class: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -104,16 +114,19 @@ impl ExactScorer {
             .iter()
             .map(|&x| Vector3::from(x) - receptor_center)
             .collect();
-        let weights: Vec<f64> = receptor.weights.iter().map(|c| c.re).collect();
         let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
         let tables = PairTables::new(kernel, &receptor_radii, &ligand_radii);
-        let blocks = Blocks::new(&points, &weights, &receptor_class);
+        let blocks = Blocks::new(&points);
         Ok(Self {
             effects: effects
                 .iter()
                 .map(|active| PairTerm::new(active, &tables, &blocks))
                 .collect(),
             tables,
+            knots: blocks.arranged(|index| ReceptorKnot {
+                weight: receptor.weights[index].re,
+                class: receptor_class[index] as u32,
+            }),
             receptor: blocks,
             receptor_center,
             ligand: (0..ligand.len())

@@ -6,8 +6,10 @@
 //! coefficients, so the score alone and the score from the slices differ by rounding only.
 
 use super::blocks::LANES;
+use super::near::{vectors, vectors_mut};
 use crate::kernel::RankingKernel;
 use crate::kernel::table::{PanelFit, TERMS};
+use pulp::Simd;
 
 /// Coefficients of one polynomial, by rising power of u.
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +37,30 @@ pub(super) struct PairTables {
 /// Where eight distances fall in a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places {
-    pub panels: [u32; LANES],
-    /// Way from the middle of the panel, in panel widths, within [-1/2, 1/2].
-    pub offsets: [f64; LANES],
+    /// Numbers of panels, in the low bits.
+    panels: [f64; LANES],
+    /// Ways u from the middle of the panel, in panel widths, within [-1/2, 1/2], and u^2, u^3, u^4.
+    powers: [[f64; LANES]; 4],
+}
+
+impl Places {
+    #[inline(always)]
+    pub fn panel(&self, lane: usize) -> u32 {
+        self.panels[lane].to_bits() as u32
+    }
+
+    /// 1, u, u^2, u^3.
+    #[inline(always)]
+    pub fn low(&self, lane: usize) -> [f64; 4] {
+        let [first, square, cube, _] = &self.powers;
+        [1.0, first[lane], square[lane], cube[lane]]
+    }
+
+    /// u^4.
+    #[inline(always)]
+    pub fn fourth(&self, lane: usize) -> f64 {
+        self.powers[3][lane]
+    }
 }
 
 impl PairTables {
@@ -137,22 +160,26 @@ impl PairTables {
 
     /// Panels and arguments of squared distances.
     #[inline(always)]
-    pub fn place(&self, squares: &[f64; LANES]) -> Places {
+    pub fn place<S: Simd>(&self, simd: S, squares: &[f64; LANES]) -> Places {
         let mut places = Places {
-            panels: [0; LANES],
-            offsets: [0.0; LANES],
+            panels: [0.0; LANES],
+            powers: [[0.0; LANES]; 4],
         };
-        for lane in 0..LANES {
-            let scaled = squares[lane].sqrt() * self.panels_per_unit;
-            // Not `min`: a comparison sends NaN to the zeros as well, in one instruction.
-            let scaled = if scaled < self.last {
-                scaled
-            } else {
-                self.last
-            };
-            let rounded = scaled + ROUNDING;
-            places.panels[lane] = rounded.to_bits() as u32;
-            places.offsets[lane] = scaled - (rounded - ROUNDING);
+        let [first, second, third, fourth] = places.powers.each_mut();
+        let per_unit = simd.splat_f64s(self.panels_per_unit);
+        let last = simd.splat_f64s(self.last);
+        let rounding = simd.splat_f64s(ROUNDING);
+        for (index, &square) in vectors::<S>(squares).iter().enumerate() {
+            let scaled = simd.mul_f64s(simd.sqrt_f64s(square), per_unit);
+            let scaled = simd.min_f64s(scaled, last);
+            let rounded = simd.add_f64s(scaled, rounding);
+            let u = simd.sub_f64s(scaled, simd.sub_f64s(rounded, rounding));
+            let square = simd.mul_f64s(u, u);
+            vectors_mut::<S>(&mut places.panels)[index] = rounded;
+            vectors_mut::<S>(first)[index] = u;
+            vectors_mut::<S>(second)[index] = square;
+            vectors_mut::<S>(third)[index] = simd.mul_f64s(square, u);
+            vectors_mut::<S>(fourth)[index] = simd.mul_f64s(square, square);
         }
         places
     }
