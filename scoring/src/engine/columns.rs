@@ -1,5 +1,6 @@
 //! Products of columns of modes, the ligand's read as a half-turn of the grid leaves it.
 
+use super::packed::{Packet, products};
 use crate::se3::HalfTurn;
 use crate::transform::Real;
 use num_complex::Complex;
@@ -10,7 +11,7 @@ pub(super) struct Reading {
     /// From the column with -ky.
     pub mirrored: bool,
     /// From kx = kx_max down.
-    reversed: bool,
+    pub reversed: bool,
     /// Conjugated.
     conjugate: bool,
 }
@@ -36,34 +37,37 @@ impl Reading {
         u32::from(self.mirrored) + 2 * u32::from(self.reversed) + 4 * u32::from(self.conjugate)
     }
 
-    /// Adds a conj(b), with b so read, to a column in transform order: `a` and `b` run from kx = -kx_max to kx_max, `sum` is as
-    /// long as the inverse transform.
+    /// Writes sum_q a_q conj(b_q), with b so read, as a column in transform order. `a` and `b` run from kx = -`side` to `side`, `a` the
+    /// other way where b is [`Self::reversed`]; `sums` has room for their packets.
     #[inline(always)]
-    pub fn multiply_add<T: Real>(self, sum: &mut [Complex<T>], a: &[Complex<T>], b: &[Complex<T>]) {
-        let side = a.len() / 2;
-        let low = sum.len() - side;
-        let sign = if self.conjugate { T::one() } else { -T::one() };
-        if self.reversed {
-            multiply_add(&mut sum[low..], &a[..side], b.iter().rev(), sign);
-            multiply_add(&mut sum[..=side], &a[side..], b[..=side].iter().rev(), sign);
+    pub fn multiply<T: Real>(
+        self,
+        fields: usize,
+        side: usize,
+        [a, b]: [&[Packet<T>]; 2],
+        sums: &mut [Complex<T>],
+        column: &mut [Complex<T>],
+    ) {
+        if self.conjugate {
+            products::<T, false>(fields, a, b, sums);
         } else {
-            multiply_add(&mut sum[low..], &a[..side], b.iter(), sign);
-            multiply_add(&mut sum[..=side], &a[side..], b[side..].iter(), sign);
+            products::<T, true>(fields, a, b, sums);
         }
-    }
-}
-
-/// sum += a b (`sign` 1) or a conj(b) (`sign` -1), element by element.
-#[inline(always)]
-fn multiply_add<'a, T: Real>(
-    sum: &mut [Complex<T>],
-    a: &[Complex<T>],
-    b: impl Iterator<Item = &'a Complex<T>>,
-    sign: T,
-) {
-    for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
-        let imaginary = sign * b.im;
-        sum.re += a.re * b.re - a.im * imaginary;
-        sum.im += a.im * b.re + a.re * imaginary;
+        let low = column.len() - side;
+        let (first, last) = sums[..=2 * side].split_at(side);
+        column[side + 1..low].fill(Complex::new(T::zero(), T::zero()));
+        if self.reversed {
+            // The sum at -kx belongs to kx: the middle one is first, and those before it follow.
+            column[0] = last[0];
+            for (to, from) in column[1..=side].iter_mut().zip(first.iter().rev()) {
+                *to = *from;
+            }
+            for (to, from) in column[low..].iter_mut().zip(last[1..].iter().rev()) {
+                *to = *from;
+            }
+        } else {
+            column[..=side].copy_from_slice(last);
+            column[low..].copy_from_slice(first);
+        }
     }
 }

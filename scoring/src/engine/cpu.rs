@@ -8,6 +8,7 @@
 //! along x while they lie in the first-level cache.
 
 use super::columns::Reading;
+use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
 use super::preparation::ligand_forward;
 use crate::se3::HalfTurn;
@@ -29,8 +30,11 @@ const PLANES: usize = 8;
 pub struct CpuEngine<T: Real> {
     pub(super) plan: Arc<Plan>,
     pub(super) forward: Forward<T>,
-    /// U: [column][field][kx].
-    pub(super) spectra: Vec<Complex<T>>,
+    pub(super) packing: Packing,
+    /// U, packed.
+    pub(super) spectra: Vec<Packet<T>>,
+    /// U with kx falling in each column.
+    pub(super) reversed: Vec<Packet<T>>,
     /// d_j V_q(s_j): [knot][field].
     pub(super) weights: Vec<T>,
     /// Ligand knots relative to the ligand's centre, Å.
@@ -52,8 +56,10 @@ pub struct Workspace<T> {
     forward: ForwardWorkspace<T>,
     points: Vec<[f64; 3]>,
     lines: Vec<Complex<T>>,
-    /// The turned ligand's transform, laid out like the engine's spectra: [column][field][kx].
-    turned: Vec<Complex<T>>,
+    /// The turned ligand's transform, packed like the engine's spectra.
+    turned: Vec<Packet<T>>,
+    /// One column with kx rising, and what fills its last packet.
+    column: Vec<Complex<T>>,
     product: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
     /// [kz in block][x][y].
@@ -82,6 +88,18 @@ impl<T: Real> CpuEngine<T> {
         &self.singular
     }
 
+    /// U of one column and field with kx rising; what fills the last packet follows.
+    #[cfg(feature = "gpu")]
+    pub(super) fn spectrum(
+        &self,
+        column: usize,
+        field: usize,
+    ) -> impl Iterator<Item = Complex<T>> + '_ {
+        let packets = &self.spectra[self.packing.range(column, self.rank())];
+        let packets = packets[field..].iter().step_by(self.rank());
+        packets.flat_map(|packet| (0..LANES).map(|lane| packet.get(lane)))
+    }
+
     /// Buffers for one rotation at a time.
     pub fn workspace(&self) -> Workspace<T> {
         let [nx, ny, nz] = self.plan.modes.size;
@@ -95,7 +113,8 @@ impl<T: Real> CpuEngine<T> {
             forward: self.forward.workspace(),
             points: vec![[0.0; 3]; self.ligand.len()],
             lines: vec![zero; COLUMNS * self.rank() * self.forward.line_length()],
-            turned: vec![zero; self.spectra.len()],
+            turned: vec![Packet::zero(); self.spectra.len()],
+            column: vec![zero; nx.next_multiple_of(LANES)],
             product: vec![zero; COLUMNS * nx],
             scratch: vec![zero; scratch],
             planes: vec![zero; PLANES * nx * ny],
@@ -110,7 +129,7 @@ impl<T: Real> CpuEngine<T> {
         let [nx, ny, nz] = plan.modes.size;
         let forward = ligand_forward::<T>(plan, rank);
         let reals = 2 * COLUMNS * rank * forward.line_length()
-            + 2 * rank * plan.modes.count
+            + 2 * rank * LANES * Packing::new(&plan.modes).count()
             + 2 * PLANES * nx * ny
             + nx * ny * nz
             + nx * ny * (nz + 1);
@@ -229,13 +248,17 @@ impl<T: Real> CpuEngine<T> {
             self.forward
                 .columns(start..end, &mut work.forward, &mut work.lines);
             for (index, column) in modes.columns[start..end].iter().enumerate() {
-                let side = column.kx_max as usize;
+                let (side, length) = (column.kx_max as usize, column.len());
+                let turned = &mut work.turned[self.packing.range(start + index, rank)];
                 for q in 0..rank {
                     let line = &work.lines[(index * rank + q) * mx..(index * rank + q + 1) * mx];
-                    let to = rank * column.start + q * column.len();
-                    let turned = &mut work.turned[to..to + column.len()];
-                    turned[..side].copy_from_slice(&line[mx - side..]);
-                    turned[side..].copy_from_slice(&line[..=side]);
+                    work.column[..side].copy_from_slice(&line[mx - side..]);
+                    work.column[side..length].copy_from_slice(&line[..=side]);
+                    work.column[length..].fill(Complex::new(T::zero(), T::zero()));
+                    let packets = work.column.chunks_exact(LANES);
+                    for (packet, values) in turned[q..].iter_mut().step_by(rank).zip(packets) {
+                        *packet = Packet::of(values);
+                    }
                 }
             }
         }
@@ -269,7 +292,7 @@ impl<T: Real> CpuEngine<T> {
             let end = (start + COLUMNS).min(range.end);
             let products = &mut work.product[..(end - start) * nx];
             for (column, product) in (start..end).zip(products.chunks_exact_mut(nx)) {
-                self.multiply_column(reading, column, &work.turned, product);
+                self.multiply_column(reading, column, &work.turned, &mut work.column, product);
             }
             self.inverse_x
                 .process_with_scratch(products, &mut work.scratch);
@@ -304,29 +327,27 @@ impl<T: Real> CpuEngine<T> {
         &self,
         reading: Reading,
         index: usize,
-        turned: &[Complex<T>],
+        turned: &[Packet<T>],
+        sums: &mut [Complex<T>],
         product: &mut [Complex<T>],
     ) {
-        let columns = &self.plan.modes.columns;
-        let column = &columns[index];
         let twin = if reading.mirrored {
-            &columns[self.mirrors[index] as usize]
+            self.mirrors[index] as usize
         } else {
-            column
+            index
         };
-        product.fill(Complex::new(T::zero(), T::zero()));
-        let (rank, length) = (self.rank(), column.len());
-        for q in 0..rank {
-            let (a, b) = (
-                rank * column.start + q * length,
-                rank * twin.start + q * length,
-            );
-            reading.multiply_add(
-                product,
-                &self.spectra[a..a + length],
-                &turned[b..b + length],
-            );
-        }
+        let spectra = if reading.reversed {
+            &self.reversed
+        } else {
+            &self.spectra
+        };
+        let rank = self.rank();
+        let pair = [
+            &spectra[self.packing.range(index, rank)],
+            &turned[self.packing.range(twin, rank)],
+        ];
+        let side = self.plan.modes.columns[index].kx_max as usize;
+        reading.multiply(rank, side, pair, sums, product);
     }
 
     /// Joins the rows of `depth` planes from kz = `block` on in pairs.

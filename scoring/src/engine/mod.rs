@@ -8,6 +8,7 @@ pub mod cpu;
 pub mod folded;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod packed;
 pub mod plan;
 mod preparation;
 mod resolved;

@@ -2,6 +2,7 @@
 
 use super::cpu::CpuEngine;
 use super::folded::{Factors, Folded};
+use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
 use crate::transform::Real;
 use crate::transform::nfft::Forward;
@@ -39,19 +40,31 @@ impl<T: Real> CpuEngine<T> {
                 .collect()
         });
         let zero = Complex::new(T::zero(), T::zero());
-        let mut spectra = vec![zero; rank * modes.count];
-        for column in &modes.columns {
+        let packing = Packing::new(&modes);
+        let mut spectra = vec![Packet::zero(); rank * packing.count()];
+        let mut reversed = spectra.clone();
+        let mut values = Vec::new();
+        for (index, column) in modes.columns.iter().enumerate() {
             let outer = factors[1][column.ky.unsigned_abs() as usize]
                 * factors[2][column.kz as usize]
                 / modes.volume();
+            let range = packing.range(index, rank);
             for q in 0..rank {
-                for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
+                values.clear();
+                values.extend((-column.kx_max..=column.kx_max).enumerate().map(|(i, k)| {
                     let mut sum = zero;
                     for (b, spectrum) in folded.spectra.iter().enumerate() {
                         sum = sum + spectrum[column.start + i].scale(T::of(combination[(b, q)]));
                     }
                     let factor = outer * factors[0][k.unsigned_abs() as usize];
-                    spectra[rank * column.start + q * column.len() + i] = sum.scale(T::of(factor));
+                    sum.scale(T::of(factor))
+                }));
+                for packets in [&mut spectra, &mut reversed] {
+                    let packets = packets[range.clone()][q..].iter_mut().step_by(rank);
+                    for (packet, values) in packets.zip(values.chunks(LANES)) {
+                        *packet = Packet::of(values);
+                    }
+                    values.reverse();
                 }
             }
         }
@@ -69,7 +82,9 @@ impl<T: Real> CpuEngine<T> {
             .max(f64::MIN_POSITIVE);
         Self {
             forward,
+            packing,
             spectra,
+            reversed,
             weights,
             ligand: ligand
                 .centers
@@ -92,16 +107,20 @@ impl<T: Real> CpuEngine<T> {
     pub fn truncated(&self, rank: usize) -> Self {
         let full = self.rank();
         let rank = rank.clamp(1, full);
-        let columns = &self.plan.modes.columns;
-        let spectra = columns.iter().flat_map(|column| {
-            let start = full * column.start;
-            &self.spectra[start..start + rank * column.len()]
-        });
+        let first = |packets: &[Packet<T>]| {
+            let packets = packets.chunks_exact(full);
+            packets
+                .flat_map(|fields| &fields[..rank])
+                .copied()
+                .collect()
+        };
         let weights = self.weights.chunks_exact(full);
         Self {
             plan: Arc::clone(&self.plan),
             forward: ligand_forward::<T>(&self.plan, rank),
-            spectra: spectra.copied().collect(),
+            packing: self.packing.clone(),
+            spectra: first(&self.spectra),
+            reversed: first(&self.reversed),
             weights: weights
                 .flat_map(|fields| &fields[..rank])
                 .copied()

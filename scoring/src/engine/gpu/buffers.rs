@@ -190,15 +190,12 @@ impl Buffers {
             .collect();
         planes.push(sizes.columns as u32);
         let units = units(engine);
-        let mut spectra = vec![[0f32; 2]; engine.spectra.len()];
-        for column in &modes.columns {
+        let mut spectra = vec![[0f32; 2]; sizes.fields * modes.count];
+        for (index, column) in modes.columns.iter().enumerate() {
             for (field, unit) in units.iter().enumerate() {
                 let start = sizes.fields * column.start + field * column.len();
-                let range = start..start + column.len();
-                for (to, from) in spectra[range.clone()]
-                    .iter_mut()
-                    .zip(&engine.spectra[range])
-                {
+                let values = engine.spectrum(index, field);
+                for (to, from) in spectra[start..start + column.len()].iter_mut().zip(values) {
                     *to = [
                         (from.re.wide() * unit) as f32,
                         (from.im.wide() * unit) as f32,

@@ -1,0 +1,108 @@
+//! Columns of modes packed for vector registers: eight modes side by side, real parts and imaginary parts apart, and the fields of the
+//! lifted axis one after another, so that a product is summed over them without being stored and without a number changing its lane.
+
+use crate::transform::Real;
+use crate::transform::modes::ModeSet;
+use num_complex::Complex;
+use std::ops::Range;
+
+/// Modes in a packet.
+pub(super) const LANES: usize = 8;
+
+/// Eight modes of one field.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Packet<T> {
+    re: [T; LANES],
+    im: [T; LANES],
+}
+
+impl<T: Real> Packet<T> {
+    /// All zero.
+    pub fn zero() -> Self {
+        Self {
+            re: [T::zero(); LANES],
+            im: [T::zero(); LANES],
+        }
+    }
+
+    /// Takes the parts of eight values apart; where they are fewer, zeros follow.
+    #[inline(always)]
+    pub fn of(values: &[Complex<T>]) -> Self {
+        let mut packet = Self::zero();
+        for (lane, value) in values.iter().enumerate().take(LANES) {
+            packet.re[lane] = value.re;
+            packet.im[lane] = value.im;
+        }
+        packet
+    }
+
+    /// The value in a lane.
+    #[cfg(feature = "gpu")]
+    pub fn get(&self, lane: usize) -> Complex<T> {
+        Complex::new(self.re[lane], self.im[lane])
+    }
+}
+
+/// Where the packets of each column lie: [column][packet][field].
+#[derive(Clone, Debug)]
+pub(super) struct Packing {
+    /// For each column the packets before it, for one field; then their number.
+    starts: Vec<u32>,
+}
+
+impl Packing {
+    pub fn new(modes: &ModeSet) -> Self {
+        let mut starts = vec![0];
+        let mut count = 0;
+        for column in &modes.columns {
+            count += column.len().div_ceil(LANES) as u32;
+            starts.push(count);
+        }
+        Self { starts }
+    }
+
+    /// Packets of one field.
+    pub fn count(&self) -> usize {
+        self.starts.last().map_or(0, |&count| count as usize)
+    }
+
+    /// The packets of a column, of all `fields`.
+    #[inline(always)]
+    pub fn range(&self, column: usize, fields: usize) -> Range<usize> {
+        fields * self.starts[column] as usize..fields * self.starts[column + 1] as usize
+    }
+}
+
+/// Sums over the fields of a b (`CONJUGATED` false) or a conj(b) (true), mode by mode.
+#[inline(always)]
+pub(super) fn products<T: Real, const CONJUGATED: bool>(
+    fields: usize,
+    a: &[Packet<T>],
+    b: &[Packet<T>],
+    sums: &mut [Complex<T>],
+) {
+    let packets = a.chunks_exact(fields).zip(b.chunks_exact(fields));
+    for ((a, b), sums) in packets.zip(sums.chunks_exact_mut(LANES)) {
+        let mut sum = Packet::zero();
+        for (a, b) in a.iter().zip(b) {
+            for lane in 0..LANES {
+                let (same, cross) = (a.re[lane] * b.re[lane], a.im[lane] * b.im[lane]);
+                let (back, forth) = (a.im[lane] * b.re[lane], a.re[lane] * b.im[lane]);
+                sum.re[lane] += if CONJUGATED {
+                    same + cross
+                } else {
+                    same - cross
+                };
+                sum.im[lane] += if CONJUGATED {
+                    back - forth
+                } else {
+                    back + forth
+                };
+            }
+        }
+        for (lane, value) in sums.iter_mut().enumerate() {
+            *value = Complex::new(sum.re[lane], sum.im[lane]);
+        }
+    }
+}
