@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The atlas: success against processor time, as settings move, on two sets of benchmark pairs, as a page and a picture.
+"""The atlas: success against processor time, as settings move, on one or two sets of benchmark pairs, as a page and a picture.
 
-    python3 scripts/atlas.py --train NAME=RUNS [NAME=RUNS ...] --eval NAME=RUNS [NAME=RUNS ...] --page docs/atlas.md --picture docs/images/atlas.svg
+    python3 scripts/atlas.py [--train NAME=RUNS [NAME=RUNS ...]] --eval NAME=RUNS [NAME=RUNS ...] --page docs/atlas.md --picture docs/images/atlas.svg
 
 Each RUNS is the --out folder (or several, with commas between them) of a `scripts/benchmark.py` run; a setting has the same
 NAME in both sets. Pairs that all settings of a set hold are compared, each setting over the turns that it has. Success is the
@@ -34,7 +34,8 @@ def main():
     points = []
     for split in SETS:
         runs = {name: read(folders) for name, folders in getattr(options, split)}
-        points += settings(split, runs)
+        if runs:
+            points += settings(split, runs)
     points += megadock(options.eval[0][1][0] / "poses.csv")
     write(options.picture, picture(points))
     write(options.page, page(points, options))
@@ -110,7 +111,7 @@ def picture(points):
         marks.append(text(x0, y0 - 16, f"An acceptable pose among the first {depth}"))
         for p in points:
             marks += marks_of(p, index, names, place)
-    for number, split in enumerate(SETS):
+    for number, split in enumerate(dict.fromkeys(p["set"] for p in points if p["set"] != "MEGADOCK")):
         pairs = next(p["pairs"] for p in points if p["set"] == split)
         x = LEFT + 200 * number
         marks += [disc(x + 4, legend, COLOURS[split]), text(x + 14, legend, f"{split}, {pairs} pairs")]
@@ -165,7 +166,7 @@ def page(points, options):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     for split in SETS:
-        parser.add_argument(f"--{split}", nargs="+", required=True, type=named, metavar="NAME=RUNS[,RUNS]",
+        parser.add_argument(f"--{split}", nargs="+", required=split == "eval", default=[], type=named, metavar="NAME=RUNS[,RUNS]",
                             help=f"settings and their runs on the pairs of {split}")
     parser.add_argument("--page", required=True, type=Path, help="page whose table is made anew")
     parser.add_argument("--picture", required=True, type=Path, help="SVG file")

@@ -37,7 +37,7 @@ pub(super) fn costs<T: Real>(
     } else {
         &[]
     };
-    let parts: Vec<(Effect, CpuEngine<T>)> = others
+    let mut parts: Vec<(Effect, CpuEngine<T>)> = others
         .par_iter()
         .map(|&effect| {
             let Chosen { engine, .. } = match effect {
@@ -47,10 +47,12 @@ pub(super) fn costs<T: Real>(
             (effect, engine)
         })
         .collect();
-    let part = |effect: Effect| {
-        let part = parts.iter().find(|(of, _)| *of == effect);
-        part.map_or(whole, |(_, engine)| {
-            (engine.rank(), milliseconds(plan, engine))
+    // An engine goes once it is timed.
+    let mut part = |effect: Effect| {
+        let place = parts.iter().position(|(of, _)| *of == effect);
+        place.map_or(whole, |place| {
+            let (_, engine) = parts.swap_remove(place);
+            (engine.rank(), milliseconds(plan, &engine))
         })
     };
     plan.decisions

@@ -150,18 +150,18 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     };
     let needs = |engine: &Plan| {
         let functions = engine.functions();
-        let per_rotation = workspace_estimate(engine, functions.min(EXPECTED_RANK)) as u64;
-        let fixed = 2
-            * real_bytes
-            * engine.modes.count as u64
-            * (functions + functions.min(EXPECTED_RANK) + 1) as u64
-            + ReceptorField::bytes(engine) as u64
-            + 200 * (receptor.len() + ligand.len()) as u64
-            + 64 * options.rotations as u64
-            + fine_bytes(options)
-            + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
-            + 400 * options.poses as u64
-            + (16 << 20);
+        let rank = functions.min(EXPECTED_RANK);
+        let per_rotation = workspace_estimate(engine, rank) as u64;
+        // The functions, one in the making, and the compressed ones in either order of modes, packed.
+        let fixed =
+            2 * real_bytes * engine.modes.count as u64 * (functions + 1 + 5 * rank / 2) as u64
+                + ReceptorField::bytes(engine) as u64
+                + 200 * (receptor.len() + ligand.len()) as u64
+                + 64 * options.rotations as u64
+                + fine_bytes(options)
+                + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
+                + 400 * options.poses as u64
+                + (16 << 20);
         (fixed, per_rotation)
     };
     let (fixed, per_rotation) = needs(&engine);

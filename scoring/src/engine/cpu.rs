@@ -8,7 +8,7 @@
 //! along x while they lie in the first-level cache.
 
 use super::columns::Reading;
-use super::packed::{LANES, Packet, Packing};
+use super::packed::{LANES, Packet, Packing, reversed};
 use super::plan::Plan;
 use super::preparation::ligand_forward;
 use crate::se3::HalfTurn;
@@ -19,7 +19,7 @@ use crate::vectorized::vectorized;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
 use rustfft::Fft;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Columns that go through the x transforms together.
 const COLUMNS: usize = 8;
@@ -33,8 +33,8 @@ pub struct CpuEngine<T: Real> {
     pub(super) packing: Packing,
     /// U, packed.
     pub(super) spectra: Vec<Packet<T>>,
-    /// U with kx falling in each column.
-    pub(super) reversed: Vec<Packet<T>>,
+    /// U with kx falling in each column, made when a half-turn first asks for it.
+    pub(super) reversed: OnceLock<Vec<Packet<T>>>,
     /// d_j V_q(s_j): [knot][field].
     pub(super) weights: Vec<T>,
     /// Ligand knots relative to the ligand's centre, Å.
@@ -269,10 +269,17 @@ impl<T: Real> CpuEngine<T> {
     fn multiply(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
         let half = self.plan.modes.size[2] / 2 + 1;
         let reading = Reading::after(half_turn);
+        let spectra = if reading.reversed {
+            let modes = &self.plan.modes;
+            self.reversed
+                .get_or_init(|| reversed(modes, &self.packing, self.rank(), &self.spectra))
+        } else {
+            &self.spectra
+        };
         for block in (0..half).step_by(PLANES) {
             let depth = PLANES.min(half - block);
             for level in 0..depth {
-                self.plane(reading, block + level, level, work);
+                self.plane((reading, spectra), block + level, level, work);
             }
             self.pair_rows(block, depth, work);
         }
@@ -280,7 +287,13 @@ impl<T: Real> CpuEngine<T> {
 
     /// Plane kz of the product, transformed along x and y, into `work.planes` at `level`.
     #[inline(always)]
-    fn plane(&self, reading: Reading, kz: usize, level: usize, work: &mut Workspace<T>) {
+    fn plane(
+        &self,
+        read: (Reading, &[Packet<T>]),
+        kz: usize,
+        level: usize,
+        work: &mut Workspace<T>,
+    ) {
         let modes = &self.plan.modes;
         let [nx, ny, _] = modes.size;
         let plane = &mut work.planes[level * nx * ny..(level + 1) * nx * ny];
@@ -292,7 +305,7 @@ impl<T: Real> CpuEngine<T> {
             let end = (start + COLUMNS).min(range.end);
             let products = &mut work.product[..(end - start) * nx];
             for (column, product) in (start..end).zip(products.chunks_exact_mut(nx)) {
-                self.multiply_column(reading, column, &work.turned, &mut work.column, product);
+                self.multiply_column(read, column, &work.turned, &mut work.column, product);
             }
             self.inverse_x
                 .process_with_scratch(products, &mut work.scratch);
@@ -321,11 +334,11 @@ impl<T: Real> CpuEngine<T> {
             .process_with_scratch(plane, &mut work.scratch);
     }
 
-    /// sum_q U_q conj(B_q) of one column.
+    /// sum_q U_q conj(B_q) of one column, U as the reading wants it.
     #[inline(always)]
     fn multiply_column(
         &self,
-        reading: Reading,
+        (reading, spectra): (Reading, &[Packet<T>]),
         index: usize,
         turned: &[Packet<T>],
         sums: &mut [Complex<T>],
@@ -335,11 +348,6 @@ impl<T: Real> CpuEngine<T> {
             self.mirrors[index] as usize
         } else {
             index
-        };
-        let spectra = if reading.reversed {
-            &self.reversed
-        } else {
-            &self.spectra
         };
         let rank = self.rank();
         let pair = [

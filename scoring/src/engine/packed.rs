@@ -38,9 +38,13 @@ impl<T: Real> Packet<T> {
     }
 
     /// The value in a lane.
-    #[cfg(feature = "gpu")]
     pub fn get(&self, lane: usize) -> Complex<T> {
         Complex::new(self.re[lane], self.im[lane])
+    }
+
+    /// Writes a lane.
+    fn set(&mut self, lane: usize, value: Complex<T>) {
+        (self.re[lane], self.im[lane]) = (value.re, value.im);
     }
 }
 
@@ -72,6 +76,28 @@ impl Packing {
     pub fn range(&self, column: usize, fields: usize) -> Range<usize> {
         fields * self.starts[column] as usize..fields * self.starts[column + 1] as usize
     }
+}
+
+/// Packets with the modes of each column in falling order.
+pub(super) fn reversed<T: Real>(
+    modes: &ModeSet,
+    packing: &Packing,
+    fields: usize,
+    packets: &[Packet<T>],
+) -> Vec<Packet<T>> {
+    let mut turned_round = vec![Packet::zero(); packets.len()];
+    for (index, column) in modes.columns.iter().enumerate() {
+        let range = packing.range(index, fields);
+        let (from, to) = (&packets[range.clone()], &mut turned_round[range]);
+        let last = column.len() - 1;
+        for (place, opposite) in (0..=last).zip((0..=last).rev()) {
+            for field in 0..fields {
+                let value = from[opposite / LANES * fields + field].get(opposite % LANES);
+                to[place / LANES * fields + field].set(place % LANES, value);
+            }
+        }
+    }
+    turned_round
 }
 
 /// Sums over the fields of a b (`CONJUGATED` false) or a conj(b) (true), mode by mode.

@@ -9,7 +9,7 @@ use crate::transform::nfft::Forward;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 impl<T: Real> CpuEngine<T> {
     /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
@@ -42,7 +42,6 @@ impl<T: Real> CpuEngine<T> {
         let zero = Complex::new(T::zero(), T::zero());
         let packing = Packing::new(&modes);
         let mut spectra = vec![Packet::zero(); rank * packing.count()];
-        let mut reversed = spectra.clone();
         let mut values = Vec::new();
         for (index, column) in modes.columns.iter().enumerate() {
             let outer = factors[1][column.ky.unsigned_abs() as usize]
@@ -59,12 +58,9 @@ impl<T: Real> CpuEngine<T> {
                     let factor = outer * factors[0][k.unsigned_abs() as usize];
                     sum.scale(T::of(factor))
                 }));
-                for packets in [&mut spectra, &mut reversed] {
-                    let packets = packets[range.clone()][q..].iter_mut().step_by(rank);
-                    for (packet, values) in packets.zip(values.chunks(LANES)) {
-                        *packet = Packet::of(values);
-                    }
-                    values.reverse();
+                let packets = spectra[range.clone()][q..].iter_mut().step_by(rank);
+                for (packet, values) in packets.zip(values.chunks(LANES)) {
+                    *packet = Packet::of(values);
                 }
             }
         }
@@ -84,7 +80,7 @@ impl<T: Real> CpuEngine<T> {
             forward,
             packing,
             spectra,
-            reversed,
+            reversed: OnceLock::new(),
             weights,
             ligand: ligand
                 .centers
@@ -107,20 +103,17 @@ impl<T: Real> CpuEngine<T> {
     pub fn truncated(&self, rank: usize) -> Self {
         let full = self.rank();
         let rank = rank.clamp(1, full);
-        let first = |packets: &[Packet<T>]| {
-            let packets = packets.chunks_exact(full);
-            packets
-                .flat_map(|fields| &fields[..rank])
-                .copied()
-                .collect()
-        };
+        let mut spectra = Vec::with_capacity(rank * self.packing.count());
+        for fields in self.spectra.chunks_exact(full) {
+            spectra.extend_from_slice(&fields[..rank]);
+        }
         let weights = self.weights.chunks_exact(full);
         Self {
             plan: Arc::clone(&self.plan),
             forward: ligand_forward::<T>(&self.plan, rank),
             packing: self.packing.clone(),
-            spectra: first(&self.spectra),
-            reversed: first(&self.reversed),
+            spectra,
+            reversed: OnceLock::new(),
             weights: weights
                 .flat_map(|fields| &fields[..rank])
                 .copied()
