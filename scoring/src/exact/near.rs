@@ -7,7 +7,7 @@ use pulp::Simd;
 const CAPACITY: usize = 1024;
 
 /// For each set of lanes, as bits: its lanes first, in order.
-const FRONT: [[u8; LANES]; 1 << LANES] = front();
+static FRONT: [[u8; LANES]; 1 << LANES] = front();
 
 const fn front() -> [[u8; LANES]; 1 << LANES] {
     let mut front = [[0; LANES]; 1 << LANES];
@@ -56,7 +56,7 @@ impl Near {
     }
 
     /// Adds those of eight knots, the first of which is `first`, that are nearer than the root of `square_reach`. Whether one is near is a
-    /// coin toss that no branch predictor wins, so each is written and counted only when near.
+    /// coin toss that no branch predictor wins, so all eight are written, the near ones first, and only these are counted.
     #[inline(always)]
     pub fn add(&mut self, first: u32, squares: &[f64; LANES], square_reach: f64) {
         let from = self.count.min(CAPACITY - LANES);
