@@ -7,34 +7,34 @@ use super::poses::Column;
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, rank score, z-score, size of the cluster, and whatever columns are appended to the poses.
+/// The best clusters as a table: rank, score of the cluster where it has one, by which they are ordered, then of its best pose rank score and z-score, size of the
+/// cluster, and whatever columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let mut header: Vec<String> = [
-        "rank",
-        "rank score",
-        "z-score",
-        "cluster size",
-        "unfiltered",
-    ]
-    .map(str::to_owned)
-    .to_vec();
+    let clustered = ranking.iter().any(|row| row.cluster_score.is_some());
+    let mut header = vec!["rank"];
+    header.extend(clustered.then_some("cluster score"));
+    header.extend(["rank score", "z-score", "cluster size", "unfiltered"]);
+    let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];
     for index in firsts(ranking).into_iter().take(BEST) {
         let Some(row) = ranking.get(index) else {
             continue;
         };
-        let mut line = vec![
-            (index + 1).to_string(),
-            format!("{:.1}", row.rank_score),
-            row.z_score.map(|z| format!("{z:.1}")).unwrap_or_default(),
+        let tenths =
+            |value: Option<f64>| value.map(|value| format!("{value:.1}")).unwrap_or_default();
+        let mut line = vec![(index + 1).to_string()];
+        line.extend(clustered.then(|| tenths(row.cluster_score)));
+        line.extend([
+            tenths(Some(row.rank_score)),
+            tenths(row.z_score),
             row.cluster_size
                 .map(|size| size.to_string())
                 .unwrap_or_default(),
-            format!("{:.1}", row.score_unfiltered),
-        ];
+            tenths(Some(row.score_unfiltered)),
+        ]);
         line.extend(appended.iter().map(|column| {
             let field = column.fields.get(index).map_or("", String::as_str);
             match field.parse::<f64>() {
@@ -137,6 +137,22 @@ mod tests {
              \x20    4         6.0                      2         6.0   3.50\n\
              \x20    3         7.0                                7.0\n\
              \x20    5         5.0                                5.0"
+        );
+    }
+
+    /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked wrong.
+    #[test]
+    fn clusters_show_the_score_that_orders_them() {
+        let in_company = |score, cluster, cluster_score| RankedPose {
+            cluster_score: Some(cluster_score),
+            ..pose(score, Some(cluster))
+        };
+        let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
+        assert_eq!(
+            best_clusters(&ranking, &[]),
+            "  rank  cluster score  rank score  z-score  cluster size  unfiltered\n\
+             \x20    1           11.0         8.0                      2         8.0\n\
+             \x20    2           10.0         9.0                      2         9.0"
         );
     }
 }

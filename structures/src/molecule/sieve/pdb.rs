@@ -2,6 +2,7 @@
 //!
 //! Columns in comments are 1-based, as in the format's description.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -24,11 +25,12 @@ pub(in crate::molecule) fn sieve(
 ) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut models = Models::default();
+    let wide_chains = has_wide_chains(text);
     for (line, record) in lines(text) {
-        if record.starts_with("ATOM  ") || record.starts_with("HETATM") {
+        if is_atom(record) {
             sieved.recognised = true;
             if models.of(record) == model {
-                atom(file, line, record, &mut sieved)?;
+                atom(file, line, record, wide_chains, &mut sieved)?;
             } else {
                 sieved.atoms_ignored += 1;
             }
@@ -40,6 +42,10 @@ pub(in crate::molecule) fn sieve(
     }
     sieved.models = models.count;
     Ok(sieved)
+}
+
+fn is_atom(record: &str) -> bool {
+    record.starts_with("ATOM  ") || record.starts_with("HETATM")
 }
 
 /// Tells the models apart.
@@ -91,8 +97,14 @@ impl Models {
     }
 }
 
-/// Adds one atom record.
-fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(), ReadError> {
+/// Adds one atom record; `wide_chains` as of [`residue_and_chain`].
+fn atom(
+    file: &Path,
+    line: usize,
+    record: &str,
+    wide_chains: bool,
+    sieved: &mut Sieved,
+) -> Result<(), ReadError> {
     if record.len() < 54 {
         return Err(ReadError::ShortRecord {
             file: file.to_path_buf(),
@@ -137,7 +149,7 @@ fn atom(file: &Path, line: usize, record: &str, sieved: &mut Sieved) -> Result<(
     }
 
     let name = slice(12, 16);
-    let (residue_name, chain) = residue_and_chain(slice(17, 22));
+    let (residue_name, chain) = residue_and_chain(slice(17, 22), wide_chains);
     let (residue_number, insertion) =
         residue_number(slice(22, 26), slice(26, 27)).ok_or_else(|| {
             field(
@@ -219,15 +231,15 @@ fn run_together(positions: [&str; 3]) -> Option<String> {
 ///
 /// By the format the residue has 18-20 and the chain 22. Some programs put a fourth letter of the residue into column 21
 /// (`TIP3`), others the first of two of the chain (large entries cut from mmCIF): it is the chain's where 18-20 leave a blank
-/// or spell a residue known by itself, which it is not with a fourth letter, and the chain's own column is filled.
-fn residue_and_chain(columns: &str) -> (&str, &str) {
+/// or spell a residue known by itself, which it is not with a fourth letter, and the chain's own column is filled. In a file of
+/// `wide_chains` it is the chain's wherever both columns are filled: `HISAA` is histidine there, and GROMOS' `HISA` elsewhere.
+fn residue_and_chain(columns: &str, wide_chains: bool) -> (&str, &str) {
     let slice = |start: usize, end: usize| columns.get(start..end.min(columns.len())).unwrap_or("");
     let (three, four) = (slice(0, 3), slice(0, 4).trim());
     let two_letters = slice(3, 5);
     let is_chains = two_letters.len() == 2
         && !two_letters.contains(' ')
-        && (three.contains(' ')
-            || is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four));
+        && (wide_chains || three.contains(' ') || is_known_with_three(three, four));
     let (residue, chain) = if is_chains {
         (three.trim(), two_letters)
     } else {
@@ -235,6 +247,33 @@ fn residue_and_chain(columns: &str) -> (&str, &str) {
     };
     (if residue.is_empty() { "UNK" } else { residue }, chain)
 }
+
+/// Whether columns 18-20 spell a residue that a letter more would not.
+fn is_known_with_three(three: &str, four: &str) -> bool {
+    is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four)
+}
+
+/// Whether the chains of a file have names of two letters: at least [`WITNESSES`] kinds of residues are followed by two that can
+/// be nothing else.
+fn has_wide_chains(text: &str) -> bool {
+    let mut kinds = HashSet::new();
+    for (_, record) in lines(text).filter(|(_, record)| is_atom(record)) {
+        let columns = |from: usize, to: usize| record.get(from..to).unwrap_or("");
+        let (three, four, two_letters) = (columns(17, 20), columns(17, 21), columns(20, 22));
+        if two_letters.len() == 2
+            && !two_letters.contains(' ')
+            && is_known_with_three(three, four)
+            && kinds.insert(three)
+            && kinds.len() == WITNESSES
+        {
+            return true;
+        }
+    }
+    false
+}
+
+/// Kinds of residues that show a file's chains to have two letters: a force field may have a name of its own for one or two.
+const WITNESSES: usize = 4;
 
 /// Four-letter names of amino acids in the GROMOS force fields, which begin with those of three.
 const GROMOS_VARIANTS: [&str; 14] = [
@@ -339,7 +378,38 @@ mod tests {
             ("     ", ("UNK", "")),
             ("    B", ("UNK", "B")),
         ] {
-            assert_eq!(residue_and_chain(columns), expected, "{columns:?}");
+            assert_eq!(residue_and_chain(columns, false), expected, "{columns:?}");
+        }
+    }
+
+    /// Found by an audit: judged record by record, the histidines of a chain AA were GROMOS' HISA in a chain A, and its glycans NAGA.
+    #[test]
+    fn a_file_of_two_letter_chains_has_them_throughout() {
+        let file = |residues: &[&str]| -> String {
+            residues
+                .iter()
+                .map(|columns| {
+                    format!("ATOM      1  CA  {columns}   1       0.000   0.000   0.000\n")
+                })
+                .collect()
+        };
+        let wide = file(&["ALAAA", "GLYAA", "HISAA", "VALAA", "NAGAA", "LEUAB"]);
+        assert!(has_wide_chains(&wide));
+        // One kind of residue under another name, whatever follows, and GROMOS' own names say nothing.
+        assert!(!has_wide_chains(&file(&[
+            "ALADA", "ALADA", "HISAA", "LYSHA", "CYS1A", "ASPHA", "GLUHA"
+        ])));
+        assert!(!has_wide_chains(&file(&[
+            "ALA A", "GLY A", "HIS A", "VAL A", "TIP3W"
+        ])));
+        for (columns, expected) in [
+            ("HISAA", ("HIS", "AA")),
+            ("NAGAA", ("NAG", "AA")),
+            ("SO4AB", ("SO4", "AB")),
+            ("ALA A", ("ALA", "A")),
+            ("TIP3 ", ("TIP3", "")),
+        ] {
+            assert_eq!(residue_and_chain(columns, true), expected, "{columns:?}");
         }
     }
 
