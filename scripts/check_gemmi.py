@@ -94,7 +94,7 @@ def waters():
 
 def ours(knotdock, path, table):
     """The program's exit code, its JSON object and its atoms."""
-    done = subprocess.run([knotdock, "inspect", str(path), "--atoms", str(table), "--json", "--quiet"], capture_output=True, text=True)
+    done = subprocess.run([knotdock, "inspect", str(path), "--atoms", str(table), "--force", "--json", "--quiet"], capture_output=True, text=True)
     if done.returncode not in (0, 2) or "panicked" in done.stderr:
         raise SystemExit(f"{path}: exit code {done.returncode}\n{done.stderr}")
     told = json.loads(done.stdout)

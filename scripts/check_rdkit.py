@@ -79,7 +79,7 @@ class Molecule:
     def __init__(self, knotdock, path, scratch, options=()):
         self.path, self.options = path, options
         table = scratch / "atoms.csv"
-        self.told = run(knotdock, "inspect", path, "--atoms", table, *options)
+        self.told = run(knotdock, "inspect", path, "--atoms", table, "--force", *options)
         with open(table, newline="") as file:
             rows = list(csv.DictReader(file))
         self.rows = [row for row in rows if not row["dropped"]]

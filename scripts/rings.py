@@ -110,7 +110,7 @@ def dock(options, ring, seed, with_symmetry):
     command = [options.knotdock, "dock", str(molecule), *partner, "-o", str(run), "--force", "--quiet", "--write-top", "1"]
     cost = measured(command + options.dock_options, folder / "dock.log")
     evaluation = subprocess.run(
-        [options.knotdock, "evaluate", str(run), *native, "-o", str(folder / "measured.csv"), "--quiet"],
+        [options.knotdock, "evaluate", str(run), *native, "-o", str(folder / "measured.csv"), "--force", "--quiet"],
         capture_output=True,
         text=True,
     )

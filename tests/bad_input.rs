@@ -264,3 +264,136 @@ fn help_and_version_are_no_errors() {
         assert!(output.stderr.is_empty());
     }
 }
+
+/// Found by an audit: `--lambda -1` was an unexpected argument, and the tip would have made a file of it.
+#[test]
+fn a_negative_number_is_judged_as_the_value_that_it_is() {
+    let place = Place::new();
+    for option in [
+        "--lambda",
+        "--rotations",
+        "--angle",
+        "--resolution",
+        "--ph",
+        "--threads",
+    ] {
+        let error = place.refused(&["dock", "receptor.pdb", "ligand.pdb", option, "-1"]);
+        says(&error, &format!("invalid value '-1' for '{option}"));
+    }
+}
+
+/// Found by an audit: a structure was replaced by the table of its own atoms, and a run.json by a table of poses.
+#[test]
+fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
+    let place = Place::new();
+    let same = "is one of those read";
+    let ligand = fs::read(place.path().join("ligand.pdb")).unwrap();
+    for name in ["ligand.pdb", "./ligand.pdb"] {
+        let inspect = ["inspect", "ligand.pdb", "--atoms", name, "--force"];
+        says(&place.refused(&inspect), same);
+    }
+    place.write("notes.txt", "mine");
+    let inspect = ["inspect", "ligand.pdb", "--atoms", "notes.txt"];
+    says(&place.refused(&inspect), "already there");
+    let calibrate = ["calibrate", "-o", "notes.txt"];
+    says(&place.refused(&calibrate), "holds no cost model");
+    let poses = "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n";
+    place.write("poses.csv", poses);
+    let molecules = ["receptor.pdb", "ligand.pdb"];
+    let evaluate = |output: &'static str, force: &[&'static str]| {
+        let mut words = vec!["evaluate", "poses.csv", "-o", output];
+        for (options, file) in [
+            ["--receptor", "--native-receptor"],
+            ["--ligand", "--native-ligand"],
+        ]
+        .iter()
+        .zip(molecules)
+        {
+            words.extend([options[0], file, options[1], file]);
+        }
+        words.extend(force);
+        words
+    };
+    says(&place.refused(&evaluate("ligand.pdb", &["--force"])), same);
+    says(&place.refused(&evaluate("poses.csv", &[])), "already there");
+    assert_eq!(fs::read(place.path().join("ligand.pdb")).unwrap(), ligand);
+    let kept = |name| fs::read_to_string(place.path().join(name)).unwrap();
+    assert_eq!(
+        (kept("notes.txt"), kept("poses.csv")),
+        ("mine".into(), poses.into())
+    );
+    // The table itself may have its columns added, if that is said.
+    place
+        .command(&evaluate("poses.csv", &["--force"]))
+        .assert()
+        .success();
+    assert!(kept("poses.csv").contains("dockq"));
+}
+
+/// A program that asks for an object and gets none must not read that all went well; a person who closes the pipe may.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_object_that_cannot_be_written_is_a_failure() {
+    let place = Place::new();
+    let full = fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_knotdock"));
+    let command = command.current_dir(place.path()).stdout(full);
+    let output = command
+        .args(["inspect", "ligand.pdb", "--json"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("cannot write to standard output"), "{told}");
+}
+
+/// Found by an audit: meshes were told of an option of another command, and a picture by another name was an SVG all the same.
+#[test]
+fn a_mesh_too_thin_for_its_grid() {
+    let place = Place::new();
+    let corner = |x: f64, y: f64, z: f64| format!("v {x} {y} {z}\n");
+    let corners = [0.0, 0.1].map(|z| {
+        [
+            corner(0.0, 0.0, z),
+            corner(10.0, 0.0, z),
+            corner(10.0, 10.0, z),
+            corner(0.0, 10.0, z),
+        ]
+        .concat()
+    });
+    let faces = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    place.write("plate.obj", &(corners.concat() + faces));
+    let words = ["sample", "plate.obj", "--grid", "2^12", "-o", "balls.csv"];
+    let with = |more: &[&'static str]| [&words[..], more].concat();
+    says(
+        &place.refused(&with(&["--weights", "fitted"])),
+        "there are none",
+    );
+    says(
+        &place.refused(&with(&["--picture", "plate.png"])),
+        "--picture writes .svg",
+    );
+    says(
+        &place.refused(&with(&["--strict"])),
+        "no node of the grid lies inside",
+    );
+    let output = place.command(&with(&["--json"])).output().unwrap();
+    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        object["inside_nodes"], 0,
+        "or else the plate is too thick for this test"
+    );
+    assert!(object["volume"].is_null() && object["sets"][0]["volume_missed"].is_null());
+    assert_eq!(object["warnings"].as_array().unwrap().len(), 1);
+    let told = place.command(&with(&["--force"])).output().unwrap();
+    let told = String::from_utf8(told.stdout).unwrap();
+    assert!(!told.contains("NaN") && !told.contains("inf "), "{told}");
+    let error = place.refused(&["dock", "plate.obj", "plate.obj", "--sample-grid", "2^12"]);
+    assert!(
+        error["remedy"].as_str().unwrap().contains("--sample-grid"),
+        "{error}"
+    );
+}

@@ -343,3 +343,27 @@ fn the_example_s_table_is_docked() {
     assert_eq!((rows.len(), rows[0]["name"].as_str()), (1, "1PPE"));
     assert!((0.0..=1.0).contains(&rows[0]["dockq"].parse::<f64>().unwrap()));
 }
+
+/// Found by an audit: what came after -- was blamed on the table's second line, and `--help` printed a comment of the source.
+#[test]
+fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
+    let folder = place();
+    write_pairs(folder.path(), "receptor,ligand\nreceptor.pdb,ligand.pdb\n");
+    for (words, expected) in [
+        ("--frob", "unexpected argument '--frob'"),
+        ("--rotations 0", "invalid value '0'"),
+        ("--help", "no help"),
+        ("-o elsewhere", "--output cannot come after --"),
+    ] {
+        let output = batch(
+            folder.path(),
+            &format!("batch in/pairs.csv -o out -- {words}"),
+        );
+        assert_eq!(output.status.code(), Some(2), "{words}");
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            told.contains(expected) && !told.contains("line 2"),
+            "{told}"
+        );
+    }
+}

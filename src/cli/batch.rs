@@ -127,7 +127,7 @@ impl Batch {
             "directory": directory.display().to_string(),
             "results": results.display().to_string(),
             "pairs": told,
-        }));
+        }))?;
         Ok(code)
     }
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use clap::Parser;
+use clap::error::ErrorKind;
 use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
@@ -48,6 +49,7 @@ pub struct Pair {
 pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<Pair>, Failure> {
     let folder = table.parent().unwrap_or(Path::new(""));
     let mut names: HashMap<String, u64> = HashMap::new();
+    check_options(options)?;
     let rows = read_pairs(table)?;
     let pairs = rows.into_iter().map(|row| {
             let wrong = |message: String, remedy: &str| {
@@ -83,6 +85,43 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
             Ok(Pair { name, row, dock })
         });
     pairs.collect()
+}
+
+/// Refuses options after `--` that no pair's command line could have: a row of the table is not at fault then.
+fn check_options(options: &[String]) -> Result<(), Failure> {
+    let remedy = "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
+    let of_no_row = ["knotdock dock"].into_iter().map(str::to_owned);
+    let files = ["--", "receptor", "ligand"].map(str::to_owned);
+    let words = of_no_row.chain(options.iter().cloned()).chain(files);
+    match PairCommand::try_parse_from(words) {
+        Ok(command) if command.dock.names_its_run() => Err(Failure::input(
+            "--output cannot come after --: where its runs go is the batch's to say",
+        )
+        .remedy("name the batch's own directory with -o before --")),
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+            ) =>
+        {
+            Err(Failure::input("no help can be asked for after --").remedy(remedy))
+        }
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::UnknownArgument
+                    | ErrorKind::InvalidValue
+                    | ErrorKind::ValueValidation
+                    | ErrorKind::NoEquals
+                    | ErrorKind::TooManyValues
+                    | ErrorKind::TooFewValues
+            ) =>
+        {
+            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
+        }
+        // What is missing or in conflict here may be otherwise beside a row's own options.
+        _ => Ok(()),
+    }
 }
 
 /// The command line of a pair.

@@ -28,10 +28,18 @@ pub struct Calibrate {
 impl Calibrate {
     /// Calibrates.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        let named = self.output.is_some();
         let path = self.output.or_else(default_path).ok_or_else(|| {
             Failure::input("there is no cache folder: neither XDG_CACHE_HOME nor HOME names one")
                 .remedy("name a file with -o")
         })?;
+        if named && path.exists() && !matches!(read(&path), Ok(Some(_))) {
+            return Err(
+                Failure::input("the file is already there and holds no cost model")
+                    .at(&path)
+                    .remedy("choose another name"),
+            );
+        }
         let threads = self.threads.count();
         let progress = console.progress();
         let model = calibrate(threads, &progress)
@@ -84,7 +92,7 @@ impl Calibrate {
             "file": path.display().to_string(),
             "threads": threads,
             "cost_model": serde_json::to_value(model).map_err(Failure::other)?,
-        }));
+        }))?;
         Ok(())
     }
 }

@@ -72,7 +72,7 @@ impl Complex {
         console.result(&json!({
             "files": files.map(|(row, path)| json!({ "rank": row.rank, "path": path })).collect::<Vec<_>>(),
             "chains": written.chains,
-        }));
+        }))?;
         Ok(())
     }
 }

@@ -45,10 +45,19 @@ impl Console {
         write_line(&mut io::stderr(), &text.to_string());
     }
 
-    /// Writes the command's JSON object, if that was asked for.
-    pub fn result(&self, object: &serde_json::Value) {
-        if self.json {
-            write_line(&mut io::stdout(), &object.to_string());
+    /// Writes the command's JSON object, if that was asked for: what cannot be written is a failure then, for the object is all there is, unless its reader
+    /// has gone.
+    pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
+        if !self.json {
+            return Ok(());
+        }
+        let mut stream = io::stdout();
+        match writeln!(stream, "{object}").and_then(|()| stream.flush()) {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::other(
+                format!("cannot write to standard output: {error}"),
+            )
+            .remedy("check the free space there")),
+            _ => Ok(()),
         }
     }
 
@@ -76,7 +85,7 @@ impl Console {
     }
 }
 
-/// Writes a line; a closed pipe or a full disk behind the stream is not this program's to report.
+/// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.
 fn write_line(stream: &mut dyn Write, text: &str) {
     let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
 }

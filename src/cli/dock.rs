@@ -135,6 +135,11 @@ const RECORDED: [&str; 54] = [
 ];
 
 impl Dock {
+    /// Whether options say where the run goes.
+    pub fn names_its_run(&self) -> bool {
+        self.output.is_some()
+    }
+
     /// What the command line asks for.
     fn request(&self) -> Result<Request, Failure> {
         // Of a ring the ligand is another copy of the receptor.
@@ -187,7 +192,7 @@ impl Dock {
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let done = self.prepare(console)?.run(console)?;
-        console.result(&done);
+        console.result(&done)?;
         Ok(())
     }
 }

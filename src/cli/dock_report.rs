@@ -18,7 +18,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
             ),
             (true, effect) => format!(
                 "Effect {effect} ({}): without it the rank is lower by {} and a rotation takes {:.2} ms less",
-                cost.reason, cost.rank, cost.milliseconds_per_rotation
+                cost.reason, cost.rank, cost.milliseconds_per_rotation.max(0.0)
             ),
         });
     let mut lines: Vec<String> = effects.collect();
@@ -73,19 +73,52 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         ));
     }
     let error = outcome.error;
+    if error.worst.is_finite() {
+        lines.push(format!(
+            "Fast path against the exact sum, over {}: {:.1e} of the best score rms, {:.1e} at worst",
+            counted(error.poses, "pose"),
+            error.rms,
+            error.worst
+        ));
+        lines.push(format!(
+            "The low-pass moved their shape scores by {:.0}% of the best on average",
+            100.0 * error.low_pass_share
+        ));
+    }
     lines.push(format!(
-        "Fast path against the exact sum, over {} poses: {:.1e} of the best score rms, {:.1e} at worst",
-        error.poses, error.rms, error.worst
-    ));
-    lines.push(format!(
-        "The low-pass moved their shape scores by {:.0}% of the best on average",
-        100.0 * error.low_pass_share
-    ));
-    lines.push(format!(
-        "{} poses in {} clusters",
-        outcome.poses_kept, outcome.clusters
+        "{} in {}",
+        counted(outcome.poses_kept, "pose"),
+        counted(outcome.clusters, "cluster")
     ));
     lines.join("\n")
+}
+
+/// What is wrong with a run's scores, if its fast path was farther from the exact sum than was asked for.
+pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
+    let (worst, tolerance) = (outcome.error.worst, plan.options.tolerance);
+    if !worst.is_finite() {
+        return Some(format!(
+            "the best pose scores nothing, so errors have no scale: nothing fits at a resolution of {} {unit} on a grid of {:.4} {unit}",
+            plan.options.resolution,
+            plan.spacing,
+            unit = plan.unit
+        ));
+    }
+    (worst > tolerance).then(|| {
+        format!(
+            "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of {tolerance:e}: what is reported is exact, but \
+             other poses may have been missed; use a lower --tolerance or a finer --spacing than {:.4}",
+            plan.spacing
+        )
+    })
+}
+
+/// A number of things, in the singular for one.
+fn counted(number: usize, thing: &str) -> String {
+    match number {
+        1 => format!("1 {thing}"),
+        _ => format!("{number} {thing}s"),
+    }
 }
 
 /// That an active site is assumed, and what follows.

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{assumed, chance_told, told};
+use super::dock_report::{assumed, chance_told, error_warning, told};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
@@ -171,6 +171,9 @@ impl Docking {
         staging.commit()?;
 
         console.say(format!("\n{}", told(&plan, &outcome)));
+        if let Some(warning) = error_warning(&plan, &outcome) {
+            console.warn(warning);
+        }
         if let Some(chosen) = &chosen {
             let stages = outcome.timing.iter();
             console.say(format!(

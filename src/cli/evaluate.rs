@@ -13,6 +13,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
+use super::output_file::check_output;
 use super::reading_arguments::ReadingArguments;
 
 /// Measure the poses of a run against a known complex.
@@ -36,6 +37,9 @@ pub struct Evaluate {
     /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Replace the file of `--output` where it is already there, be it the table that is read.
+    #[arg(long, requires = "output")]
+    force: bool,
 }
 
 impl Evaluate {
@@ -49,6 +53,11 @@ impl Evaluate {
         let mut table = PoseTable::read(&table_path)?;
         let run_path = table_path.with_file_name("run.json");
         let (receptor, ligand, native) = self.inputs(&run_path)?;
+        if let Some(file) = &self.output {
+            let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
+            let read = structures.map(|input| input.record.path.as_path());
+            check_output(file, read.chain([run_path.as_path()]), self.force)?;
+        }
         let evaluator = native.evaluator(&receptor.molecule, &ligand.molecule)?;
         console.say(match_text(&evaluator));
 
@@ -75,7 +84,7 @@ impl Evaluate {
             })
         });
         let matched = serde_json::to_value(evaluator.report()).map_err(Failure::other)?;
-        console.result(&json!({ "poses": poses.collect::<Vec<_>>(), "match": matched }));
+        console.result(&json!({ "poses": poses.collect::<Vec<_>>(), "match": matched }))?;
         Ok(())
     }
 

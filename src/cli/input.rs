@@ -72,9 +72,12 @@ pub fn label(path: &Path, chains: Option<&[String]>) -> String {
         label.push('_');
         label.push_str(chain);
     }
+    // File systems allow names of 255 bytes, and two of these make one.
+    let fits = |&(start, c): &(usize, char)| start + c.len_utf8() <= LONGEST_LABEL;
     label
-        .chars()
-        .map(|c| {
+        .char_indices()
+        .take_while(fits)
+        .map(|(_, c)| {
             if c.is_alphanumeric() || "._-".contains(c) {
                 c
             } else {
@@ -83,6 +86,9 @@ pub fn label(path: &Path, chains: Option<&[String]>) -> String {
         })
         .collect()
 }
+
+/// Most bytes of a file's part of a directory's name.
+const LONGEST_LABEL: usize = 100;
 
 /// A file's name without the endings of structure and mesh files.
 fn stem(name: &str) -> &str {
@@ -105,6 +111,13 @@ fn stem(name: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_names_leave_room_for_another() {
+        assert_eq!(label(Path::new("short.pdb"), None), "short");
+        let long = format!("{}.pdb", "é".repeat(120));
+        assert_eq!(label(Path::new(&long), None), "é".repeat(50));
+    }
 
     #[test]
     fn endings_of_structure_files_go_and_others_stay() {

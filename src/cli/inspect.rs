@@ -15,6 +15,7 @@ use super::arguments::not_negative;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
+use super::output_file::check_output;
 use super::reading_arguments::ReadingArguments;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
@@ -26,6 +27,9 @@ pub struct Inspect {
     /// Write every atom of the model to this CSV file, kept or dropped, with the reason.
     #[arg(long, value_name = "FILE")]
     atoms: Option<PathBuf>,
+    /// Replace the file of `--atoms` where it is already there.
+    #[arg(long, requires = "atoms")]
+    force: bool,
     #[command(flatten)]
     reading: ReadingArguments,
     /// pH at which charges are assigned.
@@ -48,6 +52,10 @@ impl Inspect {
             )));
         }
         let reading = self.reading.options();
+        if let Some(file) = &self.atoms {
+            let structure = InputSpec::parse(&self.file)?;
+            check_output(file, [structure.path.as_path()], self.force)?;
+        }
         let input = Input::read(&self.file, &reading)?;
         let molecule = &input.molecule;
         let labels = molecule.labels(self.ph).report;
@@ -83,7 +91,7 @@ impl Inspect {
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,
-        }));
+        }))?;
         Ok(())
     }
 }

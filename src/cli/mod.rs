@@ -20,6 +20,7 @@ mod machine_arguments;
 mod memory;
 mod mesh_input;
 mod native;
+mod output_file;
 mod ranks;
 mod reading_arguments;
 mod request;
@@ -32,7 +33,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use console::Console;
 use failure::Failure;
 
@@ -74,7 +75,10 @@ fn version() -> &'static str {
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let cli = match Cli::try_parse_from(&arguments) {
+    let parsed = command_line()
+        .try_get_matches_from(&arguments)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
         Err(error) => return refuse(&error, &arguments),
     };
@@ -103,6 +107,16 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
+}
+
+/// The command line, in which a negative number is the value of the option before it, so that what is wrong with it can be said.
+fn command_line() -> clap::Command {
+    Cli::command().mut_subcommands(|command| {
+        command.mut_args(|argument| {
+            let takes_value = argument.get_action().takes_values();
+            argument.allow_negative_numbers(takes_value)
+        })
+    })
 }
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.

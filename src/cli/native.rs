@@ -73,6 +73,18 @@ impl NativeFiles {
         })
     }
 
+    /// The files as read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Input> {
+        let (first, second) = match self {
+            Self::Complex(complex) => (complex, None),
+            Self::Partners { receptor, ligand } => (receptor, Some(ligand)),
+        };
+        [Some(first), second]
+            .into_iter()
+            .flatten()
+            .map(AsRef::as_ref)
+    }
+
     /// The files for run.json.
     pub fn record(&self) -> NativeRecord {
         match self {

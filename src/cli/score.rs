@@ -132,7 +132,7 @@ impl Score {
             }
             object.insert("rank_score".to_owned(), serde_json::json!(rank_score));
         }
-        console.result(&object);
+        console.result(&object)?;
         Ok(())
     }
 }

@@ -143,7 +143,7 @@ impl TradeoffCommand {
             "table": csv,
             "pictures": [svg, png],
             "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
-        }));
+        }))?;
         Ok(())
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! A run is built in `DIR/.partial/` and its entries are renamed into `DIR` when all of them are written, `run.json`
 //! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names, which
-//! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched.
+//! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A run that goes on holds a
+//! lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no other run takes its files for a killed one's.
 
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use super::whole_file::{FileError, PARTIAL};
@@ -41,7 +42,10 @@ pub enum StagingError {
     /// The directory holds a run and overwriting it was not asked for.
     #[error("{} already holds a run", .0.display())]
     ExistingRun(PathBuf),
-    /// Overwriting was asked for, but the directory's files are not those of a run.
+    /// Another process is writing its run there.
+    #[error("another run is being written to {}", .0.display())]
+    Busy(PathBuf),
+    /// The directory holds a run's names, but they are not of a run.
     #[error("{} holds {entry} but no {record} of knotdock, so it is not a run that may be overwritten", directory.display())]
     NotARun {
         /// The directory.
@@ -63,6 +67,7 @@ impl StagingError {
             Self::ExistingRun(_) => {
                 "choose another directory with -o, or pass --force to replace the run"
             }
+            Self::Busy(_) => "wait for it to end, or choose another directory with -o",
             Self::NotARun { .. } => "choose another directory with -o",
             Self::Write(error) => error.remedy(),
         }
@@ -71,7 +76,9 @@ impl StagingError {
     /// The file or directory in question.
     pub fn path(&self) -> &Path {
         match self {
-            Self::ExistingRun(directory) | Self::NotARun { directory, .. } => directory,
+            Self::ExistingRun(directory)
+            | Self::Busy(directory)
+            | Self::NotARun { directory, .. } => directory,
             Self::Write(error) => error.path(),
         }
     }
@@ -86,7 +93,12 @@ pub struct Staging {
     folder: PathBuf,
     made_directory: bool,
     state: State,
+    /// Locked for as long as the run goes on; none where the file system knows no locks.
+    lock: Option<File>,
 }
+
+/// The file in the staging folder that a run locks.
+const LOCK: &str = "lock";
 
 /// How far a staging has come, which says what its end has to tidy up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,8 +115,8 @@ impl Staging {
     /// Makes `directory` if there is none and the staging folder in it, which also shows that it can be written to.
     ///
     /// # Errors
-    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when `force`
-    /// would replace what no run has written, [`StagingError::Write`] when nothing can be written there.
+    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is there
+    /// no run has written, [`StagingError::Busy`] when another run is being written there, [`StagingError::Write`] when nothing can be.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
         Self::of(&RUN, directory, force)
     }
@@ -119,6 +131,9 @@ impl Staging {
         force: bool,
     ) -> Result<Self, StagingError> {
         let folder = directory.join(PARTIAL);
+        if is_locked(&folder.join(LOCK)) {
+            return Err(StagingError::Busy(directory.to_owned()));
+        }
         // A staging folder here means that a run was killed, possibly between its renames: what it left is ours.
         let interrupted = folder.is_dir();
         if let Some(&entry) = product
@@ -126,15 +141,15 @@ impl Staging {
             .iter()
             .find(|entry| directory.join(entry).symlink_metadata().is_ok())
         {
-            if !force {
-                return Err(StagingError::ExistingRun(directory.to_owned()));
-            }
             if !interrupted && !is_ours(&directory.join(product.record)) {
                 return Err(StagingError::NotARun {
                     directory: directory.to_owned(),
                     entry,
                     record: product.record,
                 });
+            }
+            if !force {
+                return Err(StagingError::ExistingRun(directory.to_owned()));
             }
         }
         let unwritable = |source| FileError::unwritable(directory, source);
@@ -143,12 +158,21 @@ impl Staging {
         }
         let made_directory = !directory.exists();
         fs::create_dir_all(&folder).map_err(unwritable)?;
+        let lock = File::create(folder.join(LOCK)).map_err(unwritable)?;
+        let lock = match lock.try_lock() {
+            Ok(()) => Some(lock),
+            Err(TryLockError::WouldBlock) => {
+                return Err(StagingError::Busy(directory.to_owned()));
+            }
+            Err(TryLockError::Error(_)) => None,
+        };
         Ok(Self {
             product,
             directory: directory.to_owned(),
             folder,
             made_directory,
             state: State::Open,
+            lock,
         })
     }
 
@@ -195,6 +219,8 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
+        // Some systems remove no file that is open.
+        self.lock = None;
         // A failure to tidy up has nobody to report to; the next run clears what is left.
         if self.state == State::Kept {
             return;
@@ -204,6 +230,11 @@ impl Drop for Staging {
             let _ = fs::remove_dir(&self.directory);
         }
     }
+}
+
+/// Whether another run holds the lock.
+fn is_locked(lock: &Path) -> bool {
+    File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
 /// Whether a record is one of ours.
@@ -267,17 +298,41 @@ mod tests {
     fn an_older_run_is_replaced_on_request_only_and_a_stranger_never() {
         let root = tempfile::tempdir().unwrap();
         fs::write(root.path().join("poses.csv"), "not ours").unwrap();
-        assert!(matches!(
-            Staging::open(root.path(), false),
-            Err(StagingError::ExistingRun(_))
-        ));
-        assert!(matches!(
-            Staging::open(root.path(), true),
-            Err(StagingError::NotARun { .. })
-        ));
+        // Where no run is, --force is not the remedy.
+        for force in [false, true] {
+            assert!(matches!(
+                Staging::open(root.path(), force),
+                Err(StagingError::NotARun { .. })
+            ));
+        }
         assert_eq!(
             fs::read_to_string(root.path().join("poses.csv")).unwrap(),
             "not ours"
+        );
+    }
+
+    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its end.
+    #[test]
+    fn two_runs_do_not_share_a_directory() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        let first = Staging::open(&directory, false).unwrap();
+        fill(&first, "first");
+        for force in [false, true] {
+            assert!(matches!(
+                Staging::open(&directory, force),
+                Err(StagingError::Busy(_))
+            ));
+        }
+        first.commit().unwrap();
+        assert!(matches!(
+            Staging::open(&directory, false),
+            Err(StagingError::ExistingRun(_))
+        ));
+        drop(Staging::open(&directory, true).unwrap());
+        assert_eq!(
+            fs::read_to_string(directory.join("poses.csv")).unwrap(),
+            "first"
         );
     }
 

@@ -50,7 +50,7 @@ impl FileError {
     /// What the user can do about it.
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::Unwritable { .. } => "choose with -o a place that you may write to",
+            Self::Unwritable { .. } => "name a place that you may write to",
             Self::Write { .. } => "check the free space and the permissions there",
         }
     }

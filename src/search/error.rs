@@ -49,6 +49,8 @@ pub enum SearchError {
         allowed: u64,
         /// Grid spacing that would fit, if any does.
         spacing: Option<f64>,
+        /// Resolution for which that spacing is fine enough, where it is a coarser one than was asked for.
+        resolution: Option<f64>,
     },
     /// The threads could not be started.
     #[error("threads could not be started: {0}")]
@@ -70,19 +72,39 @@ impl SearchError {
                 "use a coarser --resolution or --spacing, or check for stray atoms far away"
                     .to_owned()
             }
+            Self::Option { bound, .. } if bound.starts_with("left out") => {
+                "leave the option out".to_owned()
+            }
             Self::Plan(_) | Self::Option { .. } => {
                 "give the option a value in its range".to_owned()
             }
             Self::Memory {
                 spacing: Some(spacing),
+                resolution,
                 ..
-            } => format!("use --spacing {spacing}, or allow more with --memory"),
-            Self::Memory { .. } => "allow more with --memory".to_owned(),
+            } => {
+                let resolution = resolution.map_or_else(String::new, |resolution| {
+                    format!(" --resolution {resolution}")
+                });
+                format!(
+                    "use --spacing {spacing}{resolution}, allow more with --memory, or check for stray atoms far away"
+                )
+            }
+            Self::Memory { .. } => {
+                "allow more with --memory, or check for stray atoms far away".to_owned()
+            }
             Self::Graphics(_) => {
                 "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
                     .to_owned()
             }
             Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::Effect {
+                effect: Effect::Restraint,
+                ..
+            } => {
+                "leave out the options that name residues to block or attract, and restraint of --effects"
+                    .to_owned()
+            }
             Self::Effect { .. } => {
                 "leave it out of --effects, or let auto choose what the inputs call for".to_owned()
             }

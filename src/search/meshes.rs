@@ -145,17 +145,17 @@ impl MeshSceneError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Sample { .. } => {
-                "check that the mesh is closed and one solid, or sample it on a finer --grid"
+                "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
             }
-            Self::Knots(_) => "check the mesh, or sample it on a finer --grid",
+            Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
             Self::Size { .. } => {
                 "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
             }
             Self::Thin { .. } => {
-                "sample finer with --grid (2^21, say); where one part is much larger than the other, cut it down to what is near the joint"
+                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut it down to what is near the joint"
             }
             Self::Offset { .. } => {
-                "choose --offset in this range, or a finer --grid, which brings its lower end down; where one part is much larger than the \
+                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; where one part is much larger than the \
                  other, cut it down to what is near the joint"
             }
         }

@@ -48,7 +48,7 @@ pub struct RankedPose {
     pub z_score: Option<f64>,
 }
 
-/// The fast path's error as measured in this run, relative to the best exact score.
+/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores anything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredError {
     /// Grid poses over which it was measured.
@@ -61,11 +61,21 @@ pub struct MeasuredError {
     pub low_pass_share: f64,
 }
 
+/// Scores below this are none: a pair of balls that touch earns about one.
+const NOTHING: f64 = 1e-6;
+
 impl MeasuredError {
     /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
     pub(super) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
         let poses = peaks.len().min(exact.len());
-        let best = best.max(f64::MIN_POSITIVE);
+        if best < NOTHING {
+            return Self {
+                poses,
+                rms: f64::INFINITY,
+                worst: f64::INFINITY,
+                low_pass_share: f64::INFINITY,
+            };
+        }
         let (mut squares, mut worst, mut removed) = (0.0, 0.0f64, 0.0);
         for (peak, exact) in peaks.iter().zip(exact) {
             let error = (peak.score - exact.score).abs() / best;

@@ -169,21 +169,23 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     if let Some(allowed) = options.memory {
         let room = allowed.saturating_sub(fixed) / per_rotation.max(1);
         if room == 0 {
-            let mut spacing = engine.spacing;
-            let fits = (0..40).find_map(|_| {
-                spacing *= 1.1;
-                let coarser = DockOptions {
-                    spacing: Some(spacing),
-                    ..options.clone()
-                };
+            let fits = (0..60).find_map(|step| {
+                let coarser = coarser(options, step, angstrom);
                 let plan = planned(&coarser).ok()?;
-                let (fixed, per_rotation) = needs(&plan);
-                (fixed + per_rotation <= allowed).then(|| rounded_up(spacing, angstrom))
+                let coarser = DockOptions {
+                    spacing: Some(rounded_up(plan.spacing, angstrom)),
+                    ..coarser
+                };
+                let (fixed, per_rotation) = needs(&planned(&coarser).ok()?);
+                (fixed + per_rotation <= allowed).then_some(coarser)
             });
             return Err(SearchError::Memory {
                 needed: fixed + per_rotation,
                 allowed,
-                spacing: fits,
+                spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
+                resolution: fits
+                    .map(|coarser| coarser.resolution)
+                    .filter(|&resolution| resolution > options.resolution),
             });
         }
         in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
@@ -261,6 +263,20 @@ fn fine_bytes(options: &DockOptions) -> u64 {
     let finer = options.fine_rotations.unwrap_or(0);
     let searched = (options.fine_share * finer as f64).ceil() as u64;
     64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
+}
+
+/// The options with the grid that their resolution calls for and, from the second step on, a resolution coarser by a tenth each: a grid
+/// too coarse for the resolution is small as well, but its scores are wrong.
+fn coarser(options: &DockOptions, step: i32, angstrom: f64) -> DockOptions {
+    let resolution = match step {
+        0 => options.resolution,
+        _ => rounded_up(options.resolution * 1.1f64.powi(step), angstrom),
+    };
+    DockOptions {
+        resolution,
+        spacing: None,
+        ..options.clone()
+    }
 }
 
 /// A spacing rounded up to hundredths of an Ångström, or of the power of ten below what plays its part.

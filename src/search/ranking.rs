@@ -133,8 +133,12 @@ pub(super) fn report(
 /// What the run's kept poses score on the whole.
 struct Background {
     mean: f64,
-    deviation: f64,
+    /// Nothing where scores differ by no more than the fast path may be off by.
+    deviation: Option<f64>,
 }
+
+/// Least spread of scores, as a share of the largest, that tells one pose from another.
+const LEAST_SPREAD: f64 = 1e-3;
 
 impl Background {
     /// Mean and standard deviation of the candidates' rank scores by the fast path.
@@ -142,14 +146,16 @@ impl Background {
         let count = candidates.len().max(1) as f64;
         let mean = candidates.iter().map(|c| c.score).sum::<f64>() / count;
         let squares = candidates.iter().map(|c| (c.score - mean).powi(2));
+        let deviation = (squares.sum::<f64>() / count).sqrt();
+        let largest = candidates.iter().map(|c| c.score.abs()).fold(0.0, f64::max);
         Self {
             mean,
-            deviation: (squares.sum::<f64>() / count).sqrt(),
+            deviation: (deviation > LEAST_SPREAD * largest).then_some(deviation),
         }
     }
 
     fn z_score(&self, rank_score: f64) -> Option<f64> {
-        let z = (rank_score - self.mean) / self.deviation;
+        let z = (rank_score - self.mean) / self.deviation?;
         z.is_finite().then_some(z)
     }
 }

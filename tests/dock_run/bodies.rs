@@ -128,12 +128,17 @@ fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
     let (code, told) = attempt(&(needed * 19 / 20).to_string(), "");
     assert_eq!(code, Some(2), "{told}");
     let remedy = told["error"]["remedy"].as_str().unwrap();
-    let spacing = remedy.split(&[' ', ','][..]).nth(2).unwrap();
-    let (code, told) = attempt(
-        &(needed * 19 / 20).to_string(),
-        &format!("--spacing {spacing}"),
-    );
+    let coarser = remedy.strip_prefix("use ").unwrap();
+    let coarser = coarser.split(',').next().unwrap();
+    assert!(coarser.starts_with("--spacing "), "{remedy}");
+    let (code, told) = attempt(&(needed * 19 / 20).to_string(), coarser);
     assert_eq!(code, Some(0), "{told}");
+    // A coarser grid under the same resolution would fit as well, and its scores would be off by far more than was asked for.
+    let tolerance = told["run"]["options"]["tolerance"].as_f64().unwrap();
+    assert!(
+        told["run"]["error"]["rms"].as_f64().unwrap() < tolerance,
+        "{told}"
+    );
 }
 
 #[test]
@@ -172,4 +177,32 @@ fn mmcif_and_gzip_go_in_and_mmcif_comes_out() {
     for (a, b) in complex.atoms.iter().zip(&same.atoms) {
         assert_eq!((&a.name, a.residue_number), (&b.name, b.residue_number));
     }
+}
+
+/// Found by an audit: a grid too coarse for its resolution was told of by a figure among others, or by an infinite one.
+#[test]
+fn scores_that_are_off_by_more_than_was_asked_are_warned_of() {
+    let folder = place();
+    let told = |options: &str| {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["dock", "receptor.pdb", "ligand.pdb", "--rotations", "20"])
+            .args(["--write-top", "0", "-o", "run", "--force"])
+            .args(options.split_whitespace())
+            .output()
+            .unwrap();
+        assert!(output.status.success());
+        let words = |bytes| String::from_utf8(bytes).unwrap();
+        (words(output.stdout), words(output.stderr))
+    };
+    let (_, warned) = told("--spacing 6");
+    assert!(
+        warned.contains("warning: the fast path was off by"),
+        "{warned}"
+    );
+    let (report, warned) = told("--spacing 60");
+    assert!(warned.contains("nothing fits"), "{warned}");
+    assert!(!report.contains("inf"), "{report}");
+    let (_, warned) = told("--tolerance 1e-2 --resolution 6 --spacing 1.5");
+    assert!(!warned.contains("warning: the fast path"), "{warned}");
 }

@@ -10,6 +10,7 @@ use knotdock_structures::sampler::Ball;
 
 use super::Sample;
 use crate::cli::failure::Failure;
+use crate::cli::output_file::check_output;
 
 /// Form in which balls are exported.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -29,6 +30,12 @@ impl Export {
     }
 }
 
+/// What a file's name ends with, in small letters.
+fn ending(path: &Path) -> Option<String> {
+    path.extension()
+        .map(|ending| ending.to_string_lossy().to_ascii_lowercase())
+}
+
 impl Sample {
     /// Checks, before any work, that the files to write are not there and can be made.
     pub(super) fn check_files(&self) -> Result<Option<Export>, Failure> {
@@ -41,35 +48,24 @@ impl Sample {
         .flatten()
         .collect();
         for (index, file) in files.iter().enumerate() {
-            if files[..index].contains(file) || **file == self.mesh {
+            if files[..index].contains(file) {
                 return Err(Failure::input("the same file is named twice")
                     .at(file)
                     .remedy("give each file to write a name of its own"));
             }
-            // A device or a pipe is there and is meant to be written to.
-            if !self.force && file.is_file() {
-                return Err(Failure::input("the file is already there")
-                    .at(file)
-                    .remedy("choose another name, or pass --force to replace it"));
-            }
-            let folder = file
-                .parent()
-                .filter(|folder| !folder.as_os_str().is_empty());
-            if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
-                return Err(Failure::input(
-                    "cannot write there: the folder does not exist or the name is a folder's",
-                )
-                .at(file)
-                .remedy("name a file in a folder that exists"));
-            }
+            check_output(file, [self.mesh.as_path()], self.force)?;
+        }
+        if let Some(path) = &self.picture
+            && ending(path).as_deref() != Some("svg")
+        {
+            return Err(Failure::input("--picture writes .svg files")
+                .at(path)
+                .remedy("end the name with .svg"));
         }
         let Some(path) = &self.export else {
             return Ok(None);
         };
-        let ending = path
-            .extension()
-            .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("obj") => Ok(Some(Export::Mesh)),
             Some("pdb") => Ok(Some(Export::PseudoAtoms)),
             _ => Err(Failure::input("--export writes .obj and .pdb files")

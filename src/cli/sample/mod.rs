@@ -138,6 +138,12 @@ impl Sample {
         let step = Step::since("measuring the fit", start);
         sampling.steps.push(step);
 
+        let mut warnings = report.warnings();
+        if sampling.inside_nodes == 0 {
+            let unseen = "no node of the grid lies inside the mesh, so volumes are not measured; a finer --grid has some".to_owned();
+            self.warn(vec![unseen.clone()], &console)?;
+            warnings.push(unseen);
+        }
         let finished = self.finish(&sampling, &referee)?;
         sampling.steps.extend(finished.step);
         let frame = solid.frame();
@@ -171,10 +177,10 @@ impl Sample {
         object["balls"] = json!(knots.len());
         object["set"] = json!(chosen_name(&self, &sampling));
         object["mesh"] = json!(report);
-        object["warnings"] = json!(report.warnings());
+        object["warnings"] = json!(warnings);
         object["level"] = json!(finished.level.map(|fit| told.fit(&fit)));
         object["weights"] = json!(finished.fitted);
-        console.result(&object);
+        console.result(&object)?;
         Ok(())
     }
 
@@ -184,7 +190,7 @@ impl Sample {
             if self.strict {
                 return Err(Failure::input(warning)
                     .at(&self.mesh)
-                    .remedy("mend the mesh, or leave --strict out to sample what the winding number calls inside"));
+                    .remedy("mend the mesh or sample it finer, or leave --strict out to sample what the winding number calls inside"));
             }
             console.warn(warning);
         }
@@ -201,6 +207,13 @@ impl Sample {
             step: None,
         };
         if self.weights == Weights::Fitted {
+            if sampling.inside_nodes == 0 {
+                return Err(Failure::input(
+                    "weights are fitted at nodes of the grid inside the mesh, and there are none",
+                )
+                .at(&self.mesh)
+                .remedy("sample it on a finer --grid, or leave out --weights fitted"));
+            }
             let (field, volume) = (&sampling.field, referee.volume());
             finished.fitted = Some(weights::fit(field, &finished.balls, self.alpha, volume));
             finished.step = Some(Step::since("fitting weights", start));

@@ -21,6 +21,19 @@ impl Told<'_> {
         self.sampling.field.grid.epsilon() * self.unit
     }
 
+    /// A volume in the file's unit, if the grid sees the solid at all.
+    fn measured(&self, volume: f64) -> Option<f64> {
+        (self.volume > 0.0).then(|| volume * self.unit.powi(3))
+    }
+
+    /// A share of the solid's volume.
+    fn percent(&self, volume: f64) -> String {
+        match self.volume > 0.0 {
+            true => format!("{:.3}", 100.0 * volume / self.volume),
+            false => "-".to_owned(),
+        }
+    }
+
     /// For a person.
     pub fn text(&self) -> String {
         let grid = self.sampling.field.grid;
@@ -44,8 +57,8 @@ impl Told<'_> {
                 set.balls.len().to_string(),
                 format!("{:.6}", fit.hausdorff_inward * self.unit),
                 format!("{:.6}", fit.hausdorff_outward * self.unit),
-                format!("{:.3}", 100.0 * fit.volume_missed / self.volume),
-                format!("{:.3}", 100.0 * fit.volume_outside / self.volume),
+                self.percent(fit.volume_missed),
+                self.percent(fit.volume_outside),
                 format!("{:.2}", set.seconds),
             ]);
         }
@@ -94,7 +107,7 @@ impl Told<'_> {
         json!({
             "grid": self.grid(),
             "inside_nodes": self.sampling.inside_nodes,
-            "volume": self.volume * self.unit.powi(3),
+            "volume": self.measured(self.volume),
             "sets": self.sets(),
             "added": self.sampling.covering.map(|covering| json!({
                 "surface_balls": covering.surface_balls,
@@ -131,13 +144,12 @@ impl Told<'_> {
 
     /// How balls fit the solid, for a program.
     pub fn fit(&self, fit: &Fit) -> Value {
-        let cubed = self.unit.powi(3);
         json!({
             "hausdorff_inward": fit.hausdorff_inward * self.unit,
             "hausdorff_outward": fit.hausdorff_outward * self.unit,
             "outward_bound": fit.outward_bound * self.unit,
-            "volume_missed": fit.volume_missed * cubed,
-            "volume_outside": fit.volume_outside * cubed,
+            "volume_missed": self.measured(fit.volume_missed),
+            "volume_outside": self.measured(fit.volume_outside),
             "nodes_missed": fit.nodes_missed,
         })
     }

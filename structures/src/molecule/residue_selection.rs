@@ -43,7 +43,7 @@ impl std::str::FromStr for ResidueSelection {
     type Err = String;
 
     /// Reads parts with commas between them: `H` for a chain, `H:12` for a residue with all that is inserted after it, `H:52A` for an inserted
-    /// one, `H:1-50` for a range of numbers; `:12` where chains have no name.
+    /// one, `H:1-50` for a range of numbers; `_:12` or `:12` where chains have no name.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split(',').map(|part| {
             let (chain, residues) = match part.trim().split_once(':') {
@@ -107,7 +107,9 @@ impl Molecule {
             let mut found = false;
             for (atom, chosen) in self.atoms.iter().zip(&mut chosen) {
                 let number = atom.residue_number;
-                let meant = atom.chain == part.chain
+                // Where a chain has no name reports say `_`.
+                let is_blank = part.chain == "_" && atom.chain.is_empty();
+                let meant = (atom.chain == part.chain || is_blank)
                     && match part.residues {
                         Range::Chain => true,
                         Range::Numbers(first, last) => (first..=last).contains(&number),

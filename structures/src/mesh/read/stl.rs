@@ -24,10 +24,12 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
     let text = String::from_utf8_lossy(bytes);
-    if !is_binary(bytes) && text.trim_start().starts_with("solid") {
+    let text = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
+    let is_solid = |word: &str| word.eq_ignore_ascii_case("solid");
+    if !is_binary(bytes) && text.get(..5).is_some_and(is_solid) {
         // A binary file cut short may begin with `solid` too; then it has zero bytes, which text never has.
         if !bytes.contains(&0) {
-            return parse_text(&text);
+            return parse_text(text);
         }
     }
     parse_binary(bytes)
