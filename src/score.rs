@@ -36,7 +36,14 @@ pub struct ScoreOptions {
     pub modes: Option<usize>,
     /// Which modes come first.
     pub order: ModeOrder,
+    /// Bytes that all modes may take; nothing for any number.
+    pub memory: Option<u64>,
 }
+
+/// Bytes that a mode takes, conjugates counted once, besides those of each function: as measured, less than a tenth from it.
+const BYTES_A_MODE: u64 = 1040;
+/// Bytes that a mode takes for each function of the ligand.
+const BYTES_A_FUNCTION: u64 = 71;
 
 /// One row of the ladder.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -129,6 +136,15 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         kernel_tolerance,
         scene.terms.clone(),
     )?);
+    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
+    let needed = bytes_a_mode * plan.modes.count as u64;
+    if let Some(allowed) = options.memory.filter(|&allowed| needed > allowed) {
+        return Err(SearchError::Modes {
+            modes: plan.modes.count,
+            needed,
+            allowed,
+        });
+    }
     let scorer = ExactScorer::with_effects(&plan.kernel, receptor, ligand, &plan.effects)?;
     let exact = scorer.score(pose);
     let folds = [

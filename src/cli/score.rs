@@ -14,6 +14,7 @@ use super::console::Console;
 use super::dock_report::site_told;
 use super::failure::Failure;
 use super::input::Input;
+use super::memory;
 use super::reading_arguments::ReadingArguments;
 use super::search_arguments::KernelArguments;
 
@@ -67,6 +68,7 @@ impl Score {
                 Order::LowFrequency => ModeOrder::LowFrequency,
                 Order::Magnitude => ModeOrder::Magnitude,
             },
+            memory: memory::default_limit(),
         };
         let reading = self.reading.options();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());

@@ -91,7 +91,8 @@ pub struct KernelArguments {
     /// Weight in shape of atoms that no water reaches, against 1 for the others.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().core_weight, help_heading = SCORE)]
     core_weight: f64,
-    /// Error of the fast path that is allowed, as a share of the best score.
+    /// Error of the fast path that is allowed, as a share of the best score. A smaller one lengthens the window of the kernel too, so that exact scores of
+    /// runs with different tolerances differ.
     #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().tolerance, help_heading = TRADE_OFFS)]
     tolerance: f64,
     /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics, contact and restraint, with commas

@@ -52,6 +52,16 @@ pub enum SearchError {
         /// Resolution for which that spacing is fine enough, where it is a coarser one than was asked for.
         resolution: Option<f64>,
     },
+    /// The modes that a score is to be made of do not fit into the memory allowed.
+    #[error("{modes} modes need {needed} bytes, and {allowed} are allowed")]
+    Modes {
+        /// Modes, conjugates counted once.
+        modes: usize,
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes allowed.
+        allowed: u64,
+    },
     /// The threads could not be started.
     #[error("threads could not be started: {0}")]
     Threads(String),
@@ -68,7 +78,7 @@ impl SearchError {
     pub fn remedy(&self) -> String {
         match self {
             Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
-            Self::Plan(PlanError::TooLarge(_)) => {
+            Self::Plan(PlanError::TooLarge(_)) | Self::Modes { .. } => {
                 "use a coarser --resolution or --spacing, or check for stray atoms far away"
                     .to_owned()
             }
