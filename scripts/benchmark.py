@@ -147,7 +147,10 @@ def fold(text):
 
 
 def select_pairs(options):
-    with open(options.folder / "manifest.csv", newline="") as file:
+    manifest = options.folder / "manifest.csv"
+    if not manifest.is_file():
+        sys.exit(f"{options.folder} holds no manifest.csv; the head of this script says how the folder is laid out")
+    with open(manifest, newline="") as file:
         pairs = list(csv.DictReader(file))
     if options.split == "fit":
         pairs = [pair for pair in pairs if pair["split"] == "train" and not pair.get("near_eval", "").strip()]

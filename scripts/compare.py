@@ -89,7 +89,10 @@ def read(folders, ranking="poses"):
     """Rows by pair and seed; what was not found has an infinite rank."""
     rows = {}
     for folder in folders:
-        with open(folder / f"{ranking}.csv", newline="") as file:
+        table = folder / f"{ranking}.csv"
+        if not table.is_file():
+            raise SystemExit(f"{folder} holds no {ranking}.csv; name the --out folder of a scripts/benchmark.py run")
+        with open(table, newline="") as file:
             for row in csv.DictReader(file):
                 ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
                 rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}

@@ -147,6 +147,8 @@ def poses(name, distance, seed):
 
 
 def main():
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
     folder = Path(sys.argv[1])
     (folder / "cases").mkdir(parents=True, exist_ok=True)
     table = folder / "poses.csv"

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use knotdock::output::batch_results::{PairResult, RESULTS, RunSummary, is_ours, write_results};
+use knotdock::output::report::counted;
 use knotdock::output::whole_file::FileError;
 use serde_json::{Value, json};
 
@@ -62,9 +63,10 @@ impl Batch {
         })?;
         let count = pairs.len();
         console.say(format!(
-            "{count} {} of {} go to {}",
-            if count == 1 { "pair" } else { "pairs" },
+            "{} of {} {} to {}",
+            counted(count, "pair"),
             self.pairs.display(),
+            if count == 1 { "goes" } else { "go" },
             directory.display()
         ));
         let mut told: Vec<Value> = Vec::new();

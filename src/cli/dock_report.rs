@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use knotdock::output::report::counted;
 use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect};
 use knotdock_structures::molecule::LabelReport;
 
@@ -111,14 +112,6 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
             plan.spacing
         )
     })
-}
-
-/// A number of things, in the singular for one.
-fn counted(number: usize, thing: &str) -> String {
-    match number {
-        1 => format!("1 {thing}"),
-        _ => format!("{number} {thing}s"),
-    }
 }
 
 /// That an active site is assumed, and what follows.

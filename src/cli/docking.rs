@@ -8,7 +8,7 @@ use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, R
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
-use knotdock::output::report::{BEST, best_clusters, firsts};
+use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
 use knotdock::search::options::Precision;
 use knotdock::search::{self, DockOutcome};
@@ -187,8 +187,8 @@ impl Docking {
             console.say(format!("\n{}", chance_told(chance)));
         }
         console.say(format!(
-            "\n{} rows in {}",
-            outcome.poses.len(),
+            "\n{} in {}",
+            counted(outcome.poses.len(), "row"),
             directory.join("poses.csv").display()
         ));
         let complexes = written

@@ -68,7 +68,11 @@ impl Evaluate {
             }
             table.write(path)?;
             console.say(format!("\n{}", firsts(table.rows(), &qualities)));
-            console.say(format!("{} rows in {}", qualities.len(), path.display()));
+            console.say(format!(
+                "{} in {}",
+                report::counted(qualities.len(), "row"),
+                path.display()
+            ));
         } else if !console.json {
             console.say(format!("\n{}", listing(table.rows(), &qualities)));
             console.say(format!("\n{}", firsts(table.rows(), &qualities)));

@@ -21,11 +21,7 @@ impl Input {
     /// Reads `FILE` or `FILE:H,L`.
     pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Failure> {
         let spec = InputSpec::parse(text)?;
-        if is_mesh(&spec.path) {
-            return Err(Failure::input("this is a mesh, where a molecule is needed")
-                .at(&spec.path)
-                .remedy("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
-        }
+        refuse_mesh(&spec)?;
         Self::of(&spec, options)
     }
 
@@ -37,7 +33,9 @@ impl Input {
         options: &ReadOptions,
     ) -> Result<Self, Failure> {
         let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
-        Self::of(&record.locate(&folders)?.spec(), options)
+        let spec = record.locate(&folders)?.spec();
+        refuse_mesh(&spec)?;
+        Self::of(&spec, options)
     }
 
     /// Reads what a specification names.
@@ -62,6 +60,15 @@ impl Input {
             report,
         })
     }
+}
+
+fn refuse_mesh(spec: &InputSpec) -> Result<(), Failure> {
+    if is_mesh(&spec.path) {
+        return Err(Failure::input("this is a mesh, where a molecule is needed")
+            .at(&spec.path)
+            .remedy("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
+    }
+    Ok(())
 }
 
 /// A name for directories: that of a file without its endings, and the chains that are picked.

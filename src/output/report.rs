@@ -61,6 +61,14 @@ pub fn firsts(ranking: &[RankedPose]) -> Vec<usize> {
     firsts
 }
 
+/// A number of things, in the singular for one.
+pub fn counted(number: usize, thing: &str) -> String {
+    match number {
+        1 => format!("1 {thing}"),
+        _ => format!("{number} {thing}s"),
+    }
+}
+
 /// Lines of fields as text, each column flush right.
 pub fn align(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);

@@ -369,6 +369,7 @@ impl std::fmt::Display for DockPlan {
         let (digits, finer) = ((2 + below).max(0) as usize, (3 - below).max(0) as usize);
         let rotations = match self.options.symmetry {
             Some(symmetry) => format!("axes of {symmetry}"),
+            None if self.rotations == 1 => "rotation".to_owned(),
             None => "rotations".to_owned(),
         };
         write!(
