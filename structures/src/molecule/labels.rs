@@ -192,22 +192,27 @@ impl Molecule {
         apart && (chain != next_chain || next_number <= number + 1)
     }
 
-    /// Whether an atom of another group is bonded to a terminal atom: an acetyl, an amide, a sugar.
+    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
+    /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
     fn capped(&self, groups: &[Residue<'_>], residue: &Residue<'_>, name: &str) -> bool {
         let Some(end) = self.atom(residue, name) else {
             return true;
         };
-        groups
-            .iter()
-            .filter(|group| matches!(group.kind, GroupKind::Cofactor | GroupKind::Glycan))
-            .flat_map(|group| &group.atoms)
-            .filter_map(|&index| self.atoms.get(index))
-            .any(|atom| {
-                let square: f64 = (0..3)
-                    .map(|axis| (atom.position[axis] - end.position[axis]).powi(2))
-                    .sum();
-                square < 1.7 * 1.7
-            })
+        let is_bonded = |atom: &Atom| squared_distance(atom.position, end.position) < 1.7 * 1.7;
+        let other_end = if name == "N" { "C" } else { "N" };
+        groups.iter().any(|group| match group.kind {
+            GroupKind::Cofactor | GroupKind::Glycan => {
+                let atoms = group
+                    .atoms
+                    .iter()
+                    .filter_map(|&index| self.atoms.get(index));
+                atoms.into_iter().any(is_bonded)
+            }
+            GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
+                group.key != residue.key && self.atom(group, other_end).is_some_and(is_bonded)
+            }
+            _ => false,
+        })
     }
 
     fn charge_amino(&self, residue: &Residue<'_>, labels: &mut Labels) {
@@ -326,6 +331,23 @@ mod tests {
         let labels = labels(atoms);
         assert_eq!(labels.report.termini, [0, 1]);
         assert_eq!(labels.charges[1], -0.10);
+    }
+
+    /// Found by an audit: residues in another order than the chain's made ends of each, though all bonds were there.
+    #[test]
+    fn a_ring_has_no_ends_and_the_order_of_residues_makes_none() {
+        let straight = chain(&[("ALA", 1), ("GLY", 2), ("SER", 3)]);
+        let mut turned = straight.clone();
+        turned.rotate_left(4);
+        let reversed = straight.chunks(4).rev().flatten().cloned().collect();
+        for atoms in [straight.clone(), turned, reversed] {
+            let report = labels(atoms).report;
+            assert_eq!((report.termini, report.gaps), ([1, 1], 0));
+        }
+        // The last C bends back to the first N.
+        let mut ring = straight;
+        ring[10].position = [0.0, 1.3, 0.0];
+        assert_eq!(labels(ring).report.termini, [0, 0]);
     }
 
     #[test]
