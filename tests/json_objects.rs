@@ -253,7 +253,7 @@ fn inspect_lists_every_atom_with_what_became_of_it() {
     {
         let told = object(&run(
             folder.path(),
-            &format!("inspect wet.pdb --atoms atoms.csv --json {option}"),
+            &format!("inspect wet.pdb --atoms atoms.csv --force --json {option}"),
         ));
         assert_eq!(told["input"]["atoms"], kept);
         let table = fs::read_to_string(folder.path().join("atoms.csv")).unwrap();

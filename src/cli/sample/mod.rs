@@ -141,7 +141,7 @@ impl Sample {
         let mut warnings = report.warnings();
         if sampling.inside_nodes == 0 {
             let unseen = "no node of the grid lies inside the mesh, so volumes are not measured; a finer --grid has some".to_owned();
-            self.warn(vec![unseen.clone()], &console)?;
+            console.warn(&unseen);
             warnings.push(unseen);
         }
         let finished = self.finish(&sampling, &referee)?;
@@ -190,7 +190,7 @@ impl Sample {
             if self.strict {
                 return Err(Failure::input(warning)
                     .at(&self.mesh)
-                    .remedy("mend the mesh or sample it finer, or leave --strict out to sample what the winding number calls inside"));
+                    .remedy("mend the mesh, or leave --strict out to sample what the winding number calls inside"));
             }
             console.warn(warning);
         }
