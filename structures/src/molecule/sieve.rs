@@ -17,6 +17,7 @@
 
 pub(super) mod mmcif;
 pub(super) mod pdb;
+mod residue_columns;
 pub(super) mod tokens;
 
 use std::path::Path;
