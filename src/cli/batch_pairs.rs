@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use clap::Parser;
 use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches, Parser};
 use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
@@ -12,7 +12,7 @@ use knotdock_structures::molecule::InputSpec;
 use super::dock::Dock;
 use super::failure::Failure;
 use super::input::label;
-use super::message;
+use super::{judging_numbers, message};
 
 /// Columns that name files.
 const FILES: [&str; 6] = [
@@ -87,13 +87,21 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
     pairs.collect()
 }
 
+/// Stand for a row's files where only the options are looked at.
+const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
+
+fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
+    let matches = judging_numbers(PairCommand::command()).try_get_matches_from(words)?;
+    PairCommand::from_arg_matches(&matches)
+}
+
 /// Refuses options after `--` that no pair's command line could have: a row of the table is not at fault then.
 fn check_options(options: &[String]) -> Result<(), Failure> {
     let remedy = "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
     let of_no_row = ["knotdock dock"].into_iter().map(str::to_owned);
-    let files = ["--", "receptor", "ligand"].map(str::to_owned);
+    let files = ["--"].iter().chain(&FILLED_IN).map(ToString::to_string);
     let words = of_no_row.chain(options.iter().cloned()).chain(files);
-    match PairCommand::try_parse_from(words) {
+    match parse(words) {
         Ok(command) if command.dock.names_its_run() => Err(Failure::input(
             "--output cannot come after --: where its runs go is the batch's to say",
         )
@@ -105,6 +113,26 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
             ) =>
         {
             Err(Failure::input("no help can be asked for after --").remedy(remedy))
+        }
+        Err(error)
+            if error.kind() == ErrorKind::UnknownArgument
+                && FILLED_IN.iter().any(|file| message(&error).contains(*file)) =>
+        {
+            Err(
+                Failure::input("no file can come after --: files are the table's to name")
+                    .remedy(remedy),
+            )
+        }
+        // In conflict with the files are --from, which no row can do with, and --symmetry, which a row without a ligand asks for.
+        Err(error) if message(&error).contains("--from") => Err(Failure::input(
+            "--from cannot come after --: what is docked is the table's to say",
+        )
+        .remedy(remedy)),
+        Err(error)
+            if error.kind() == ErrorKind::ArgumentConflict
+                && !message(&error).contains("LIGAND") =>
+        {
+            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
         }
         Err(error)
             if matches!(
@@ -147,7 +175,7 @@ fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Resu
             .filter(|file| !file.is_empty())
             .map(|file| at(folder, file)),
     );
-    let command = PairCommand::try_parse_from(words).map_err(|error| message(&error))?;
+    let command = parse(words).map_err(|error| message(&error))?;
     Ok(command.dock)
 }
 

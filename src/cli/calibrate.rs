@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use knotdock::output::cost_model_file::{default_path, read, write};
+use knotdock::output::cost_model_file::{default_path, is_ours, read, write};
 use knotdock::output::report::align;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
@@ -33,7 +33,7 @@ impl Calibrate {
             Failure::input("there is no cache folder: neither XDG_CACHE_HOME nor HOME names one")
                 .remedy("name a file with -o")
         })?;
-        if named && path.exists() && !matches!(read(&path), Ok(Some(_))) {
+        if named && path.is_file() && !is_ours(&path) {
             return Err(
                 Failure::input("the file is already there and holds no cost model")
                     .at(&path)

@@ -74,17 +74,23 @@ fn refuse_mesh(spec: &InputSpec) -> Result<(), Failure> {
 /// A name for directories: that of a file without its endings, and the chains that are picked.
 pub fn label(path: &Path, chains: Option<&[String]>) -> String {
     let name = path.file_name().unwrap_or_default();
-    let mut label = stem(&name.to_string_lossy()).to_owned();
-    for chain in chains.into_iter().flatten() {
-        label.push('_');
-        label.push_str(chain);
-    }
     // File systems allow names of 255 bytes, and two of these make one.
-    let fits = |&(start, c): &(usize, char)| start + c.len_utf8() <= LONGEST_LABEL;
+    let cut = |text: &str, bytes: usize| -> String {
+        let fits = |&(start, c): &(usize, char)| start + c.len_utf8() <= bytes;
+        text.char_indices()
+            .take_while(fits)
+            .map(|(_, c)| c)
+            .collect()
+    };
+    let chains = chains
+        .into_iter()
+        .flatten()
+        .map(|chain| format!("_{chain}"));
+    let mut label = cut(stem(&name.to_string_lossy()), LONGEST_NAME);
+    label += &cut(&chains.collect::<String>(), LONGEST_CHAINS);
     label
-        .char_indices()
-        .take_while(fits)
-        .map(|(_, c)| {
+        .chars()
+        .map(|c| {
             if c.is_alphanumeric() || "._-".contains(c) {
                 c
             } else {
@@ -94,8 +100,9 @@ pub fn label(path: &Path, chains: Option<&[String]>) -> String {
         .collect()
 }
 
-/// Most bytes of a file's part of a directory's name.
-const LONGEST_LABEL: usize = 100;
+/// Most bytes of a file's part of a directory's name, and of its chains'.
+const LONGEST_NAME: usize = 80;
+const LONGEST_CHAINS: usize = 30;
 
 /// A file's name without the endings of structure and mesh files.
 fn stem(name: &str) -> &str {
@@ -123,7 +130,10 @@ mod tests {
     fn long_names_leave_room_for_another() {
         assert_eq!(label(Path::new("short.pdb"), None), "short");
         let long = format!("{}.pdb", "é".repeat(120));
-        assert_eq!(label(Path::new(&long), None), "é".repeat(50));
+        assert_eq!(label(Path::new(&long), None), "é".repeat(40));
+        let chains = ["H".to_owned(), "L".to_owned()];
+        let expected = "é".repeat(40) + "_H_L";
+        assert_eq!(label(Path::new(&long), Some(&chains)), expected);
     }
 
     #[test]

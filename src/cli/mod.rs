@@ -75,7 +75,8 @@ fn version() -> &'static str {
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let parsed = command_line()
+    let parsed = Cli::command()
+        .mut_subcommands(judging_numbers)
         .try_get_matches_from(&arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
@@ -109,13 +110,11 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The command line, in which a negative number is the value of the option before it, so that what is wrong with it can be said.
-fn command_line() -> clap::Command {
-    Cli::command().mut_subcommands(|command| {
-        command.mut_args(|argument| {
-            let takes_value = argument.get_action().takes_values();
-            argument.allow_negative_numbers(takes_value)
-        })
+/// A command in which a negative number is the value of the option before it, so that what is wrong with it can be said.
+fn judging_numbers(command: clap::Command) -> clap::Command {
+    command.mut_args(|argument| {
+        let takes_value = argument.get_action().takes_values();
+        argument.allow_negative_numbers(takes_value)
     })
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use knotdock::output::whole_file::is_stream;
+
 use super::failure::Failure;
 
 /// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless `force` is true.
@@ -16,7 +18,7 @@ pub fn check_output<'a>(
             .remedy("give the file to write a name of its own"));
     }
     // A device or a pipe is there and is meant to be written to.
-    if !force && file.is_file() {
+    if !force && file.is_file() && !is_stream(file) {
         return Err(Failure::input("the file is already there")
             .at(file)
             .remedy("choose another name, or pass --force to replace it"));

@@ -72,6 +72,13 @@ pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), FileE
     write_json(path, &file)
 }
 
+/// Whether a file is a cost model that knotdock wrote, of whichever version.
+pub fn is_ours(path: &Path) -> bool {
+    let value = fs::read(path).ok();
+    let value = value.and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    value.is_some_and(|value| value["program"] == "knotdock" && !value["cost_model"].is_null())
+}
+
 /// Reads a cost model; `None` where there is no such file.
 ///
 /// # Errors

@@ -6,6 +6,7 @@
 //! lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no other run takes its files for a killed one's.
 
 use std::fs::{self, File, TryLockError};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::whole_file::{FileError, PARTIAL};
@@ -93,7 +94,7 @@ pub struct Staging {
     folder: PathBuf,
     made_directory: bool,
     state: State,
-    /// Locked for as long as the run goes on; none where the file system knows no locks.
+    /// Locked for as long as the run goes on.
     lock: Option<File>,
 }
 
@@ -131,10 +132,7 @@ impl Staging {
         force: bool,
     ) -> Result<Self, StagingError> {
         let folder = directory.join(PARTIAL);
-        if is_locked(&folder.join(LOCK)) {
-            return Err(StagingError::Busy(directory.to_owned()));
-        }
-        // A staging folder here means that a run was killed, possibly between its renames: what it left is ours.
+        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its renames: what that left is ours.
         let interrupted = folder.is_dir();
         if let Some(&entry) = product
             .entries
@@ -153,26 +151,20 @@ impl Staging {
             }
         }
         let unwritable = |source| FileError::unwritable(directory, source);
-        if interrupted {
-            fs::remove_dir_all(&folder).map_err(unwritable)?;
-        }
         let made_directory = !directory.exists();
         fs::create_dir_all(&folder).map_err(unwritable)?;
-        let lock = File::create(folder.join(LOCK)).map_err(unwritable)?;
-        let lock = match lock.try_lock() {
-            Ok(()) => Some(lock),
-            Err(TryLockError::WouldBlock) => {
-                return Err(StagingError::Busy(directory.to_owned()));
-            }
-            Err(TryLockError::Error(_)) => None,
+        let lock = lock(&folder).map_err(unwritable)?;
+        let Some(lock) = lock else {
+            return Err(StagingError::Busy(directory.to_owned()));
         };
+        clear(&folder).map_err(unwritable)?;
         Ok(Self {
             product,
             directory: directory.to_owned(),
             folder,
             made_directory,
             state: State::Open,
-            lock,
+            lock: Some(lock),
         })
     }
 
@@ -219,8 +211,10 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // Some systems remove no file that is open.
-        self.lock = None;
+        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is gone.
+        if cfg!(windows) {
+            self.lock = None;
+        }
         // A failure to tidy up has nobody to report to; the next run clears what is left.
         if self.state == State::Kept {
             return;
@@ -232,9 +226,32 @@ impl Drop for Staging {
     }
 }
 
-/// Whether another run holds the lock.
-fn is_locked(lock: &Path) -> bool {
-    File::open(lock).is_ok_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)))
+/// Locks a staging folder; `None` where another run holds the lock. Where the file system knows no locks the file is there all the same.
+fn lock(folder: &Path) -> io::Result<Option<File>> {
+    let path = folder.join(LOCK);
+    // Network file systems lock only what may be written to.
+    let mut options = File::options();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let lock = options.open(&path)?;
+    match lock.try_lock() {
+        Err(TryLockError::WouldBlock) => Ok(None),
+        // A run that has just ended took the folder with it.
+        Ok(()) if !path.exists() => Ok(None),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(lock)),
+    }
+}
+
+/// Removes what a killed run left in a staging folder, but for the lock.
+fn clear(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            fs::remove_dir_all(&path)?;
+        } else if path != folder.join(LOCK) {
+            fs::remove_file(&path)?;
+        }
+    }
+    Ok(())
 }
 
 /// Whether a record is one of ours.

@@ -68,6 +68,15 @@ impl FileError {
     }
 }
 
+/// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the process under such a name, which may be
+/// a regular file (`/dev/stdout`, redirected).
+pub fn is_stream(path: &Path) -> bool {
+    ["/dev", "/proc"]
+        .iter()
+        .any(|folder| path.starts_with(folder))
+        || fs::metadata(path).is_ok_and(|found| !found.is_file())
+}
+
 /// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file
 /// (`/dev/stdout`, a pipe) is written to as it stands.
 ///
@@ -77,7 +86,13 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
 ) -> Result<(), FileError> {
-    let in_place = fs::metadata(path).is_ok_and(|found| !found.is_file());
+    let in_place = is_stream(path);
+    // Through a link, what it leads to is replaced and not the link.
+    let resolved = path.canonicalize();
+    let path = match &resolved {
+        Ok(resolved) if !in_place => resolved,
+        _ => path,
+    };
     let target = if in_place {
         path.to_owned()
     } else {
@@ -86,6 +101,7 @@ pub fn write_whole(
         PathBuf::from(name)
     };
     let file = fs::OpenOptions::new()
+        .append(in_place)
         .write(true)
         .create(!in_place)
         .truncate(!in_place)
@@ -131,5 +147,19 @@ mod tests {
         assert!(matches!(failed, Err(FileError::Write { .. })));
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+    }
+
+    /// Found by a review: a link was replaced by the file, even where it was `/dev/stdout`.
+    #[cfg(unix)]
+    #[test]
+    fn through_a_link_what_it_leads_to_is_replaced() {
+        let root = tempfile::tempdir().unwrap();
+        let (file, link) = (root.path().join("table.csv"), root.path().join("link.csv"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_whole(&link, |file| file.write_all(b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        assert!(is_stream(Path::new("/dev/stdout")) && !is_stream(&link));
     }
 }

@@ -51,6 +51,10 @@ pub enum SearchError {
         spacing: Option<f64>,
         /// Resolution for which that spacing is fine enough, where it is a coarser one than was asked for.
         resolution: Option<f64>,
+        /// The pass length that goes with it, where one was asked for.
+        pass_length: Option<f64>,
+        /// Whether that resolution is so much coarser than was asked for that it shows little.
+        shows_little: bool,
     },
     /// The modes that a score is to be made of do not fit into the memory allowed.
     #[error("{modes} modes need {needed} bytes, and {allowed} are allowed")]
@@ -71,6 +75,9 @@ pub enum SearchError {
     /// No rotation has a finite score.
     #[error("no pose has a finite score")]
     NoPose,
+    /// No pose scores anything, so that errors have no scale.
+    #[error("no pose scores anything, so that errors have no scale")]
+    NothingScores,
 }
 
 impl SearchError {
@@ -79,7 +86,7 @@ impl SearchError {
         match self {
             Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
             Self::Plan(PlanError::TooLarge(_)) | Self::Modes { .. } => {
-                "use a coarser --resolution or --spacing, or check for stray atoms far away"
+                "use a coarser --resolution or --spacing, or check for atoms or parts far from the rest"
                     .to_owned()
             }
             Self::Option { bound, .. } if bound.starts_with("left out") => {
@@ -91,17 +98,30 @@ impl SearchError {
             Self::Memory {
                 spacing: Some(spacing),
                 resolution,
+                pass_length,
+                shows_little,
                 ..
             } => {
-                let resolution = resolution.map_or_else(String::new, |resolution| {
-                    format!(" --resolution {resolution}")
-                });
-                format!(
-                    "use --spacing {spacing}{resolution}, allow more with --memory, or check for stray atoms far away"
-                )
+                let with = |option: &str, value: &Option<f64>| {
+                    value.map_or_else(String::new, |value| format!(" {option} {value}"))
+                };
+                let (resolution, pass_length) = (
+                    with("--resolution", resolution),
+                    with("--pass-length", pass_length),
+                );
+                let coarser = format!("--spacing {spacing}{resolution}{pass_length}");
+                if *shows_little {
+                    format!(
+                        "allow more with --memory, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
+                    )
+                } else {
+                    format!(
+                        "use {coarser}, allow more with --memory, or check for atoms or parts far from the rest"
+                    )
+                }
             }
             Self::Memory { .. } => {
-                "allow more with --memory, or check for stray atoms far away".to_owned()
+                "allow more with --memory, or check for atoms or parts far from the rest".to_owned()
             }
             Self::Graphics(_) => {
                 "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
@@ -125,6 +145,7 @@ impl SearchError {
                      another, each with all its chains"
                 )
             }
+            Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
     }

@@ -183,9 +183,16 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
                 needed: fixed + per_rotation,
                 allowed,
                 spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
+                shows_little: fits
+                    .as_ref()
+                    .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
                 resolution: fits
+                    .as_ref()
                     .map(|coarser| coarser.resolution)
                     .filter(|&resolution| resolution > options.resolution),
+                pass_length: fits
+                    .and_then(|coarser| coarser.pass_length)
+                    .filter(|&length| Some(length) > options.pass_length),
             });
         }
         in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
@@ -272,8 +279,16 @@ fn coarser(options: &DockOptions, step: i32, angstrom: f64) -> DockOptions {
         0 => options.resolution,
         _ => rounded_up(options.resolution * 1.1f64.powi(step), angstrom),
     };
+    let scale = resolution / options.resolution;
     DockOptions {
         resolution,
+        pass_length: options.pass_length.map(|length| {
+            if step == 0 {
+                length
+            } else {
+                rounded_up(scale * length, angstrom)
+            }
+        }),
         spacing: None,
         ..options.clone()
     }

@@ -162,6 +162,9 @@ fn run(
 ) -> Result<(Measured, Vec<Pose>), SearchError> {
     let plan = &prepared.plan;
     let outcome = dock(plan, &prepared.points, progress)?;
+    if !outcome.error.worst.is_finite() {
+        return Err(SearchError::NothingScores);
+    }
     let native = evaluator.map(|evaluator| native_ranks(evaluator, &outcome));
     let first = outcome.poses.iter().take(FIRST);
     let poses = first.map(|row| row.pose).collect();

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::output::balls::{write_mesh, write_pseudo_atoms, write_table};
 use knotdock::output::sample_picture::write_picture;
+use knotdock::output::whole_file::is_stream;
 use knotdock_structures::Knots;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampler::Ball;
@@ -57,6 +58,7 @@ impl Sample {
         }
         if let Some(path) = &self.picture
             && ending(path).as_deref() != Some("svg")
+            && !is_stream(path)
         {
             return Err(Failure::input("--picture writes .svg files")
                 .at(path)

@@ -172,7 +172,9 @@ impl Molecule {
                 self.charge_carboxyl(residue, labels);
             }
             let broken = before.is_some_and(|before| {
-                !begins && self.distance(before, residue).is_some_and(|d| d > BOND)
+                !begins
+                    && self.distance(before, residue).is_some_and(|d| d > BOND)
+                    && !self.capped(groups, residue, "N")
             });
             labels.report.gaps += usize::from(broken);
         }
@@ -340,7 +342,8 @@ mod tests {
         let mut turned = straight.clone();
         turned.rotate_left(4);
         let reversed = straight.chunks(4).rev().flatten().cloned().collect();
-        for atoms in [straight.clone(), turned, reversed] {
+        let swapped = [&straight[..4], &straight[8..], &straight[4..8]].concat();
+        for atoms in [straight.clone(), turned, reversed, swapped] {
             let report = labels(atoms).report;
             assert_eq!((report.termini, report.gaps), ([1, 1], 0));
         }

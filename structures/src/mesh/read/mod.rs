@@ -134,7 +134,11 @@ fn tell_format(bytes: &[u8], ending: Option<&str>) -> Option<MeshFormat> {
     if start.starts_with(b"OFF") || start.starts_with(b"NOFF") || start.starts_with(b"COFF") {
         return Some(MeshFormat::Off);
     }
-    start.starts_with(b"solid").then_some(MeshFormat::Stl)
+    let is_solid = |word: &[u8]| word.eq_ignore_ascii_case(b"solid");
+    start
+        .get(..5)
+        .is_some_and(is_solid)
+        .then_some(MeshFormat::Stl)
 }
 
 /// Reads a mesh from the bytes of a file.

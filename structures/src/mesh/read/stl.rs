@@ -24,9 +24,9 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
     let text = String::from_utf8_lossy(bytes);
-    let text = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
+    let text = text.trim_start_matches('\u{feff}');
     let is_solid = |word: &str| word.eq_ignore_ascii_case("solid");
-    if !is_binary(bytes) && text.get(..5).is_some_and(is_solid) {
+    if !is_binary(bytes) && text.trim_start().get(..5).is_some_and(is_solid) {
         // A binary file cut short may begin with `solid` too; then it has zero bytes, which text never has.
         if !bytes.contains(&0) {
             return parse_text(text);
@@ -110,5 +110,33 @@ fn parse_text(text: &str) -> Result<Soup, MeshErrorKind> {
     match facet {
         Some(line) => Err(line.fault("the file ends inside the facet that begins here")),
         None => Ok(soup),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+
+    /// Found by an audit: such files were taken for binary ones with 824,203,333 triangles.
+    #[test]
+    fn text_may_begin_with_a_mark_blank_lines_and_capitals() {
+        for head in ["solid plate", "\u{feff}solid", "SOLID", "\n\n\nSolid"] {
+            let soup = parse(format!("{head}\n{FACET}endsolid\n").as_bytes()).unwrap();
+            assert_eq!(soup.triangles.len(), 1, "{head:?}");
+        }
+    }
+
+    #[test]
+    fn lines_are_those_of_the_file() {
+        let broken = format!(
+            "\n\n\nsolid\n{}",
+            FACET.replace("vertex 0 0 0", "vertex a b c")
+        );
+        match parse(broken.as_bytes()) {
+            Err(MeshErrorKind::Syntax { line, .. }) => assert_eq!(line, Some(7)),
+            _ => panic!("a vertex of letters is no vertex"),
+        }
     }
 }
