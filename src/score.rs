@@ -22,8 +22,8 @@ pub const STATED_MODES: usize = 4096;
 const FIRST_MODES: usize = 256;
 /// Error, as a share of the exact value or of the scale, at which a ladder ends.
 pub const LADDER_ERROR: f64 = 1e-3;
-/// Tolerance of the modes: a ladder must get well below its last error.
-const MODE_TOLERANCE: f64 = 1e-4;
+/// Tolerance of the modes: half of the error at which a ladder ends.
+const MODE_TOLERANCE: f64 = 5e-4;
 /// Step of the finite differences over radii, as a share of the ligand's smallest radius.
 const RADIUS_STEP: f64 = 1e-3;
 

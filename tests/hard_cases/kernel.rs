@@ -243,7 +243,7 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
 
 /// What no table can hold is refused by name. First, these ran until memory or patience ended: a pass length next to the
 /// resolution rings for 1e8 Å, and a table's size is that length over the resolution, its time the square; lambda = 1e200 had the
-/// score inf - inf.
+/// score inf - inf. A pass length of half a per cent above took minutes.
 #[test]
 fn kernels_that_nothing_can_hold_are_refused() {
     let good = kernel_options();
@@ -254,6 +254,10 @@ fn kernels_that_nothing_can_hold_are_refused() {
         },
         KernelOptions {
             pass_length: 4.0 * (1.0 + f64::EPSILON),
+            ..good
+        },
+        KernelOptions {
+            pass_length: 4.0 * 1.005,
             ..good
         },
         KernelOptions {
@@ -286,6 +290,11 @@ fn kernels_that_nothing_can_hold_are_refused() {
             refused.err()
         );
     }
+    let narrow = KernelOptions {
+        pass_length: 4.0 * 1.01,
+        ..good
+    };
+    assert!(RankingKernel::new(narrow, 3.0, 3.8, 1.0).is_ok());
     for (sum_low, sum_high) in [(3.0, 1e6), (3.0, f64::INFINITY), (f64::NAN, f64::NAN)] {
         assert!(RankingKernel::new(good, sum_low, sum_high, 1.0).is_err());
     }

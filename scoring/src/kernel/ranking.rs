@@ -8,7 +8,7 @@
 //! Both are the work of [`super::radial_filter`].
 
 use super::cone::Cone;
-use super::options::{KernelError, KernelOptions, LONGEST, SMALLEST};
+use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -53,7 +53,10 @@ impl RankingKernel {
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
         let [_, reach] = RadialFilter::window_ends(pass, stop, cone.high, reach_factor);
-        if !(0.0..=LONGEST).contains(&(reach / options.resolution)) {
+        let ring = 1.0 / (1.0 - options.resolution / options.pass_length);
+        if !(0.0..=LONGEST).contains(&(reach / options.resolution))
+            || !(0.0..=LONGEST_RING).contains(&ring)
+        {
             return Err(KernelError::TooLong {
                 reach,
                 resolution: options.resolution,
@@ -177,8 +180,9 @@ impl RankingKernel {
             .unwrap_or(0.0)
     }
 
-    /// Integral over |w| > f of 4 pi w^2 |transform of the score kernel|: the most that dropping those modes can move one pair.
-    pub fn leak_beyond(&self, radius_sum: f64, frequency: f64) -> f64 {
+    /// Least frequency, from the stop frequency on, beyond which the integral of 4 pi w^2 |transform of the score kernel| is at most `allowed`: no pair moves by
+    /// more than that when all modes beyond it are dropped.
+    pub fn band_end(&self, radius_sum: f64, allowed: f64) -> f64 {
         let weights = self.options.slice_weights();
         let mut profile = vec![0.0; self.filter.nodes()];
         for (offset, weight) in self.options.slice_offsets().into_iter().zip(weights) {
@@ -186,13 +190,19 @@ impl RankingKernel {
                 *sum += weight * value;
             }
         }
-        // The sum over distances repeats in w with period 8 stops; beyond 2 stops there is nothing left to count.
+        // The sum over distances repeats in w with a period of 8 stops and is even, so up to 4 it says all there is.
+        let stop = self.stop();
         let step = 0.25 / self.reach();
-        (0..)
-            .map(|i| frequency + f64::from(i) * step)
-            .take_while(|&w| w < 2.0 * self.stop())
-            .map(|w| 4.0 * PI * w * w * self.spectrum_of(&profile, w).abs() * step)
-            .sum()
+        let count = (3.0 * stop / step).ceil() as usize;
+        let mut beyond = 0.0;
+        (0..count)
+            .map(|i| stop + i as f64 * step)
+            .rev()
+            .find(|&w| {
+                beyond += 4.0 * PI * w * w * self.spectrum_of(&profile, w).abs() * step;
+                beyond > allowed
+            })
+            .map_or(stop, |w| w + step)
     }
 }
 
@@ -244,12 +254,19 @@ mod tests {
         }
     }
 
+    /// A longer window leaks less past the stop frequency, and less is beyond a frequency the less is allowed there.
     #[test]
-    fn leak_falls_with_reach() {
+    fn the_band_ends_sooner_with_reach() {
         let short = RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 1.0).unwrap();
         let long = RankingKernel::new(KernelOptions::TEST, 3.0, 3.8, 4.0).unwrap();
-        let (a, b) = (short.leak_beyond(3.4, 0.25), long.leak_beyond(3.4, 0.25));
-        assert!(b < 0.1 * a);
+        let stop = short.stop();
+        assert_eq!(short.band_end(3.4, 1e9), stop);
+        let ends = [1e-1, 1e-2, 1e-3].map(|allowed| {
+            let [a, b] = [&short, &long].map(|kernel| kernel.band_end(3.4, allowed));
+            assert!(b < a, "{allowed}: {b} and {a}");
+            a
+        });
+        assert!(stop < ends[0] && ends.is_sorted() && ends[0] < ends[2] && ends[2] <= 4.0 * stop);
     }
 
     #[test]

@@ -182,7 +182,8 @@ impl Plan {
         let chosen = checked_spacing(options.spacing)?;
         let (pair, spacing, effective_reach) = match band {
             None => {
-                let spacing = chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance));
+                let spacing =
+                    chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance, severity));
                 let reach = longest_reach(&kernel, &effects, widest, tolerance);
                 (PairKernel::Lifted, spacing, reach)
             }
