@@ -55,7 +55,7 @@ fn rotations_help() -> String {
 
 fn pass_length_help() -> String {
     format!(
-        "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å [default: {PASS_RATIO} \
+        "Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å; at least a hundredth above the resolution [default: {PASS_RATIO} \
          times the resolution]"
     )
 }
@@ -199,7 +199,7 @@ pub struct SearchArguments {
     /// Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside, or one [default: fitted].
     #[arg(long, value_name = "fitted|unit", value_parser = sample_weights, help_heading = MESHES)]
     sample_weights: Option<SampleWeights>,
-    /// List every pose; without this, one row a cluster, its best pose.
+    /// List every pose, but for those within a step of the search of a better refined one; without this, one row a cluster, its best pose.
     #[arg(long, help_heading = RANKING)]
     no_cluster: bool,
 }

@@ -1,6 +1,6 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
-use super::cluster::{RigidBody, greedy};
+use super::cluster::{PlacedBody, RigidBody, greedy};
 use super::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
@@ -127,34 +127,31 @@ pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
     greedy(body, &poses, radius)
 }
 
-/// Which candidates may be rows: all but refined poses within `distance` of a better refined one of their cluster. What is left out here still counts
-/// in its cluster: how many climbs end about a pose tells how broad its hill is, while a list of poses has use for one of them.
+/// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster. A refined pose has left the samples
+/// of the search and stands for those about it; that they climbed to where it is, or would have, says how broad its hill is, so they count in its cluster,
+/// while a list of poses has use for one of them.
 pub(super) fn listed(
     candidates: &[Candidate],
     clusters: &[usize],
     body: &RigidBody,
-    distance: f64,
+    step: f64,
 ) -> Vec<bool> {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (index, (candidate, &cluster)) in candidates.iter().zip(clusters).enumerate() {
-        if candidate.refined {
-            members[cluster].push(index);
-        }
-    }
-    let mut listed = vec![true; candidates.len()];
-    for members in members {
-        let poses: Vec<Pose> = members
-            .iter()
-            .map(|&index| candidates[index].pose)
-            .collect();
-        let mut seen = 0;
-        for (index, group) in members.into_iter().zip(greedy(body, &poses, distance)) {
-            listed[index] = group == seen;
-            seen += usize::from(listed[index]);
-        }
-    }
-    listed
+    let mut standing: Vec<Vec<PlacedBody>> = vec![Vec::new(); count];
+    candidates
+        .iter()
+        .zip(clusters)
+        .map(|(candidate, &cluster)| {
+            let others = &mut standing[cluster];
+            let apart = !others
+                .iter()
+                .any(|other| body.within(other, &candidate.pose, step));
+            if apart && candidate.refined {
+                others.push(body.place(&candidate.pose));
+            }
+            apart
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -162,7 +159,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// Of refined poses near each other the best of each cluster is listed; grid poses always are.
+    /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.
     #[test]
     fn repeats_are_not_listed_within_their_cluster() {
         let body = RigidBody::new(&[[0.0; 3]]);
@@ -184,14 +181,17 @@ mod tests {
             found(0.0, 9.0, true),
             found(1.0, 8.0, true),
             found(0.5, 7.0, false),
-            found(3.0, 6.0, true),
-            found(2.5, 5.0, true),
+            found(3.5, 6.0, false),
+            found(3.0, 5.0, true),
+            found(2.5, 4.0, true),
         ]
         .into_iter()
         .unzip();
         let candidates = candidates(&peaks, &placed, &[], None);
         let of = |clusters: &[usize]| listed(&candidates, clusters, &body, 2.0);
-        assert_eq!(of(&[0, 0, 0, 0, 0]), [true, false, true, true, false]);
-        assert_eq!(of(&[0, 1, 0, 1, 1]), [true, true, true, false, false]);
+        assert_eq!(of(&[0; 6]), [true, false, false, true, true, false]);
+        // The second cluster's best pose, and what lies beyond it.
+        let seconds = [0, 1, 0, 1, 1, 1];
+        assert_eq!(of(&seconds), [true, true, false, true, false, false]);
     }
 }

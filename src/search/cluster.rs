@@ -78,6 +78,20 @@ impl RigidBody {
         images
     }
 
+    /// Whether a pose, or one that is one with it, lies within `distance` (Å RMSD) of a placed one.
+    pub fn within(&self, placed: &PlacedBody, pose: &Pose, distance: f64) -> bool {
+        let near = |image: &PlacedBody| self.mean_square(placed, image) <= distance * distance;
+        self.images(pose).iter().any(near)
+    }
+
+    /// RMSD in Å between two poses that are `shift` (Å) and a turn by `angle` (radians) about the body's middle apart, as the root of the mean square over axes.
+    ///
+    /// About a unit axis n the turn moves the points by 2 (1 - cos angle) (tr C - n' C n) in mean square, and n' C n is a third of tr C in the mean.
+    pub fn step(&self, shift: f64, angle: f64) -> f64 {
+        let turned = 4.0 / 3.0 * (1.0 - angle.cos()) * self.covariance.trace();
+        (shift * shift + turned).sqrt()
+    }
+
     /// Radius of gyration, Å.
     pub fn gyration(&self) -> f64 {
         self.covariance.trace().sqrt()
@@ -173,6 +187,22 @@ mod tests {
         assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 1]);
         let body = body.in_ring(Some(&axis));
         assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 0]);
+    }
+
+    /// Turns about the three axes of a frame have the mean over all axes, since n' C n is quadratic in n.
+    #[test]
+    fn a_step_is_the_rmsd_of_a_turn_and_a_shift() {
+        let body = RigidBody::new(&[[9.0, 1.0, 0.0], [10.0, -3.0, 2.0], [-4.0, 1.0, 5.0]]);
+        let place = |pose: &Pose| body.place(pose);
+        let (angle, shift) = (0.7f64, 1.3);
+        let squares = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+            let turn = nalgebra::UnitQuaternion::new(angle * axis);
+            let middle = body.mean + shift * axis;
+            let moved = Pose::about(turn, body.mean, middle);
+            body.mean_square(&place(&Pose::identity()), &place(&moved))
+        });
+        let expected = (squares.iter().sum::<f64>() / 3.0).sqrt();
+        assert!((body.step(shift, angle) - expected).abs() < 1e-12);
     }
 
     #[test]

@@ -38,8 +38,6 @@ pub trait Progress: Sync {
 const ERROR_POSES: usize = 100;
 /// Refined poses closer than this share of the grid spacing (ligand RMSD) are one.
 const MERGE_SPACINGS: f64 = 0.25;
-/// Of refined poses of a cluster that are closer than this many spacings one is listed.
-const LIST_SPACINGS: f64 = 1.0;
 
 /// Most climbs that a thread takes at once.
 const CLIMBS_TOGETHER: usize = 4;
@@ -175,7 +173,9 @@ fn dock_in<T: Real>(
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
     let clusters = clusters_of(&candidates, &body, options.cluster_radius);
-    let listed = listed(&candidates, &clusters, &body, LIST_SPACINGS * plan.spacing);
+    // Closer than neighbouring samples of the search are to each other, poses are one place to it.
+    let step = body.step(plan.spacing, ligand_turn(plan));
+    let listed = listed(&candidates, &clusters, &body, step);
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
@@ -213,6 +213,17 @@ fn dock_in<T: Real>(
     })
 }
 
+/// Angle in radians between neighbouring rotations of the search: the set's covering radius. Of rings that is of axes, and a copy turns by up to twice as much
+/// as its axis.
+fn ligand_turn(plan: &DockPlan) -> f64 {
+    let turns = if plan.options.symmetry.is_some() {
+        2.0
+    } else {
+        1.0
+    };
+    turns * plan.covering_radius_degrees.to_radians()
+}
+
 /// Climbs from the best grid poses, of rings from the ring nearest to each. Poses are given as they are printed, and so scored: a quaternion's digits
 /// survive the table's round trip.
 fn refine<T: Real>(
@@ -226,16 +237,10 @@ fn refine<T: Real>(
     let count = plan.refined().min(peaks.len());
     progress.stage("refine", count as u64);
     let field = (count > 0).then(|| ReceptorField::new(&plan.engine, folded, &plan.ligand));
-    // A copy turns by up to twice as much as its axis.
-    let turned = if plan.options.symmetry.is_some() {
-        2.0
-    } else {
-        1.0
-    };
     let limits = ClimbLimits {
         evaluations: 40,
         distance: 3.0 * plan.spacing,
-        angle: turned * plan.covering_radius_degrees.to_radians(),
+        angle: ligand_turn(plan),
         gyration: body.gyration(),
         angstrom: plan.angstrom,
     };
