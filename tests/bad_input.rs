@@ -79,6 +79,16 @@ fn says(error: &Value, words: &str) {
     assert!(message.contains(words), "{message}");
 }
 
+/// What an unset variable of a shell leaves: this was "no such file", in no file.
+#[test]
+fn no_file_at_all() {
+    for name in ["", ":A"] {
+        let error = Place::new().dock(name);
+        says(&error, "names no file");
+        assert_eq!(error["file"], Value::Null);
+    }
+}
+
 #[test]
 fn a_missing_file() {
     let error = Place::new().dock("nowhere.pdb");

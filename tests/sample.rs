@@ -258,6 +258,18 @@ fn bad_meshes_are_refused_with_their_line() {
         place.refused(&["box.obj", arguments[0], arguments[1]]);
     }
     place.refused(&["box.obj", "--method", "wz", "--mu", "0.5"]);
+    // It was ignored without a word.
+    let error = place.refused(&["box.obj", "--alpha", "3"]);
+    assert!(error["message"].as_str().unwrap().contains("--alpha"));
+    place.sample(&[
+        "box.obj",
+        "--grid",
+        "2^9",
+        "--alpha",
+        "3",
+        "--weights",
+        "fitted",
+    ]);
 }
 
 #[test]

@@ -47,6 +47,11 @@ impl Bodies {
         )
     }
 
+    /// Whether they are sampled on a grid.
+    pub fn are_meshes(&self) -> bool {
+        matches!(self, Self::Meshes(_))
+    }
+
     /// Reads what a run recorded; see [`Input::recorded`].
     pub fn recorded(
         records: [&InputRecord; 2],

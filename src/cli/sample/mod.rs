@@ -48,9 +48,9 @@ pub struct Sample {
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.
     #[arg(long, value_enum, default_value_t = Weights::Unit)]
     weights: Weights,
-    /// Exponent of the bump that weights are fitted for.
-    #[arg(long, default_value_t = 2.0, value_parser = above_zero)]
-    alpha: f64,
+    /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
+    #[arg(long, value_parser = above_zero)]
+    alpha: Option<f64>,
     /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set covers.
     #[arg(long, value_name = "BALLS", value_parser = at_least_one, conflicts_with = "weights")]
     level: Option<usize>,
@@ -67,6 +67,9 @@ pub struct Sample {
     #[arg(long)]
     force: bool,
 }
+
+/// Exponent of the bump that weights are fitted for, unless another is given.
+const FITTED_ALPHA: f64 = 2.0;
 
 /// [`Method`] by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -215,7 +218,12 @@ impl Sample {
                 .remedy("sample it on a finer --grid, or leave out --weights fitted"));
             }
             let (field, volume) = (&sampling.field, referee.volume());
-            finished.fitted = Some(weights::fit(field, &finished.balls, self.alpha, volume));
+            finished.fitted = Some(weights::fit(
+                field,
+                &finished.balls,
+                self.alpha.unwrap_or(FITTED_ALPHA),
+                volume,
+            ));
             finished.step = Some(Step::since("fitting weights", start));
         }
         if let Some(count) = self.level {
@@ -228,11 +236,17 @@ impl Sample {
         Ok(finished)
     }
 
-    /// The method with its options; options of other methods are refused.
+    /// The method with its options; options of other methods, and of weights that are not fitted, are refused.
     fn method(&self) -> Result<Method, Failure> {
         if self.method != MethodName::Bi && (self.mu.is_some() || self.set.is_some()) {
             return Err(Failure::input("--mu and --set belong to method bi")
                 .remedy("leave them out, or sample with --method bi"));
+        }
+        if self.weights != Weights::Fitted && self.alpha.is_some() {
+            return Err(
+                Failure::input("--alpha is of the bump that weights are fitted for")
+                    .remedy("add --weights fitted, or leave --alpha out"),
+            );
         }
         Ok(match self.method {
             MethodName::Bi => {

@@ -14,6 +14,12 @@ pub enum ReadError {
         /// The specification as given.
         text: String,
     },
+    /// An input specification is empty, or nothing but chains.
+    #[error("'{text}' names no file")]
+    Unnamed {
+        /// The specification as given.
+        text: String,
+    },
     /// There is no such file.
     #[error("there is no such file")]
     Missing {
@@ -175,7 +181,7 @@ impl ReadError {
     /// The offending file, where there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
-            Self::Specification { .. } => None,
+            Self::Specification { .. } | Self::Unnamed { .. } => None,
             Self::Missing { file }
             | Self::Directory { file }
             | Self::Unreadable { file, .. }
@@ -211,7 +217,7 @@ impl ReadError {
     /// What the user can do about it.
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::Specification { .. } => {
+            Self::Specification { .. } | Self::Unnamed { .. } => {
                 "write FILE to read all chains, or FILE:H,L to pick chains by their author names"
             }
             Self::Missing { .. } => "check the path; chains are picked with FILE:H,L",

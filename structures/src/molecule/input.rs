@@ -29,8 +29,14 @@ impl InputSpec {
     /// separator after it. Repeated chains count once.
     ///
     /// # Errors
-    /// [`ReadError::Specification`] when a chain after the colon is empty, as in `file.pdb:` or `file.pdb:H,,L`.
+    /// [`ReadError::Unnamed`] without a file's name, [`ReadError::Specification`] when a chain after the colon is empty, as in `file.pdb:` or `file.pdb:H,,L`.
     pub fn parse(text: &str) -> Result<Self, ReadError> {
+        // A shell's unset variable leaves these.
+        if text.is_empty() || (text.starts_with(':') && !Path::new(text).exists()) {
+            return Err(ReadError::Unnamed {
+                text: text.to_string(),
+            });
+        }
         let Some((path, names)) = cut(text) else {
             return Ok(Self::whole(text));
         };
