@@ -143,9 +143,8 @@ pub(super) fn listed(
         .zip(clusters)
         .map(|(candidate, &cluster)| {
             let others = &mut standing[cluster];
-            let apart = !others
-                .iter()
-                .any(|other| body.within(other, &candidate.pose, step));
+            let near = body.first_within(others, &candidate.pose, step);
+            let apart = near.is_none();
             if apart && candidate.refined {
                 others.push(body.place(&candidate.pose));
             }

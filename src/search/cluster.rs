@@ -78,10 +78,13 @@ impl RigidBody {
         images
     }
 
-    /// Whether a pose, or one that is one with it, lies within `distance` (Å RMSD) of a placed one.
-    pub fn within(&self, placed: &PlacedBody, pose: &Pose, distance: f64) -> bool {
-        let near = |image: &PlacedBody| self.mean_square(placed, image) <= distance * distance;
-        self.images(pose).iter().any(near)
+    /// The first of some placed bodies that a pose, or one that is one with it, lies within `distance` (Å RMSD) of.
+    pub fn first_within(&self, placed: &[PlacedBody], pose: &Pose, distance: f64) -> Option<usize> {
+        let images = self.images(pose);
+        placed.iter().position(|other| {
+            let within = |image| self.mean_square(other, image) <= distance * distance;
+            images.iter().any(within)
+        })
     }
 
     /// RMSD in Å between two poses that are `shift` (Å) and a turn by `angle` (radians) about the body's middle apart, as the root of the mean square over axes.
@@ -123,13 +126,9 @@ pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
     poses
         .iter()
         .map(|pose| {
-            let images = body.images(pose);
-            let near = founders.iter().position(|founder| {
-                let within = |image| body.mean_square(founder, image) <= radius * radius;
-                images.iter().any(within)
-            });
+            let near = body.first_within(&founders, pose, radius);
             near.unwrap_or_else(|| {
-                founders.push(images[0]);
+                founders.push(body.place(pose));
                 founders.len() - 1
             })
         })
