@@ -251,7 +251,12 @@ fn bad_input_is_refused_before_anything_runs() {
     for arguments in [
         vec!["missing.pdb", &ligand],
         vec![receptor.as_str(), &ligand, "--knobs", "colour"],
-        vec![receptor.as_str(), &ligand, "--knobs", "sample-grid"],
+        vec![
+            receptor.as_str(),
+            &ligand,
+            "--knobs",
+            "tolerance,sample-grid",
+        ],
         vec![receptor.as_str(), &ligand, "--tolerance", "1e-9"],
         vec![receptor.as_str(), &ligand, "--sample-grid", "2^12"],
         vec![receptor.as_str()],

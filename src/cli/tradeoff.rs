@@ -76,11 +76,12 @@ impl TradeoffCommand {
             let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
             return Err(Failure::input(error).remedy("leave out --engine gpu"));
         }
-        let knobs = self.knobs.unwrap_or_else(|| Knob::SWEPT.to_vec());
-        if knobs == [Knob::SampleGrid] && !request.bodies.are_meshes() {
+        let asked = self.knobs.as_deref().unwrap_or_default();
+        if asked.contains(&Knob::SampleGrid) && !request.bodies.are_meshes() {
             let error = "molecules are not sampled, so that the knob sample-grid moves nothing";
             return Err(Failure::input(error).remedy("name other knobs, or two meshes"));
         }
+        let knobs = self.knobs.unwrap_or_else(|| Knob::SWEPT.to_vec());
         self.machine.apply(&mut request.options.dock);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();

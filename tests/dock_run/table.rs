@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
 use crate::run::*;
@@ -52,6 +53,64 @@ fn the_table_says_what_its_columns_promise() {
             assert_eq!(number(row, column).to_string(), row[column]);
         }
     }
+}
+
+/// A list of shape alone names a place once: no row lies within a step of the search (a turn by the covering radius and a shift by the spacing, as RMSD of the ligand's CA atoms) of a
+/// better refined one of its cluster, and rows that lie little farther are kept. Clusters are so wide here that the step decides.
+#[test]
+fn refined_rows_stand_for_what_lies_within_a_step() {
+    let folder = place();
+    run(
+        folder.path(),
+        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 --no-cluster --write-top 0 -o run --quiet",
+    );
+    let run = folder.path().join("run");
+    let record: Value = serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap();
+    let plan = |name: &str| record["plan"][name].as_f64().unwrap();
+    let ligand = crate::molecules::ligand();
+    let alphas: Vec<[f64; 3]> = ligand
+        .lines()
+        .filter(|line| line.get(12..16) == Some(" CA "))
+        .map(|line| [30, 38, 46].map(|at| line[at..at + 8].trim().parse().unwrap()))
+        .collect();
+    assert!(alphas.len() >= 3);
+    let mean_square = |a: &[[f64; 3]], b: &dyn Fn(usize, usize) -> f64| {
+        let apart = |(i, x): (usize, &[f64; 3])| -> f64 {
+            (0..3).map(|axis| (x[axis] - b(i, axis)).powi(2)).sum()
+        };
+        a.iter().enumerate().map(apart).sum::<f64>() / a.len() as f64
+    };
+    let middle = [0, 1, 2].map(|k| alphas.iter().map(|x| x[k]).sum::<f64>() / alphas.len() as f64);
+    let gyration = mean_square(&alphas, &|_, axis| middle[axis]);
+    let turn = plan("covering_radius_degrees").to_radians();
+    let step = (plan("spacing").powi(2) + 4.0 / 3.0 * (1.0 - turn.cos()) * gyration).sqrt();
+    let rows = rows(&run);
+    let placed: Vec<Vec<[f64; 3]>> = rows
+        .iter()
+        .map(|row| {
+            let pose = Pose::from_parts(
+                ["qw", "qx", "qy", "qz"].map(|part| number(row, part)),
+                ["tx", "ty", "tz"].map(|part| number(row, part)),
+            );
+            alphas.iter().map(|&x| pose.apply(x)).collect()
+        })
+        .collect();
+    let mut nearest = f64::INFINITY;
+    for (index, row) in rows.iter().enumerate() {
+        for better in 0..index {
+            let other = &rows[better];
+            if other["cluster"] == row["cluster"] && other["refined"] == "true" {
+                let apart = mean_square(&placed[index], &|i, axis| placed[better][i][axis]).sqrt();
+                nearest = nearest.min(apart);
+            }
+        }
+    }
+    println!("{} rows, step {step}, nearest {nearest}", rows.len());
+    assert!(rows.iter().any(|row| row["refined"] == "false"));
+    assert!(
+        nearest > step && nearest < 1.1 * step,
+        "{nearest} of {step}"
+    );
 }
 
 #[test]

@@ -267,6 +267,33 @@ mod tests {
             a
         });
         assert!(stop < ends[0] && ends.is_sorted() && ends[0] < ends[2] && ends[2] <= 4.0 * stop);
+        // What lies beyond, summed far finer from the kernel's definition alone, is what was allowed but for what one step holds.
+        let offsets = short.options.slice_offsets().into_iter();
+        let slices = offsets.zip(short.options.slice_weights());
+        let profiles: Vec<(Vec<f64>, f64)> = slices
+            .map(|(offset, weight)| (short.profile(3.4 + offset), weight))
+            .collect();
+        let beyond = |end: f64| {
+            let step = 0.02 / short.reach();
+            (0..)
+                .map(|i| end + step * f64::from(i))
+                .take_while(|&w| w < 4.0 * stop)
+                .map(|w| {
+                    let of = |(profile, weight): &(Vec<f64>, f64)| {
+                        weight * short.spectrum_of(profile, w)
+                    };
+                    4.0 * PI * w * w * step * profiles.iter().map(of).sum::<f64>().abs()
+                })
+                .sum::<f64>()
+        };
+        for (end, allowed) in ends.into_iter().zip([1e-1, 1e-2, 1e-3]) {
+            let left = beyond(end);
+            println!("{allowed}: {left} beyond {end}");
+            assert!(
+                left < 1.1 * allowed && left > 0.5 * allowed,
+                "{allowed}: {left}"
+            );
+        }
     }
 
     #[test]

@@ -31,14 +31,18 @@ impl InputSpec {
     /// # Errors
     /// [`ReadError::Unnamed`] without a file's name, [`ReadError::Specification`] when a chain after the colon is empty, as in `file.pdb:` or `file.pdb:H,,L`.
     pub fn parse(text: &str) -> Result<Self, ReadError> {
-        // A shell's unset variable leaves these.
-        if text.is_empty() || (text.starts_with(':') && !Path::new(text).exists()) {
+        let (path, names) = match cut(text) {
+            Some((path, names)) => (path, Some(names)),
+            None => (text, None),
+        };
+        // A shell's unset variable leaves "" or ":A".
+        if path.is_empty() {
             return Err(ReadError::Unnamed {
                 text: text.to_string(),
             });
         }
-        let Some((path, names)) = cut(text) else {
-            return Ok(Self::whole(text));
+        let Some(names) = names else {
+            return Ok(Self::whole(path));
         };
         let mut chains: Vec<String> = Vec::new();
         for name in names.split(',').map(str::trim) {
@@ -65,7 +69,7 @@ fn cut(text: &str) -> Option<(&str, &str)> {
     }
     let (path, names) = text.rsplit_once(':')?;
     let is_drive = path.len() == 1 && path.starts_with(|c: char| c.is_ascii_alphabetic());
-    if path.is_empty() || names.contains(['/', '\\']) || is_drive {
+    if names.contains(['/', '\\']) || is_drive {
         return None;
     }
     Some((path, names))
