@@ -207,6 +207,7 @@ fn options_out_of_range() {
         ["--hydrogens", "no-additives"],
         ["--altloc", "AB"],
         ["--model", "0"],
+        ["--min-plddt", "101"],
         ["--contact-weight", "-1"],
         ["--contact-potential", "receptor.pdb"],
         ["--contact-potential", "nowhere.csv"],

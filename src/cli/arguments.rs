@@ -82,6 +82,14 @@ pub fn protrusion(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A pLDDT, above 0 and up to 100.
+pub fn plddt(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 100.0 => Ok(value),
+        _ => Err("a number above 0 and up to 100 is needed".to_owned()),
+    }
+}
+
 /// A whole number above zero.
 pub fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
@@ -136,6 +144,10 @@ mod tests {
             assert!(grid(text).is_err(), "{text}");
         }
         assert_eq!(protrusion("1"), Ok(1.0));
+        assert_eq!(plddt("100"), Ok(100.0));
+        for text in ["0", "-1", "100.1", "nan", ""] {
+            assert!(plddt(text).is_err(), "{text}");
+        }
         assert!(
             ["-0.1", "1.1", "nan", ""]
                 .iter()

@@ -16,7 +16,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, label};
+use super::input::{Input, check_confidence, label};
 use super::mesh_input::{MeshInput, is_mesh};
 
 /// The bodies as read.
@@ -70,12 +70,16 @@ impl Bodies {
     fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
         match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
-            [false, false] => Ok(Self::Molecules(Box::new([
-                Input::of(receptor, reading)?,
-                Input::of(ligand, reading)?,
-            ]))),
+            [false, false] => {
+                let inputs = [
+                    Input::of(receptor, reading)?,
+                    Input::of(ligand, reading)?,
+                ];
+                check_confidence(reading, inputs.iter().map(|input| &input.molecule))?;
+                Ok(Self::Molecules(Box::new(inputs)))
+            }
             [true, true] if *reading != ReadOptions::default() => Err(Failure::input(
-                "--waters, --hetatm, --hydrogens, --altloc and --model belong to molecules, and these are meshes",
+                "--waters, --hetatm, --hydrogens, --altloc, --model and --min-plddt belong to molecules, and these are meshes",
             )
             .remedy("leave them out")),
             [true, true] => Ok(Self::Meshes(Box::new([

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::input::Input;
+use super::input::{Input, check_confidence};
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
 use super::output_file::check_output;
 use super::reading_arguments::ReadingArguments;
@@ -98,11 +98,10 @@ impl Evaluate {
         if let (Some(receptor), Some(ligand), Some(native)) = (&self.receptor, &self.ligand, native)
         {
             let reading = self.reading.options();
-            return Ok((
-                Input::read(receptor, &reading)?,
-                Input::read(ligand, &reading)?,
-                native,
-            ));
+            let receptor = Input::read(receptor, &reading)?;
+            let ligand = Input::read(ligand, &reading)?;
+            check_confidence(&reading, [&receptor.molecule, &ligand.molecule])?;
+            return Ok((receptor, ligand, native));
         }
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";

@@ -62,6 +62,25 @@ impl Input {
     }
 }
 
+/// Refuses `--min-plddt` where none of the molecules that it was read with is a predicted model, so that it did nothing.
+pub fn check_confidence<'a>(
+    options: &ReadOptions,
+    molecules: impl IntoIterator<Item = &'a Molecule>,
+) -> Result<(), Failure> {
+    let mut molecules = molecules.into_iter();
+    if options.min_plddt.is_none() || molecules.any(|molecule| molecule.report.confidence.is_some())
+    {
+        return Ok(());
+    }
+    Err(Failure::input(
+        "--min-plddt is for predicted models, and nothing here is known to be one",
+    )
+    .remedy(
+        "leave it out, or give the file as the predictor wrote it: a model is known by `_ma_qa_metric` in mmCIF, or by one B value a residue \
+         where the file names no experiment",
+    ))
+}
+
 fn refuse_mesh(spec: &InputSpec) -> Result<(), Failure> {
     if is_mesh(&spec.path) {
         return Err(Failure::input("this is a mesh, where a molecule is needed")

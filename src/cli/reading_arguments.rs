@@ -3,7 +3,7 @@
 use clap::Args;
 use knotdock_structures::molecule::{AlternateLocation, Hetatm, Hydrogens, ReadOptions, Waters};
 
-use super::arguments::at_least_one;
+use super::arguments::{at_least_one, plddt};
 
 const READING: &str = "Reading";
 
@@ -26,6 +26,9 @@ pub struct ReadingArguments {
     /// Model of a file that has several: 1 is the first, whatever number it carries.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = ReadOptions::default().model, help_heading = READING)]
     model: usize,
+    /// Of a predicted model leave out residues with a pLDDT below this, 0 to 100: 50 leaves out what is likely disordered.
+    #[arg(long, value_name = "X", value_parser = plddt, help_heading = READING)]
+    min_plddt: Option<f64>,
 }
 
 impl ReadingArguments {
@@ -37,6 +40,7 @@ impl ReadingArguments {
             hydrogens: self.hydrogens,
             altloc: self.altloc,
             model: self.model,
+            min_plddt: self.min_plddt,
             ..ReadOptions::default()
         }
     }

@@ -83,6 +83,7 @@ fn reason(kind: DropKind) -> &'static str {
         DropKind::Additive => "additive",
         DropKind::Hetatm => "hetatm",
         DropKind::AlternateLocation => "alternate_location",
+        DropKind::LowConfidence => "low_confidence",
         DropKind::Model => "model",
     }
 }

@@ -228,6 +228,7 @@ fn molecule(path: &Path, index: u64) -> bool {
             AlternateLocation::Named('B')
         },
         model: 1 + (index / 24 % 2) as usize,
+        min_plddt: ((index / 48) & 1 == 1).then_some(15.0),
         ..ReadOptions::default()
     };
     match read_listed(&InputSpec::whole(path), &options) {

@@ -253,7 +253,7 @@ impl ReadError {
                 "ask for one of the models that the file has; they count from 1 in the order of the file"
             }
             Self::EmptySelection { .. } => {
-                "pick other chains, or keep what is dropped: --hetatm keep, --waters keep, --hydrogens keep"
+                "pick other chains, or keep what is dropped: --hetatm keep, --waters keep, --hydrogens keep, a lower --min-plddt"
             }
             Self::Parser { .. } => {
                 "please report this file: the sieve before the parser should have caught it"

@@ -12,7 +12,7 @@
 //!
 //! path -> `source` (open, unpack, tell the format) -> `sieve` (atoms of one model, in a form that pdbtbx is sure to
 //! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `select` (by `policy`: chains, waters, additives,
-//! `elements`, `alternate` locations) -> `groups`, `radii`, `completeness` -> [`Molecule`] with its [`ReadReport`].
+//! `elements`, `alternate` locations, `confidence` of predictions) -> `groups`, `radii`, `completeness` -> [`Molecule`] with its [`ReadReport`].
 
 use serde::Serialize;
 
@@ -23,6 +23,7 @@ mod antibody;
 mod buried;
 mod charge_table;
 mod completeness;
+mod confidence;
 mod contact_types;
 mod copies;
 mod elements;
@@ -47,6 +48,7 @@ mod write;
 
 pub use accessible::PROBE;
 pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
+pub use confidence::{Confidence, LOW, ToldBy};
 pub use contact_types::{CONTACT_TYPES, atom_kinds};
 pub use copies::CopiesError;
 pub use error::ReadError;

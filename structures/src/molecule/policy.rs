@@ -8,7 +8,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 /// How to read.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ReadOptions {
     /// What becomes of waters.
@@ -21,6 +21,8 @@ pub struct ReadOptions {
     pub altloc: AlternateLocation,
     /// Which model is read: 1 is the first in the file, whatever number it carries. A file of one model has it read.
     pub model: usize,
+    /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
+    pub min_plddt: Option<f64>,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
     #[serde(skip)]
     pub keep: Vec<String>,
@@ -34,6 +36,7 @@ impl Default for ReadOptions {
             hydrogens: Hydrogens::default(),
             altloc: AlternateLocation::default(),
             model: 1,
+            min_plddt: None,
             keep: Vec::new(),
         }
     }

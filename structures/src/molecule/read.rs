@@ -98,12 +98,14 @@ fn read_telling(
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
+    let provenance = sieved.provenance;
     let parsed = parse::parse(file, format, sieved)?;
     let atoms = select::select(
         file,
         parsed,
         spec.chains.as_deref(),
         options,
+        provenance,
         &mut report,
         dropped,
     )?;
@@ -113,7 +115,9 @@ fn read_telling(
 /// Gives the atoms their radii and the report its counts.
 fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molecule {
     let groups = residues(&atoms);
-    report.warnings = completeness::warnings(&atoms, &groups);
+    report
+        .warnings
+        .extend(completeness::warnings(&atoms, &groups));
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
     let all_atom = atoms.iter().any(Atom::is_hydrogen);

@@ -6,6 +6,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::Format;
+use super::confidence::{Confidence, ToldBy};
 use super::groups::GroupKind;
 
 /// What reading one file did.
@@ -27,6 +28,8 @@ pub struct ReadReport {
     pub dropped: Vec<Dropped>,
     /// What was altered.
     pub altered: Altered,
+    /// How sure the prediction is that the file holds; nothing where it holds none.
+    pub confidence: Option<Confidence>,
     /// What the user should know before trusting the result.
     pub warnings: Vec<String>,
 }
@@ -71,6 +74,8 @@ pub enum DropKind {
     Hetatm,
     /// Alternate locations that were not chosen.
     AlternateLocation,
+    /// Residues of a predicted model of which it is not sure enough.
+    LowConfidence,
     /// Models that were not asked for: all but the first by default.
     Model,
 }
@@ -214,6 +219,19 @@ impl fmt::Display for ReadReport {
         if !altered.is_empty() {
             write!(f, "\n  altered: {}", altered.join(", "))?;
         }
+        if let Some(confidence) = &self.confidence {
+            let told_by = match confidence.told_by {
+                ToldBy::Header => "as the file says",
+                ToldBy::Values => "told by its B column",
+            };
+            write!(
+                f,
+                "\n  a predicted model, {told_by}: mean pLDDT {:.1}, {} of {} below 50",
+                confidence.mean,
+                confidence.below_50,
+                count(confidence.residues, "residue")
+            )?;
+        }
         for warning in &self.warnings {
             write!(f, "\n  warning: {warning}")?;
         }
@@ -238,6 +256,11 @@ fn show_dropped(dropped: &Dropped) -> String {
         DropKind::Additive => format!("{atoms} of additives ({})", names()),
         DropKind::Hetatm => format!("{atoms} of HETATM records ({})", names()),
         DropKind::AlternateLocation => format!("{atoms} of alternate locations"),
+        DropKind::LowConfidence => format!(
+            "{atoms} of {} of low pLDDT ({})",
+            count(dropped.names.len(), "residue"),
+            names()
+        ),
         DropKind::Model => format!("{atoms} of other models"),
     }
 }

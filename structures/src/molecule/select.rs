@@ -1,11 +1,12 @@
 //! From parsed records to the atoms that are docked: chains asked for, by default no hydrogens, no waters, no additives, one
-//! alternate location a residue.
+//! alternate location a residue, of predictions the residues that they are sure enough of.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::additives::is_additive;
 use super::alternate::choose;
+use super::confidence::{Provenance, weigh};
 use super::elements::{self, Origin};
 use super::error::ReadError;
 use super::parse::Parsed;
@@ -18,12 +19,13 @@ use super::{Atom, report};
 /// Applies all selections and notes in the report what they dropped.
 ///
 /// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file order but
-/// for alternate locations, which come last.
+/// for alternate locations and residues of low confidence, which come last.
 pub(super) fn select(
     file: &Path,
     parsed: Vec<Parsed>,
     chains: Option<&[String]>,
     options: &ReadOptions,
+    provenance: Provenance,
     report: &mut ReadReport,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
@@ -90,6 +92,7 @@ pub(super) fn select(
         atoms.push(atom(record, element.symbol));
     }
     let atoms = choose(atoms, options.altloc, report, dropped);
+    let atoms = weigh(atoms, provenance, options.min_plddt, report, dropped);
     if atoms.is_empty() {
         return Err(ReadError::EmptySelection {
             file: file.to_path_buf(),

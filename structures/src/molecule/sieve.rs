@@ -17,11 +17,13 @@
 
 pub(super) mod mmcif;
 pub(super) mod pdb;
+mod provenance;
 mod residue_columns;
 pub(super) mod tokens;
 
 use std::path::Path;
 
+use super::confidence::Provenance;
 use super::error::ReadError;
 
 /// Alternate location given to pdbtbx for atoms that have none, so that it does not copy them into other conformers.
@@ -76,6 +78,8 @@ pub(super) struct Sieved {
     pub(super) defaults_filled: usize,
     /// Whether a record or item of the format was seen at all.
     pub(super) recognised: bool,
+    /// What the file says of where its coordinates come from.
+    pub(super) provenance: Provenance,
 }
 
 /// An error in one field of one line.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use super::provenance::Told;
 use super::tokens::{Kind, Token, tokens};
 use super::{Carried, Exact, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::error::ReadError;
@@ -27,6 +28,7 @@ pub(in crate::molecule) fn sieve(
 ) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut table = Table::default();
+    let mut told = Told::default();
     let mut stream = tokens(text).peekable();
     while let Some(token) = stream.next() {
         match token.kind {
@@ -42,10 +44,13 @@ pub(in crate::molecule) fn sieve(
                 if is_atoms {
                     table = Table::new(token.line, &tags);
                 }
+                let mut columns = tags.iter().cycle();
                 while let Some(next) = stream.next_if(|next| is_value(next.kind)) {
                     check_closed(file, next)?;
                     if is_atoms {
                         table.values.push(next);
+                    } else if let Some(tag) = columns.next() {
+                        told.note(tag, next.kind);
                     }
                 }
             }
@@ -54,6 +59,7 @@ pub(in crate::molecule) fn sieve(
                 let value = stream.next_if(|next| is_value(next.kind));
                 if let Some(value) = value {
                     check_closed(file, value)?;
+                    told.note(tag, value.kind);
                     if let Some(item) = item(tag) {
                         table.line = token.line;
                         table.items.push(item.to_ascii_lowercase());
@@ -65,6 +71,7 @@ pub(in crate::molecule) fn sieve(
             Kind::Bare(_) | Kind::Quoted(_) => {}
         }
     }
+    sieved.provenance = told.provenance();
     table.sieve(file, model, &mut sieved)?;
     Ok(sieved)
 }

@@ -5,8 +5,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::provenance::is_measured;
 use super::residue_columns::{has_wide_chains, residue_and_chain, residue_number};
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
+use crate::molecule::confidence::Provenance;
 use crate::molecule::error::ReadError;
 use crate::molecule::source::lines;
 
@@ -37,6 +39,9 @@ pub(in crate::molecule) fn sieve(
             let name = record.split_ascii_whitespace().next().unwrap_or("");
             sieved.recognised |= RECORDS.contains(&name);
             models.note(name);
+            if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
+                sieved.provenance = Provenance::NoConfidence;
+            }
         }
     }
     sieved.models = models.count;

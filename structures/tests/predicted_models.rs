@@ -1,0 +1,245 @@
+//! Predicted models: what tells them from measured structures, and the residues of which they are not sure.
+
+#![cfg(feature = "molecule")]
+
+mod pdb_text;
+
+use std::fmt::Write;
+
+use knotdock_structures::molecule::{
+    Confidence, DropKind, InputSpec, ReadError, ReadOptions, ToldBy, read, read_listed,
+};
+use pdb_text::{read_bytes, read_text};
+
+/// PDB records of glycines of four atoms; the B value of atom a of residue r is `b(r, a)`.
+fn glycines(residues: usize, b: impl Fn(usize, usize) -> f64) -> String {
+    let mut text = String::new();
+    for residue in 0..residues {
+        for (index, name) in ["N", "CA", "C", "O"].into_iter().enumerate() {
+            writeln!(
+                text,
+                "ATOM  {index:>5}  {name:<3} GLY A{:>4}    {:>8.3}{:>8.3}{:>8.3}  1.00{:>6.2}          {:>2}",
+                residue + 1,
+                3.8 * residue as f64,
+                1.2 * index as f64,
+                0.0,
+                b(residue, index),
+                &name[..1]
+            )
+            .unwrap();
+        }
+    }
+    text
+}
+
+/// pLDDT of ten residues, 30 to 93 in steps of 7: three below 50, mean 61.5.
+fn rising(residue: usize) -> f64 {
+    30.0 + 7.0 * residue as f64
+}
+
+/// The same atoms in mmCIF, after the items of `head`.
+fn mmcif(head: &str, b: impl Fn(usize, usize) -> f64) -> String {
+    let mut text = format!(
+        "data_x\n{head}\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
+         _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+         _atom_site.occupancy\n_atom_site.B_iso_or_equiv\n"
+    );
+    for residue in 0..10 {
+        for (index, name) in ["N", "CA", "C", "O"].into_iter().enumerate() {
+            writeln!(
+                text,
+                "ATOM {} {name} GLY A {} {} {} 0 1.0 {}",
+                &name[..1],
+                residue + 1,
+                3.8 * residue as f64,
+                1.2 * index as f64,
+                b(residue, index)
+            )
+            .unwrap();
+        }
+    }
+    text
+}
+
+fn confidence_of(name: &str, text: &str) -> Option<Confidence> {
+    let molecule = read_bytes(name, text.as_bytes(), "").unwrap();
+    molecule.report.confidence
+}
+
+const SURE_OF_TEN: Confidence = Confidence {
+    told_by: ToldBy::Values,
+    mean: 61.5,
+    residues: 10,
+    below_50: 3,
+};
+
+#[test]
+fn one_value_a_residue_tells_a_prediction() {
+    let text = glycines(10, |residue, _| rising(residue));
+    assert_eq!(confidence_of("x.pdb", &text), Some(SURE_OF_TEN));
+    // From 0 to 1, as some programs write it.
+    let shares = glycines(10, |residue, _| rising(residue) / 100.0);
+    assert_eq!(confidence_of("x.pdb", &shares), Some(SURE_OF_TEN));
+    let told = read_text(&text).unwrap().report.to_string();
+    assert!(
+        told.contains("mean pLDDT 61.5, 3 of 10 residues below 50"),
+        "{told}"
+    );
+    assert!(told.contains("warning: 3 of 10 residues"), "{told}");
+}
+
+/// B columns that are not one value a residue, or no share of a hundred, or low, or the same throughout, tell nothing.
+#[test]
+fn other_columns_tell_none() {
+    type Column = fn(usize, usize) -> f64;
+    let columns: [(&str, Column); 6] = [
+        ("refined atom by atom", |residue, atom| {
+            rising(residue) + 0.5 * atom as f64
+        }),
+        ("one atom aside", |residue, atom| {
+            if (residue, atom) == (4, 2) {
+                58.5
+            } else {
+                rising(residue)
+            }
+        }),
+        ("above a hundred", |residue, _| rising(residue) + 20.0),
+        ("below zero", |residue, _| {
+            if residue == 0 { -1.0 } else { rising(residue) }
+        }),
+        ("refined residue by residue", |residue, _| {
+            rising(residue) - 20.0
+        }),
+        ("filled", |_, _| 80.0),
+    ];
+    for (what, column) in columns {
+        assert_eq!(
+            confidence_of("x.pdb", &glycines(10, column)),
+            None,
+            "{what}"
+        );
+    }
+    assert_eq!(
+        confidence_of("x.pdb", &glycines(4, |residue, _| rising(residue + 6))),
+        None
+    );
+}
+
+#[test]
+fn an_experiment_rules_a_prediction_out() {
+    let of_method = |method: &str| {
+        let text = format!(
+            "EXPDTA    {method}\n{}",
+            glycines(10, |residue, _| rising(residue))
+        );
+        confidence_of("x.pdb", &text)
+    };
+    assert_eq!(of_method("X-RAY DIFFRACTION"), None);
+    assert_eq!(of_method("SOLUTION NMR"), None);
+    for prediction in [
+        "THEORETICAL MODEL",
+        "THEORETICAL MODEL (SWISS-MODEL SERVER)",
+        "",
+    ] {
+        assert_eq!(of_method(prediction), Some(SURE_OF_TEN), "{prediction}");
+    }
+    let of_head = |head: &str| confidence_of("x.cif", &mmcif(head, |residue, _| rising(residue)));
+    assert_eq!(of_head("_exptl.method 'X-RAY DIFFRACTION'"), None);
+    let several = "loop_\n_exptl.entry_id\n_exptl.method\nx 'THEORETICAL MODEL'\nx 'SOLUTION NMR'";
+    assert_eq!(of_head(several), None);
+    assert_eq!(of_head("_exptl.method ?"), Some(SURE_OF_TEN));
+    assert_eq!(
+        of_head("_exptl.method 'THEORETICAL MODEL'"),
+        Some(SURE_OF_TEN)
+    );
+}
+
+/// ModelCIF names its scores: with pLDDT among them values may differ from atom to atom (AlphaFold 3), without it the column is
+/// something else, whatever it looks like.
+#[test]
+fn scores_that_a_model_names_go_before_its_values() {
+    let metrics = |first: &str, second: &str| {
+        format!(
+            "loop_\n_ma_qa_metric.id\n_ma_qa_metric.mode\n_ma_qa_metric.name\n_ma_qa_metric.type\n1 global {first}\n2 local {second}\n#"
+        )
+    };
+    let named = metrics("'mean' pLDDT", "pLDDT pLDDT");
+    let by_atom = |residue: usize, atom: usize| rising(residue) + 0.5 * atom as f64 - 0.75;
+    let expected = Confidence {
+        told_by: ToldBy::Header,
+        ..SURE_OF_TEN
+    };
+    assert_eq!(
+        confidence_of("x.cif", &mmcif(&named, by_atom)),
+        Some(expected)
+    );
+    let low = mmcif("_ma_qa_metric.name pLDDT", |residue, _| {
+        rising(residue) - 30.0
+    });
+    assert_eq!(
+        confidence_of("x.cif", &low),
+        Some(Confidence {
+            mean: 31.5,
+            below_50: 8,
+            ..expected
+        })
+    );
+    let other = metrics(
+        "QMEANDisCo 'normalized score'",
+        "QMEANDisCo 'normalized score'",
+    );
+    assert_eq!(
+        confidence_of("x.cif", &mmcif(&other, |residue, _| rising(residue))),
+        None
+    );
+    // Named, but not in the B column.
+    assert_eq!(confidence_of("x.cif", &mmcif(&named, |_, _| 0.0)), None);
+}
+
+#[test]
+fn residues_below_the_limit_are_left_out_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.pdb");
+    std::fs::write(&path, glycines(10, |residue, _| rising(residue))).unwrap();
+    let spec = InputSpec::whole(&path);
+    let options = |least: f64| ReadOptions {
+        min_plddt: Some(least),
+        ..ReadOptions::default()
+    };
+    for (least, residues, warned) in [
+        (30.0, 10, "3 of 10"),
+        (30.01, 9, "2 of 10"),
+        (50.0, 7, ""),
+        (93.0, 1, ""),
+    ] {
+        let (molecule, listed) = read_listed(&spec, &options(least)).unwrap();
+        assert_eq!(molecule.atoms.len(), 4 * residues, "{least}");
+        assert!(molecule.atoms.iter().all(|atom| atom.b_factor >= least));
+        assert_eq!(molecule.report.confidence, Some(SURE_OF_TEN));
+        assert_eq!(listed.len(), 40);
+        let dropped = listed
+            .iter()
+            .filter(|entry| entry.dropped == Some(DropKind::LowConfidence));
+        assert_eq!(dropped.count(), 40 - 4 * residues);
+        let told = molecule.report.to_string();
+        let warning = "residues have a pLDDT below 50";
+        assert_eq!(told.contains(warning), !warned.is_empty(), "{told}");
+        assert!(told.contains(warned), "{told}");
+    }
+    let told = read(&spec, &options(50.0)).unwrap().report.to_string();
+    assert!(
+        told.contains("12 atoms of 3 residues of low pLDDT (A 1, A 2, A 3)"),
+        "{told}"
+    );
+    let none = read(&spec, &options(93.01)).unwrap_err();
+    assert!(
+        matches!(none, ReadError::EmptySelection { dropped: 40, .. }),
+        "{none}"
+    );
+    assert!(none.remedy().contains("--min-plddt"));
+
+    // What is no prediction stays as it is.
+    let refined = glycines(10, |residue, atom| rising(residue) + 0.5 * atom as f64);
+    std::fs::write(&path, refined).unwrap();
+    assert_eq!(read(&spec, &options(90.0)).unwrap().atoms.len(), 40);
+}
