@@ -26,3 +26,4 @@ example=structures/examples/1ppe
 "$(python rdkit)" scripts/check_rdkit.py "$target/debug/knotdock" structures/examples
 # The full set of files, five times as many, goes without --few.
 "$(python gemmi)" scripts/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
+"$(python gemmi)" scripts/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few

@@ -82,6 +82,15 @@ pub fn protrusion(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The name of a biological assembly.
+pub fn assembly_name(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("the name of an assembly is needed, such as 1".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
 /// A pLDDT, above 0 and up to 100.
 pub fn plddt(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

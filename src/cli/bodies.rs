@@ -16,7 +16,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, check_confidence, label};
+use super::input::{Input, check_used, label};
 use super::mesh_input::{MeshInput, is_mesh};
 
 /// The bodies as read.
@@ -75,11 +75,11 @@ impl Bodies {
                     Input::of(receptor, reading)?,
                     Input::of(ligand, reading)?,
                 ];
-                check_confidence(reading, inputs.iter().map(|input| &input.molecule))?;
+                check_used(reading, inputs.iter().map(|input| &input.molecule))?;
                 Ok(Self::Molecules(Box::new(inputs)))
             }
             [true, true] if *reading != ReadOptions::default() => Err(Failure::input(
-                "--waters, --hetatm, --hydrogens, --altloc, --model and --min-plddt belong to molecules, and these are meshes",
+                "--waters, --hetatm, --hydrogens, --altloc, --model, --assembly and --min-plddt belong to molecules, and these are meshes",
             )
             .remedy("leave them out")),
             [true, true] => Ok(Self::Meshes(Box::new([

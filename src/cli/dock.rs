@@ -77,7 +77,7 @@ const NO_RING: [&str; 6] = [
 ];
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 55] = [
+const RECORDED: [&str; 56] = [
     "receptor",
     "ligand",
     "symmetry",
@@ -86,6 +86,7 @@ const RECORDED: [&str; 55] = [
     "hydrogens",
     "altloc",
     "model",
+    "assembly",
     "min_plddt",
     "rotations",
     "angle",

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, check_confidence};
+use super::input::{Input, check_used};
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
 use super::output_file::check_output;
 use super::reading_arguments::ReadingArguments;
@@ -100,7 +100,7 @@ impl Evaluate {
             let reading = self.reading.options();
             let receptor = Input::read(receptor, &reading)?;
             let ligand = Input::read(ligand, &reading)?;
-            check_confidence(&reading, [&receptor.molecule, &ligand.molecule])?;
+            check_used(&reading, [&receptor.molecule, &ligand.molecule])?;
             return Ok((receptor, ligand, native));
         }
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \

@@ -62,23 +62,35 @@ impl Input {
     }
 }
 
-/// Refuses `--min-plddt` where none of the molecules that it was read with is a predicted model, so that it did nothing.
-pub fn check_confidence<'a>(
+/// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
+/// says anything of one.
+pub fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
 ) -> Result<(), Failure> {
-    let mut molecules = molecules.into_iter();
-    if options.min_plddt.is_none() || molecules.any(|molecule| molecule.report.confidence.is_some())
-    {
-        return Ok(());
+    let (mut predicted, mut built) = (false, false);
+    for molecule in molecules {
+        predicted |= molecule.report.confidence.is_some();
+        built |= molecule.report.assembly.is_some();
     }
-    Err(Failure::input(
-        "--min-plddt is for predicted models, and nothing here is known to be one",
-    )
-    .remedy(
-        "leave it out, or give the file as the predictor wrote it: a model is known by `_ma_qa_metric` in mmCIF, or by one B value a residue \
-         where the file names no experiment",
-    ))
+    if options.min_plddt.is_some() && !predicted {
+        return Err(Failure::input(
+            "--min-plddt is for predicted models, and nothing here is known to be one",
+        )
+        .remedy(
+            "leave it out, or give the file as the predictor wrote it: a model is known by `_ma_qa_metric` in mmCIF, or by one B value a residue \
+             where the file names no experiment",
+        ));
+    }
+    if options.assembly.is_some() && !built {
+        return Err(Failure::input(
+            "--assembly is for files that describe their biological assemblies, and none does here",
+        )
+        .remedy(
+            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in _pdbx_struct_assembly_gen (mmCIF)",
+        ));
+    }
+    Ok(())
 }
 
 fn refuse_mesh(spec: &InputSpec) -> Result<(), Failure> {

@@ -14,7 +14,7 @@ use serde_json::json;
 use super::arguments::not_negative;
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, check_confidence};
+use super::input::{Input, check_used};
 use super::output_file::check_output;
 use super::reading_arguments::ReadingArguments;
 
@@ -58,7 +58,7 @@ impl Inspect {
         }
         let input = Input::read(&self.file, &reading)?;
         let molecule = &input.molecule;
-        check_confidence(&reading, [molecule])?;
+        check_used(&reading, [molecule])?;
         let labels = molecule.labels(self.ph).report;
         let area: f64 = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))

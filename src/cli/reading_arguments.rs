@@ -3,7 +3,7 @@
 use clap::Args;
 use knotdock_structures::molecule::{AlternateLocation, Hetatm, Hydrogens, ReadOptions, Waters};
 
-use super::arguments::{at_least_one, plddt};
+use super::arguments::{assembly_name, at_least_one, plddt};
 
 const READING: &str = "Reading";
 
@@ -26,6 +26,9 @@ pub struct ReadingArguments {
     /// Model of a file that has several: 1 is the first, whatever number it carries.
     #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = ReadOptions::default().model, help_heading = READING)]
     model: usize,
+    /// Build this biological assembly of a file that has it, such as 1; copies of chain A are called ..., which is how FILE:A,A-2 picks them.
+    #[arg(long, value_name = "ID", value_parser = assembly_name, help_heading = READING)]
+    assembly: Option<String>,
     /// Of a predicted model leave out residues with a pLDDT below this, 0 to 100: 50 leaves out what is likely disordered.
     #[arg(long, value_name = "X", value_parser = plddt, help_heading = READING)]
     min_plddt: Option<f64>,
@@ -40,6 +43,7 @@ impl ReadingArguments {
             hydrogens: self.hydrogens,
             altloc: self.altloc,
             model: self.model,
+            assembly: self.assembly.clone(),
             min_plddt: self.min_plddt,
             ..ReadOptions::default()
         }

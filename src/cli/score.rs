@@ -13,7 +13,7 @@ use super::arguments::at_least_one;
 use super::console::Console;
 use super::dock_report::site_told;
 use super::failure::Failure;
-use super::input::{Input, check_confidence};
+use super::input::{Input, check_used};
 use super::memory;
 use super::reading_arguments::ReadingArguments;
 use super::search_arguments::KernelArguments;
@@ -79,7 +79,7 @@ impl Score {
         };
         let receptor = read(&self.receptor, "Receptor")?;
         let ligand = read(&self.ligand, "Ligand")?;
-        check_confidence(&reading, [&receptor, &ligand])?;
+        check_used(&reading, [&receptor, &ligand])?;
         let dock = self.kernel.options()?;
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;

@@ -228,6 +228,7 @@ fn molecule(path: &Path, index: u64) -> bool {
             AlternateLocation::Named('B')
         },
         model: 1 + (index / 24 % 2) as usize,
+        assembly: ((index / 96) & 1 == 1).then(|| "1".to_owned()),
         min_plddt: ((index / 48) & 1 == 1).then_some(15.0),
         ..ReadOptions::default()
     };
@@ -291,6 +292,16 @@ fn gzip(text: &str) -> Vec<u8> {
 fn pdb() -> String {
     "\
 HEADER    SEED
+EXPDTA    THEORETICAL MODEL
+REMARK 350 BIOMOLECULE: 1
+REMARK 350 APPLY THE FOLLOWING TO CHAINS: A,
+REMARK 350                    AND CHAINS: B
+REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000
+REMARK 350   BIOMT1   2 -1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   2  0.000000 -1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        5.00000
 ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00 10.00           N
 ATOM      2  CA AALA A   1      11.639   6.071  -5.147  0.60 10.00           C
 ATOM      3  CA BALA A   1      11.739   6.171  -5.247  0.40 10.00           C
@@ -328,6 +339,29 @@ _struct.title
 ;a text
 field
 ;
+_ma_qa_metric.name pLDDT
+loop_
+_pdbx_struct_assembly_gen.assembly_id
+_pdbx_struct_assembly_gen.oper_expression
+_pdbx_struct_assembly_gen.asym_id_list
+1 1 A
+1 '(1)(1-1)'
+;B,
+C
+;
+_pdbx_struct_oper_list.id 1
+_pdbx_struct_oper_list.matrix[1][1] 1
+_pdbx_struct_oper_list.matrix[1][2] 0
+_pdbx_struct_oper_list.matrix[1][3] 0
+_pdbx_struct_oper_list.matrix[2][1] 0
+_pdbx_struct_oper_list.matrix[2][2] 1
+_pdbx_struct_oper_list.matrix[2][3] 0
+_pdbx_struct_oper_list.matrix[3][1] 0
+_pdbx_struct_oper_list.matrix[3][2] 0
+_pdbx_struct_oper_list.matrix[3][3] 1
+_pdbx_struct_oper_list.vector[1] 0
+_pdbx_struct_oper_list.vector[2] 0
+_pdbx_struct_oper_list.vector[3] 2.5
 loop_
 _atom_site.group_PDB
 _atom_site.id

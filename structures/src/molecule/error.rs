@@ -144,6 +144,26 @@ pub enum ReadError {
         /// Number of models in the file.
         models: usize,
     },
+    /// A biological assembly was asked for that the file does not have.
+    #[error("there is no assembly '{assembly}'; the file has {}", present.join(", "))]
+    UnknownAssembly {
+        /// The path as given.
+        file: PathBuf,
+        /// The assembly asked for.
+        assembly: String,
+        /// Names of those that the file has.
+        present: Vec<String>,
+    },
+    /// What the file says of its biological assemblies cannot be understood.
+    #[error("the biological assemblies cannot be built: {what}")]
+    BrokenAssembly {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line where it shows, where there is one.
+        line: Option<usize>,
+        /// What is wrong.
+        what: String,
+    },
     /// Every atom was dropped: hydrogens, waters and additives only, or what the policies leave out besides.
     #[error("no atom is left after what is not wanted is dropped ({dropped} atoms)")]
     EmptySelection {
@@ -196,6 +216,8 @@ impl ReadError {
             | Self::UnknownElement { file, .. }
             | Self::UnknownChain { file, .. }
             | Self::UnknownModel { file, .. }
+            | Self::UnknownAssembly { file, .. }
+            | Self::BrokenAssembly { file, .. }
             | Self::EmptySelection { file, .. }
             | Self::Parser { file, .. } => Some(file),
         }
@@ -209,7 +231,7 @@ impl ReadError {
             | Self::BrokenCif { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::UnknownElement { line, .. } => Some(*line),
-            Self::Parser { line, .. } => *line,
+            Self::Parser { line, .. } | Self::BrokenAssembly { line, .. } => *line,
             _ => None,
         }
     }
@@ -251,6 +273,12 @@ impl ReadError {
             }
             Self::UnknownModel { .. } => {
                 "ask for one of the models that the file has; they count from 1 in the order of the file"
+            }
+            Self::UnknownAssembly { .. } => {
+                "ask for one of these, or leave --assembly out to read the coordinates as they stand"
+            }
+            Self::BrokenAssembly { .. } => {
+                "fetch the file again, or leave --assembly out to read the coordinates as they stand"
             }
             Self::EmptySelection { .. } => {
                 "pick other chains, or keep what is dropped: --hetatm keep, --waters keep, --hydrogens keep, a lower --min-plddt"

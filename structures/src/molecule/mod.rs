@@ -11,7 +11,7 @@
 //! # From file to molecule
 //!
 //! path -> `source` (open, unpack, tell the format) -> `sieve` (atoms of one model, in a form that pdbtbx is sure to
-//! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `select` (by `policy`: chains, waters, additives,
+//! read; what it would lose is carried past) -> `parse` (pdbtbx, no panic past it) -> `assembly`, where one is asked for -> `select` (by `policy`: chains, waters, additives,
 //! `elements`, `alternate` locations, `confidence` of predictions) -> `groups`, `radii`, `completeness` -> [`Molecule`] with its [`ReadReport`].
 
 use serde::Serialize;
@@ -20,6 +20,7 @@ mod accessible;
 mod additives;
 mod alternate;
 mod antibody;
+mod assembly;
 mod buried;
 mod charge_table;
 mod completeness;
@@ -48,6 +49,7 @@ mod write;
 
 pub use accessible::PROBE;
 pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
+pub use assembly::BuiltAssembly;
 pub use confidence::{Confidence, LOW, ToldBy};
 pub use contact_types::{CONTACT_TYPES, atom_kinds};
 pub use copies::CopiesError;

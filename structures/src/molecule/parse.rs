@@ -16,6 +16,7 @@ use super::error::ReadError;
 use super::sieve::{Carried, Exact, Sieved};
 
 /// One atom as pdbtbx and the sieve together know it.
+#[derive(Clone)]
 pub(super) struct Parsed {
     pub(super) name: String,
     pub(super) insertion_code: Option<char>,

@@ -21,6 +21,8 @@ pub struct ReadOptions {
     pub altloc: AlternateLocation,
     /// Which model is read: 1 is the first in the file, whatever number it carries. A file of one model has it read.
     pub model: usize,
+    /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is read as it stands.
+    pub assembly: Option<String>,
     /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
     pub min_plddt: Option<f64>,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
@@ -36,6 +38,7 @@ impl Default for ReadOptions {
             hydrogens: Hydrogens::default(),
             altloc: AlternateLocation::default(),
             model: 1,
+            assembly: None,
             min_plddt: None,
             keep: Vec::new(),
         }

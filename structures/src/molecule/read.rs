@@ -5,7 +5,7 @@ use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
 use super::policy::ReadOptions;
 use super::report::{ChainCount, DropKind, GroupCount, ReadReport};
-use super::{Atom, Format, Molecule, completeness, parse, radii, select, sieve, source};
+use super::{Atom, Format, Molecule, assembly, completeness, parse, radii, select, sieve, source};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +99,15 @@ fn read_telling(
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
     let provenance = sieved.provenance;
-    let parsed = parse::parse(file, format, sieved)?;
+    let assemblies = std::mem::take(&mut sieved.assemblies);
+    let mut parsed = parse::parse(file, format, sieved)?;
+    if let Some(wanted) = &options.assembly {
+        parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
+    } else if spec.chains.is_none() {
+        report
+            .warnings
+            .extend(assembly::warning(&parsed, &assemblies));
+    }
     let atoms = select::select(
         file,
         parsed,

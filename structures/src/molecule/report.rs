@@ -6,6 +6,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::Format;
+use super::assembly::BuiltAssembly;
 use super::confidence::{Confidence, ToldBy};
 use super::groups::GroupKind;
 
@@ -28,6 +29,8 @@ pub struct ReadReport {
     pub dropped: Vec<Dropped>,
     /// What was altered.
     pub altered: Altered,
+    /// The biological assembly that was built; nothing where the coordinates were taken as they stand.
+    pub assembly: Option<BuiltAssembly>,
     /// How sure the prediction is that the file holds; nothing where it holds none.
     pub confidence: Option<Confidence>,
     /// What the user should know before trusting the result.
@@ -64,6 +67,8 @@ pub struct GroupCount {
 pub enum DropKind {
     /// Chains that were not asked for.
     Chain,
+    /// Chains that have no part in the biological assembly asked for.
+    Assembly,
     /// Hydrogen and deuterium: united-atom radii stand for them.
     Hydrogen,
     /// Water.
@@ -155,7 +160,7 @@ impl ReadReport {
 }
 
 /// `1 atom`, `2 atoms`.
-fn count(number: usize, what: &str) -> String {
+pub(super) fn count(number: usize, what: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {what}{plural}")
 }
@@ -219,6 +224,21 @@ impl fmt::Display for ReadReport {
         if !altered.is_empty() {
             write!(f, "\n  altered: {}", altered.join(", "))?;
         }
+        if let Some(built) = &self.assembly {
+            let (id, chains) = (&built.id, count(built.chains, "chain"));
+            write!(
+                f,
+                "\n  biological assembly {id}: {chains}, of {} in the file",
+                built.chains_in_file
+            )?;
+            if built.on_axes > 0 {
+                write!(
+                    f,
+                    "; {} on its axes kept once",
+                    count(built.on_axes, "atom")
+                )?;
+            }
+        }
         if let Some(confidence) = &self.confidence {
             let told_by = match confidence.told_by {
                 ToldBy::Header => "as the file says",
@@ -251,6 +271,7 @@ fn show_dropped(dropped: &Dropped) -> String {
     let atoms = count(dropped.atoms, "atom");
     match dropped.kind {
         DropKind::Chain => format!("{atoms} of other chains ({})", names()),
+        DropKind::Assembly => format!("{atoms} of chains outside the assembly ({})", names()),
         DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
         DropKind::Water => count(dropped.atoms, "water atom"),
         DropKind::Additive => format!("{atoms} of additives ({})", names()),

@@ -102,7 +102,8 @@ pub(super) fn select(
     Ok(atoms)
 }
 
-fn atom(record: Parsed, element: &str) -> Atom {
+/// The atom of a record, its radius left at zero.
+pub(super) fn atom(record: Parsed, element: &str) -> Atom {
     let carried = record.carried;
     Atom {
         name: record.name,

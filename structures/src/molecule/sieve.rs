@@ -15,6 +15,8 @@
 //! | element | guesses calcium for CA when the column is blank |
 //! | mmCIF decimals | off by an ulp, and wrong above 2^32 |
 
+mod assembly_items;
+mod assembly_remark;
 pub(super) mod mmcif;
 pub(super) mod pdb;
 mod provenance;
@@ -23,6 +25,7 @@ pub(super) mod tokens;
 
 use std::path::Path;
 
+use super::assembly::Assemblies;
 use super::confidence::Provenance;
 use super::error::ReadError;
 
@@ -45,6 +48,8 @@ pub(super) enum NameColumn {
 pub(super) struct Carried {
     pub(super) line: usize,
     pub(super) chain: String,
+    /// What the archive calls the chain (`label_asym_id`), where that is another name.
+    pub(super) archive_chain: Option<String>,
     pub(super) residue_name: String,
     pub(super) residue_number: i64,
     pub(super) alternate_location: Option<char>,
@@ -80,6 +85,8 @@ pub(super) struct Sieved {
     pub(super) recognised: bool,
     /// What the file says of where its coordinates come from.
     pub(super) provenance: Provenance,
+    /// What the file says of its biological assemblies.
+    pub(super) assemblies: Assemblies,
 }
 
 /// An error in one field of one line.

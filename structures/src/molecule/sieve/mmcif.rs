@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use super::assembly_items::Items;
 use super::provenance::Told;
 use super::tokens::{Kind, Token, tokens};
 use super::{Carried, Exact, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
@@ -29,6 +30,7 @@ pub(in crate::molecule) fn sieve(
     let mut sieved = Sieved::default();
     let mut table = Table::default();
     let mut told = Told::default();
+    let mut assemblies = Items::default();
     let mut stream = tokens(text).peekable();
     while let Some(token) = stream.next() {
         match token.kind {
@@ -51,6 +53,7 @@ pub(in crate::molecule) fn sieve(
                         table.values.push(next);
                     } else if let Some(tag) = columns.next() {
                         told.note(tag, next.kind);
+                        assemblies.note(tag, next);
                     }
                 }
             }
@@ -60,6 +63,7 @@ pub(in crate::molecule) fn sieve(
                 if let Some(value) = value {
                     check_closed(file, value)?;
                     told.note(tag, value.kind);
+                    assemblies.note(tag, value);
                     if let Some(item) = item(tag) {
                         table.line = token.line;
                         table.items.push(item.to_ascii_lowercase());
@@ -72,6 +76,7 @@ pub(in crate::molecule) fn sieve(
         }
     }
     sieved.provenance = told.provenance();
+    sieved.assemblies = assemblies.assemblies();
     table.sieve(file, model, &mut sieved)?;
     Ok(sieved)
 }
@@ -115,6 +120,8 @@ struct Columns {
     alternate: Option<usize>,
     residue: usize,
     chain: [Option<usize>; 2],
+    /// The archive's name of the chain.
+    archive_chain: Option<usize>,
     number: [Option<usize>; 2],
     insertion: Option<usize>,
     element: Option<usize>,
@@ -158,6 +165,7 @@ impl<'a> Table<'a> {
             alternate: self.find("label_alt_id"),
             residue: self.require(file, "label_comp_id")?,
             chain: [self.find("auth_asym_id"), self.find("label_asym_id")],
+            archive_chain: self.find("label_asym_id"),
             number: [self.find("auth_seq_id"), self.find("label_seq_id")],
             insertion: self.find("pdbx_pdb_ins_code"),
             element: self.find("type_symbol"),
@@ -327,6 +335,11 @@ impl<'a> Row<'_, 'a> {
         sieved.carried.push(Carried {
             line: self.line(),
             chain: chain.to_string(),
+            archive_chain: columns
+                .archive_chain
+                .and_then(|column| self.value(column))
+                .filter(|name| *name != chain)
+                .map(str::to_string),
             residue_name: residue_name.to_string(),
             residue_number,
             alternate_location: alternate,

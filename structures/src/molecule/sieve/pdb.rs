@@ -5,6 +5,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::assembly_remark::Remark;
 use super::provenance::is_measured;
 use super::residue_columns::{has_wide_chains, residue_and_chain, residue_number};
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
@@ -26,6 +27,7 @@ pub(in crate::molecule) fn sieve(
 ) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut models = Models::default();
+    let mut assemblies = Remark::default();
     let wide_chains = has_wide_chains(text);
     for (line, record) in lines(text) {
         if is_atom(record) {
@@ -39,12 +41,14 @@ pub(in crate::molecule) fn sieve(
             let name = record.split_ascii_whitespace().next().unwrap_or("");
             sieved.recognised |= RECORDS.contains(&name);
             models.note(name);
+            assemblies.note(line, record);
             if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
                 sieved.provenance = Provenance::NoConfidence;
             }
         }
     }
     sieved.models = models.count;
+    sieved.assemblies = assemblies.assemblies();
     Ok(sieved)
 }
 
@@ -200,6 +204,7 @@ fn atom(
     sieved.carried.push(Carried {
         line,
         chain: chain.to_string(),
+        archive_chain: None,
         residue_name: residue_name.to_string(),
         residue_number,
         alternate_location: alternate,

@@ -21,7 +21,7 @@ pub(super) enum Kind<'a> {
     Tag(&'a str),
     /// A bare value; `.` and `?` mean that there is none.
     Bare(&'a str),
-    /// A value in quotes, or the first line of a text field.
+    /// A value in quotes, or a text field.
     Quoted(&'a str),
     /// A quote or a text field that is never closed.
     Unclosed,
@@ -29,10 +29,16 @@ pub(super) enum Kind<'a> {
 
 /// Walks over the tokens of a CIF text, without copying it.
 ///
-/// A text field (lines from one that starts with `;` to the next that does) yields its first line only: no item of an
-/// atom is that long.
+/// A text field (lines from one that starts with `;` to the next that does) is one quoted value, line ends within it included.
 pub(super) fn tokens(text: &str) -> impl Iterator<Item = Token<'_>> {
     let mut source = lines(text);
+    // Lines are pieces of the text: where one starts tells what lies between two.
+    let text_start =
+        move |line: &str| (line.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
+    let between = move |start: usize, end: usize| {
+        let field = text.get(start..end).unwrap_or("");
+        field.trim_end_matches(['\r', '\n'])
+    };
     let mut rest: (usize, &str) = (0, "");
     std::iter::from_fn(move || {
         loop {
@@ -44,9 +50,9 @@ pub(super) fn tokens(text: &str) -> impl Iterator<Item = Token<'_>> {
                     rest = (line, "");
                     let closing = source.find(|(_, text)| text.starts_with(';'));
                     let kind = match closing {
-                        Some((end, text)) => {
-                            rest = (end, text.get(1..).unwrap_or(""));
-                            Kind::Quoted(head)
+                        Some((end, closing)) => {
+                            rest = (end, closing.get(1..).unwrap_or(""));
+                            Kind::Quoted(between(text_start(head), text_start(closing)))
                         }
                         None => Kind::Unclosed,
                     };
@@ -111,7 +117,7 @@ mod tests {
                 (2, Kind::Tag("_a.b")),
                 (2, Kind::Quoted("O5'")),
                 (2, Kind::Quoted("it's")),
-                (3, Kind::Quoted("text")),
+                (3, Kind::Quoted("text\nloop_")),
                 (5, Kind::Bare("7")),
                 (6, Kind::Loop),
                 (7, Kind::Bare("?")),

@@ -1,5 +1,4 @@
-//! Predicted models through every command: residues of low confidence are told of, left out where that is asked, and the choice is
-//! recorded and followed.
+//! What is read of predicted models and of biological assemblies, through every command: it is told of, recorded and followed.
 
 mod molecules;
 mod program;
@@ -41,7 +40,7 @@ fn json(folder: &Path, arguments: &str) -> Value {
 }
 
 #[test]
-fn what_is_left_out_is_recorded_and_followed() {
+fn residues_left_out_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
     let run = "dock receptor.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
@@ -101,16 +100,97 @@ fn inspect_says_how_sure_the_model_is() {
     assert_eq!(table.lines().count(), 61);
 }
 
-/// Where nothing is a prediction the limit would do nothing, which is no answer to who asked for it.
+/// The ligand as half of a dimer, whose axis stands along z at (4.75, 14).
+fn half_of_a_dimer() -> String {
+    let remark = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
+        REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n\
+        REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n\
+        REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n\
+        REMARK 350   BIOMT1   2 -1.000000  0.000000  0.000000        9.50000\n\
+        REMARK 350   BIOMT2   2  0.000000 -1.000000  0.000000       28.00000\n\
+        REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        0.00000\n";
+    remark.to_owned() + &molecules::ligand()
+}
+
 #[test]
-fn a_limit_that_does_nothing_is_refused() {
+fn an_assembly_is_recorded_and_followed() {
     let folder = place();
-    for command in [
-        "dock receptor.pdb ligand.pdb --min-plddt 50 --json",
-        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --min-plddt 50 --json",
-        "inspect ligand.pdb --min-plddt 50 --json",
-        "tradeoff receptor.pdb ligand.pdb --min-plddt 50 --json",
-    ] {
+    let folder = folder.path();
+    fs::write(folder.join("half.pdb"), half_of_a_dimer()).unwrap();
+    let told = json(folder, "inspect half.pdb --json");
+    assert!(
+        told["input"]["report"]["warnings"]
+            .to_string()
+            .contains("--assembly 1")
+    );
+    let run = "dock receptor.pdb half.pdb --assembly 1 --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    succeed(folder, run.split_whitespace());
+    let text = fs::read(folder.join("run/run.json")).unwrap();
+    let first: Value = serde_json::from_slice(&text).unwrap();
+    assert_eq!(first["options"]["assembly"], "1");
+    assert_eq!(first["inputs"]["ligand"]["atoms"], 120);
+    assert_eq!(
+        first["inputs"]["ligand"]["report"]["assembly"],
+        serde_json::json!({"id": "1", "chains": 2, "chains_in_file": 1, "on_axes": 0})
+    );
+    // The receptor's file says nothing of assemblies, and is read as it stands.
+    assert_eq!(
+        first["inputs"]["receptor"]["report"]["assembly"],
+        Value::Null
+    );
+    assert_eq!(first["chains"].as_array().unwrap().len(), 4);
+    succeed(
+        folder,
+        "dock --from run/run.json -o again --quiet".split_whitespace(),
+    );
+    succeed(
+        folder,
+        "complex run --rank 1 -o out --quiet".split_whitespace(),
+    );
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
+    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    assert_eq!(
+        String::from_utf8(bytes("out/rank_0001.pdb"))
+            .unwrap()
+            .lines()
+            .filter(|line| line.starts_with("ATOM"))
+            .count(),
+        270
+    );
+    succeed(
+        folder,
+        "evaluate run --native native.pdb --quiet".split_whitespace(),
+    );
+}
+
+/// Options that would do nothing are no answer to who asked for them.
+#[test]
+fn what_would_do_nothing_is_refused() {
+    let folder = place();
+    let commands = [
+        "dock receptor.pdb ligand.pdb",
+        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0",
+        "inspect ligand.pdb",
+        "tradeoff receptor.pdb ligand.pdb",
+    ];
+    let options = [
+        (
+            "--min-plddt 50",
+            "--min-plddt is for predicted models",
+            "_ma_qa_metric",
+        ),
+        (
+            "--assembly 1",
+            "--assembly is for files that describe",
+            "REMARK 350",
+        ),
+    ];
+    for (command, (option, says, remedy)) in commands
+        .iter()
+        .flat_map(|command| options.map(|option| (command, option)))
+    {
+        let command = format!("{command} {option} --json");
         let output = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
             .args(command.split_whitespace())
@@ -119,16 +199,8 @@ fn a_limit_that_does_nothing_is_refused() {
         assert_eq!(output.status.code(), Some(2), "{command}");
         let told: Value = serde_json::from_slice(&output.stdout).unwrap();
         let message = told["error"]["message"].as_str().unwrap();
-        assert!(
-            message.contains("--min-plddt is for predicted models"),
-            "{message}"
-        );
-        assert!(
-            told["error"]["remedy"]
-                .as_str()
-                .unwrap()
-                .contains("_ma_qa_metric")
-        );
+        assert!(message.contains(says), "{message}");
+        assert!(told["error"]["remedy"].as_str().unwrap().contains(remedy));
     }
     succeed(
         folder.path(),
