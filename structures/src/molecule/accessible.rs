@@ -1,8 +1,8 @@
 //! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points on the atoms'
 //! expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
+use super::cells::Cells;
 use super::{Molecule, squared_distance};
-use std::collections::HashMap;
 
 /// Radius of the water probe, in Å.
 pub const PROBE: f64 = 1.4;
@@ -14,13 +14,7 @@ impl Molecule {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();
         let reach = 2.0 * grown.iter().copied().fold(0.0, f64::max);
-        // Within what has neighbours on both sides.
-        let last = (1i64 << 60) as f64;
-        let cell = |x: [f64; 3]| x.map(|x| (x / reach).floor().clamp(-last, last) as i64);
-        let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-        for (index, atom) in self.atoms.iter().enumerate() {
-            cells.entry(cell(atom.position)).or_default().push(index);
-        }
+        let cells = Cells::new(self.atoms.iter().map(|atom| atom.position), reach);
         let mut near: Vec<usize> = Vec::new();
         self.atoms
             .iter()
@@ -28,20 +22,11 @@ impl Molecule {
             .enumerate()
             .map(|(index, (atom, &radius))| {
                 near.clear();
-                let [x, y, z] = cell(atom.position);
-                for dx in -1..=1 {
-                    for dy in -1..=1 {
-                        for dz in -1..=1 {
-                            let members = cells.get(&[x + dx, y + dy, z + dz]);
-                            near.extend(members.into_iter().flatten().copied().filter(|&other| {
-                                let touch = radius + grown[other];
-                                let at = self.atoms[other].position;
-                                other != index
-                                    && squared_distance(atom.position, at) < touch * touch
-                            }));
-                        }
-                    }
-                }
+                near.extend(cells.around(atom.position).filter(|&other| {
+                    let touch = radius + grown[other];
+                    let at = self.atoms[other].position;
+                    other != index && squared_distance(atom.position, at) < touch * touch
+                }));
                 let free = sphere.iter().filter(|direction| {
                     let point =
                         std::array::from_fn(|axis| atom.position[axis] + radius * direction[axis]);

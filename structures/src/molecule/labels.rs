@@ -1,21 +1,11 @@
 //! Labels of a molecule's atoms: what effects beside shape act on. Charges in e, and contact types.
-//!
-//! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
-//! and begin another if the chain's name changes or the numbering has no gap; where numbers are missing, so are residues, and the
-//! loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
 
-use super::charge_table::{
-    AMINO_TERMINUS, BACKBONE, CARBOXYL_CARBON, CARBOXYL_OXYGENS, Charges, NUCLEOTIDE, PROLINE,
-    PROLINE_TERMINUS, TERMINI_PKA, cofactor, ion, side_chain,
-};
+use super::charge_table::{BACKBONE, Charges, NUCLEOTIDE, PROLINE, cofactor, ion, side_chain};
 use super::contact_types::atom_types;
 use super::groups::{GroupKind, Residue, residues};
-use super::{Atom, Molecule, squared_distance};
+use super::{Atom, Molecule};
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Longest C-N distance in Å of a peptide bond, with room for poor structures.
-const BOND: f64 = 2.5;
 
 /// What the labels of a molecule are.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -130,7 +120,7 @@ impl Molecule {
         }
     }
 
-    fn set(&self, residue: &Residue<'_>, charges: Charges, labels: &mut Labels) {
+    pub(super) fn set(&self, residue: &Residue<'_>, charges: Charges, labels: &mut Labels) {
         for &index in &residue.atoms {
             let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
             if let Some((_, charge)) = charges.iter().find(|(known, _)| *known == name) {
@@ -139,121 +129,16 @@ impl Molecule {
         }
     }
 
-    fn atom<'a>(&'a self, residue: &Residue<'_>, name: &str) -> Option<&'a Atom> {
+    pub(super) fn atom<'a>(&'a self, residue: &Residue<'_>, name: &str) -> Option<&'a Atom> {
         let atoms = residue
             .atoms
             .iter()
             .filter_map(|&index| self.atoms.get(index));
         atoms.into_iter().find(|atom| atom.name == name)
     }
-
-    fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
-        let peptide: Vec<&Residue<'_>> = groups
-            .iter()
-            .filter(|residue| {
-                matches!(
-                    residue.kind,
-                    GroupKind::AminoAcid | GroupKind::ModifiedResidue
-                )
-            })
-            .collect();
-        for (place, residue) in peptide.iter().enumerate() {
-            let before = place.checked_sub(1).and_then(|place| peptide.get(place));
-            let after = peptide.get(place + 1);
-            let begins = before.is_none_or(|before| self.separate(before, residue));
-            let ends = after.is_none_or(|after| self.separate(residue, after));
-            if begins && !self.capped(groups, residue, "N") && ph < TERMINI_PKA[0] {
-                self.charge_amino(residue, labels);
-            }
-            let last_oxygen = ["OXT", "OT2", "O2"]
-                .iter()
-                .any(|name| self.atom(residue, name).is_some());
-            if (ends || last_oxygen) && !self.capped(groups, residue, "C") && ph >= TERMINI_PKA[1] {
-                self.charge_carboxyl(residue, labels);
-            }
-            let broken = before.is_some_and(|before| {
-                !begins
-                    && self.distance(before, residue).is_some_and(|d| d > BOND)
-                    && !self.capped(groups, residue, "N")
-            });
-            labels.report.gaps += usize::from(broken);
-        }
-    }
-
-    /// Distance in Å of the C of one residue from the N of the next.
-    fn distance(&self, before: &Residue<'_>, after: &Residue<'_>) -> Option<f64> {
-        let (c, n) = (self.atom(before, "C")?, self.atom(after, "N")?);
-        Some(squared_distance(c.position, n.position).sqrt())
-    }
-
-    /// Whether one chain ends and another begins between two peptide residues in a row.
-    fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
-        let apart = self.distance(before, after).is_some_and(|d| d > BOND);
-        let (chain, number, ..) = before.key;
-        let (next_chain, next_number, ..) = after.key;
-        apart && (chain != next_chain || next_number <= number + 1)
-    }
-
-    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
-    /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
-    fn capped(&self, groups: &[Residue<'_>], residue: &Residue<'_>, name: &str) -> bool {
-        let Some(end) = self.atom(residue, name) else {
-            return true;
-        };
-        let is_bonded = |atom: &Atom| squared_distance(atom.position, end.position) < 1.7 * 1.7;
-        let other_end = if name == "N" { "C" } else { "N" };
-        groups.iter().any(|group| match group.kind {
-            GroupKind::Cofactor | GroupKind::Glycan => {
-                let atoms = group
-                    .atoms
-                    .iter()
-                    .filter_map(|&index| self.atoms.get(index));
-                atoms.into_iter().any(is_bonded)
-            }
-            GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
-                group.key != residue.key && self.atom(group, other_end).is_some_and(is_bonded)
-            }
-            _ => false,
-        })
-    }
-
-    fn charge_amino(&self, residue: &Residue<'_>, labels: &mut Labels) {
-        // Pyroglutamate's amide carries no proton to share.
-        if residue.key.3 == "PCA" {
-            return;
-        }
-        let charges = if is_proline(residue.key.3) {
-            PROLINE_TERMINUS
-        } else {
-            AMINO_TERMINUS
-        };
-        self.set(residue, charges, labels);
-        labels.report.termini[0] += 1;
-    }
-
-    fn charge_carboxyl(&self, residue: &Residue<'_>, labels: &mut Labels) {
-        let oxygens: Vec<usize> = residue
-            .atoms
-            .iter()
-            .copied()
-            .filter(|&index| {
-                let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
-                matches!(name, "O" | "OXT" | "OT1" | "OT2" | "O1" | "O2")
-            })
-            .collect();
-        if oxygens.is_empty() {
-            return;
-        }
-        // Where the second oxygen was not seen, the first stands for both.
-        for &index in &oxygens {
-            labels.charges[index] = CARBOXYL_OXYGENS / oxygens.len() as f64;
-        }
-        self.set(residue, &[("C", CARBOXYL_CARBON)], labels);
-        labels.report.termini[1] += 1;
-    }
 }
 
-fn is_proline(residue_name: &str) -> bool {
+pub(super) fn is_proline(residue_name: &str) -> bool {
     matches!(residue_name, "PRO" | "HYP")
 }
 

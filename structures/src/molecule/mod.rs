@@ -22,6 +22,7 @@ mod alternate;
 mod antibody;
 mod assembly;
 mod buried;
+mod cells;
 mod charge_table;
 mod completeness;
 mod confidence;
@@ -45,6 +46,7 @@ mod select;
 mod sequence;
 mod sieve;
 mod source;
+mod termini;
 mod write;
 
 pub use accessible::PROBE;

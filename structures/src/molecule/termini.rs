@@ -1,0 +1,167 @@
+//! Ends of peptide chains, which are charged where nothing is bonded to them.
+//!
+//! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
+//! and begin another if the chain's name changes or the numbering has no gap; where numbers are missing, so are residues, and the
+//! loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
+
+use super::cells::Cells;
+use super::charge_table::{
+    AMINO_TERMINUS, CARBOXYL_CARBON, CARBOXYL_OXYGENS, PROLINE_TERMINUS, TERMINI_PKA,
+};
+use super::groups::{GroupKind, Residue, ResidueKey};
+use super::labels::{Labels, is_proline};
+use super::{Atom, Molecule, squared_distance};
+
+/// Longest C-N distance in Å of a peptide bond, with room for poor structures.
+const BOND: f64 = 2.5;
+
+/// Longest distance in Å of a terminal atom from what is bonded to it.
+const LONGEST_CAP: f64 = 1.7;
+
+/// An atom that may be bonded to the end of a chain.
+struct Cap<'a> {
+    position: [f64; 3],
+    /// Of peptide residues the end, N or C, which takes the other of another residue; of all else none.
+    end: Option<&'static str>,
+    residue: ResidueKey<'a>,
+}
+
+/// All of them, sorted by place.
+struct Caps<'a> {
+    atoms: Vec<Cap<'a>>,
+    cells: Cells,
+}
+
+impl Molecule {
+    /// Charges the ends of chains, and counts gaps.
+    pub(super) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
+        let peptide: Vec<&Residue<'_>> = groups
+            .iter()
+            .filter(|residue| {
+                matches!(
+                    residue.kind,
+                    GroupKind::AminoAcid | GroupKind::ModifiedResidue
+                )
+            })
+            .collect();
+        let caps = self.caps(groups);
+        for (place, residue) in peptide.iter().enumerate() {
+            let before = place.checked_sub(1).and_then(|place| peptide.get(place));
+            let after = peptide.get(place + 1);
+            let begins = before.is_none_or(|before| self.separate(before, residue));
+            let ends = after.is_none_or(|after| self.separate(residue, after));
+            if begins && !self.capped(&caps, residue, "N") && ph < TERMINI_PKA[0] {
+                self.charge_amino(residue, labels);
+            }
+            let last_oxygen = ["OXT", "OT2", "O2"]
+                .iter()
+                .any(|name| self.atom(residue, name).is_some());
+            if (ends || last_oxygen) && !self.capped(&caps, residue, "C") && ph >= TERMINI_PKA[1] {
+                self.charge_carboxyl(residue, labels);
+            }
+            let broken = before.is_some_and(|before| {
+                !begins
+                    && self.distance(before, residue).is_some_and(|d| d > BOND)
+                    && !self.capped(&caps, residue, "N")
+            });
+            labels.report.gaps += usize::from(broken);
+        }
+    }
+
+    /// Distance in Å of the C of one residue from the N of the next.
+    fn distance(&self, before: &Residue<'_>, after: &Residue<'_>) -> Option<f64> {
+        let (c, n) = (self.atom(before, "C")?, self.atom(after, "N")?);
+        Some(squared_distance(c.position, n.position).sqrt())
+    }
+
+    /// Whether one chain ends and another begins between two peptide residues in a row.
+    fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
+        let apart = self.distance(before, after).is_some_and(|d| d > BOND);
+        let (chain, number, ..) = before.key;
+        let (next_chain, next_number, ..) = after.key;
+        apart && (chain != next_chain || next_number <= number + 1)
+    }
+
+    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
+    /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
+    fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
+        let Some(end) = self.atom(residue, name) else {
+            return true;
+        };
+        caps.cells.around(end.position).any(|index| {
+            let cap = &caps.atoms[index];
+            let fits = cap
+                .end
+                .is_none_or(|other_end| other_end != name && cap.residue != residue.key);
+            fits && squared_distance(cap.position, end.position) < LONGEST_CAP * LONGEST_CAP
+        })
+    }
+
+    /// Atoms that may be bonded to the ends of chains.
+    fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
+        let mut atoms = Vec::new();
+        for group in groups {
+            let mut add = |atom: &Atom, end| {
+                atoms.push(Cap {
+                    position: atom.position,
+                    end,
+                    residue: group.key,
+                });
+            };
+            match group.kind {
+                GroupKind::Cofactor | GroupKind::Glycan => {
+                    for &index in &group.atoms {
+                        add(&self.atoms[index], None);
+                    }
+                }
+                GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
+                    for end in ["N", "C"] {
+                        if let Some(atom) = self.atom(group, end) {
+                            add(atom, Some(end));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        Caps {
+            cells: Cells::new(atoms.iter().map(|cap| cap.position), LONGEST_CAP),
+            atoms,
+        }
+    }
+
+    fn charge_amino(&self, residue: &Residue<'_>, labels: &mut Labels) {
+        // Pyroglutamate's amide carries no proton to share.
+        if residue.key.3 == "PCA" {
+            return;
+        }
+        let charges = if is_proline(residue.key.3) {
+            PROLINE_TERMINUS
+        } else {
+            AMINO_TERMINUS
+        };
+        self.set(residue, charges, labels);
+        labels.report.termini[0] += 1;
+    }
+
+    fn charge_carboxyl(&self, residue: &Residue<'_>, labels: &mut Labels) {
+        let oxygens: Vec<usize> = residue
+            .atoms
+            .iter()
+            .copied()
+            .filter(|&index| {
+                let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
+                matches!(name, "O" | "OXT" | "OT1" | "OT2" | "O1" | "O2")
+            })
+            .collect();
+        if oxygens.is_empty() {
+            return;
+        }
+        // Where the second oxygen was not seen, the first stands for both.
+        for &index in &oxygens {
+            labels.charges[index] = CARBOXYL_OXYGENS / oxygens.len() as f64;
+        }
+        self.set(residue, &[("C", CARBOXYL_CARBON)], labels);
+        labels.report.termini[1] += 1;
+    }
+}
