@@ -40,6 +40,7 @@ mod policy;
 mod radii;
 mod read;
 mod report;
+mod report_text;
 mod residue_selection;
 mod residues;
 mod select;

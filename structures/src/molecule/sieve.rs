@@ -17,6 +17,7 @@
 
 mod assembly_items;
 mod assembly_remark;
+mod atom_site;
 pub(super) mod mmcif;
 pub(super) mod pdb;
 mod provenance;

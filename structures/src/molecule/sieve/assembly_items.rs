@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::coordinate;
-use super::tokens::{Kind, Token};
+use super::tokens::Token;
 use crate::molecule::assembly::{Assemblies, Assembly, Operator, Part};
 
 /// Most copies that one row may ask for.
@@ -37,11 +37,7 @@ impl<'a> Rows<'a> {
 
 /// The text of a value; nothing for `.` and `?`.
 fn text<'a>(row: &HashMap<String, Token<'a>>, item: &str) -> Option<&'a str> {
-    match row.get(item)?.kind {
-        Kind::Bare("." | "?") => None,
-        Kind::Bare(text) | Kind::Quoted(text) => Some(text.trim()),
-        _ => None,
-    }
+    row.get(item)?.kind.value()
 }
 
 impl<'a> Items<'a> {

@@ -24,10 +24,8 @@ pub(super) struct Told {
 impl Told {
     /// Takes the value of an item.
     pub(super) fn note(&mut self, tag: &str, value: Kind<'_>) {
-        let text = match value {
-            Kind::Bare("." | "?") => return,
-            Kind::Bare(text) | Kind::Quoted(text) => text,
-            _ => return,
+        let Some(text) = value.value() else {
+            return;
         };
         let is = |item: &str| tag.eq_ignore_ascii_case(item);
         if is("_exptl.method") {

@@ -27,6 +27,17 @@ pub(super) enum Kind<'a> {
     Unclosed,
 }
 
+impl<'a> Kind<'a> {
+    /// The text of a value; nothing for `.` and `?` and for what is no value.
+    pub(super) fn value(self) -> Option<&'a str> {
+        match self {
+            Self::Bare("." | "?") => None,
+            Self::Bare(text) | Self::Quoted(text) => Some(text.trim()),
+            _ => None,
+        }
+    }
+}
+
 /// Walks over the tokens of a CIF text, without copying it.
 ///
 /// A text field (lines from one that starts with `;` to the next that does) is one quoted value, line ends within it included.
