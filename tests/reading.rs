@@ -164,6 +164,54 @@ fn an_assembly_is_recorded_and_followed() {
     );
 }
 
+/// What is kept of a file is written as a structure: an assembly, here a known complex, is read again as it was built.
+#[test]
+fn an_assembly_is_written_and_read_again() {
+    let folder = place();
+    let folder = folder.path();
+    fs::write(folder.join("half.pdb"), half_of_a_dimer()).unwrap();
+    for name in ["dimer.pdb", "dimer.cif"] {
+        let built = json(
+            folder,
+            &format!("inspect half.pdb --assembly 1 --write {name} --json"),
+        );
+        let again = json(folder, &format!("inspect {name} --json"));
+        for entry in ["labels", "accessible_area"] {
+            assert_eq!(built[entry], again[entry], "{name}");
+        }
+        assert_eq!(again["input"]["atoms"], 120);
+    }
+    let text = fs::read_to_string(folder.join("dimer.pdb")).unwrap();
+    assert!(
+        text.contains("chain B was A-2") && !text.contains("chain A was"),
+        "{text}"
+    );
+    let chains = json(folder, "inspect dimer.cif --json");
+    assert_eq!(chains["input"]["report"]["chains"][1]["name"], "A-2");
+    succeed(
+        folder,
+        "inspect half.pdb --assembly 1 --write dimer.pdb --force --quiet".split_whitespace(),
+    );
+
+    for (options, says) in [
+        ("--write dimer.pdb", "already there"),
+        ("--write half.pdb --force", "one of those read"),
+        ("--write dimer.txt", "neither in .pdb nor in .cif"),
+        ("--write all.cif --atoms all.cif", "name one file"),
+        ("--force", "required"),
+    ] {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder)
+            .args(format!("inspect half.pdb {options}").split_whitespace())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{options}");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains(says), "{options}: {told}");
+    }
+    assert!(!folder.join("all.cif").exists());
+}
+
 /// Options that would do nothing are no answer to who asked for them.
 #[test]
 fn what_would_do_nothing_is_refused() {

@@ -1,14 +1,17 @@
 //! `knotdock inspect`: what a structure file holds, what would be kept of it, and what would be assumed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args;
-use knotdock::output::atom_table;
+use clap::{ArgGroup, Args};
+use knotdock::output::report::counted;
+use knotdock::output::{atom_table, molecule_file};
 use knotdock::search::DockOptions;
 use knotdock::search::attracted::sites_told;
 use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
-use knotdock_structures::molecule::{ActiveSite, Antibody, InputSpec, LabelReport, read_listed};
+use knotdock_structures::molecule::{
+    ActiveSite, Antibody, Format, InputSpec, LabelReport, fits, read_listed,
+};
 use serde_json::json;
 
 use super::arguments::not_negative;
@@ -20,6 +23,7 @@ use super::reading_arguments::ReadingArguments;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
 #[derive(Args, Debug)]
+#[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
     /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
     #[arg(value_name = "FILE")]
@@ -27,8 +31,11 @@ pub struct Inspect {
     /// Write every atom of the model to this CSV file, kept or dropped, with the reason.
     #[arg(long, value_name = "FILE")]
     atoms: Option<PathBuf>,
-    /// Replace the file of `--atoms` where it is already there.
-    #[arg(long, requires = "atoms")]
+    /// Write what is kept, an assembly that was built for instance, to this structure file, .pdb or .cif.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+    /// Replace the files of `--atoms` and `--write` where they are already there.
+    #[arg(long, requires = "written")]
     force: bool,
     #[command(flatten)]
     reading: ReadingArguments,
@@ -52,13 +59,32 @@ impl Inspect {
             )));
         }
         let reading = self.reading.options();
+        let structure = InputSpec::parse(&self.file)?.path;
         if let Some(file) = &self.atoms {
-            let structure = InputSpec::parse(&self.file)?;
-            check_output(file, [structure.path.as_path()], self.force)?;
+            check_output(file, [structure.as_path()], self.force)?;
         }
+        let format = match &self.write {
+            Some(file) => {
+                check_output(file, [structure.as_path()], self.force)?;
+                if self.atoms.as_ref() == Some(file) {
+                    return Err(Failure::input("--atoms and --write name one file")
+                        .at(file)
+                        .remedy("give each a name of its own"));
+                }
+                Some(written_format(file)?)
+            }
+            None => None,
+        };
         let input = Input::read(&self.file, &reading)?;
         let molecule = &input.molecule;
         check_used(&reading, [molecule])?;
+        if let (Some(file), Some(format)) = (&self.write, format) {
+            fits(format, molecule).map_err(|error| {
+                Failure::input(error)
+                    .at(file)
+                    .remedy("give the file a name that ends in .cif")
+            })?;
+        }
         let labels = molecule.labels(self.ph).report;
         let area: f64 = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))
@@ -84,6 +110,14 @@ impl Inspect {
             atom_table::write(path, &listed)?;
             console.say(format!("{} atoms in {}", listed.len(), path.display()));
         }
+        if let (Some(path), Some(format)) = (&self.write, format) {
+            molecule_file::write(path, format, molecule)?;
+            console.say(format!(
+                "{} kept, in {}",
+                counted(molecule.atoms.len(), "atom"),
+                path.display()
+            ));
+        }
         console.result(&json!({
             "input": input.entry()?,
             "labels": labels,
@@ -95,6 +129,15 @@ impl Inspect {
         }))?;
         Ok(())
     }
+}
+
+/// The format of the file to write.
+fn written_format(file: &Path) -> Result<Format, Failure> {
+    molecule_file::format_of_name(file).ok_or_else(|| {
+        Failure::input("the name of the structure to write ends neither in .pdb nor in .cif")
+            .at(file)
+            .remedy("name it so: the ending says the format")
+    })
 }
 
 /// The labels in words.

@@ -119,7 +119,7 @@ fn remarks(row: &PoseRow, symmetry: Option<Symmetry>) -> Vec<String> {
     ]
 }
 
-fn io_error(error: WriteError) -> io::Error {
+pub(super) fn io_error(error: WriteError) -> io::Error {
     match error {
         WriteError::Io(error) => error,
         other => io::Error::other(other),

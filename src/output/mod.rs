@@ -20,6 +20,7 @@ pub mod cost_model_file;
 mod csv_lines;
 pub mod input_record;
 pub mod manifest;
+pub mod molecule_file;
 pub mod pair_table;
 pub mod poses;
 pub mod poses_reader;

@@ -66,7 +66,8 @@ pub use read::{Listed, read, read_listed};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
 pub use residue_selection::{ResidueSelection, UnknownResidues};
 pub use write::{
-    ChainMap, ChainName, Partner, WriteError, complex_format, write_complex, write_molecule,
+    ChainMap, ChainName, Partner, WriteError, complex_format, fits, write_complex, write_molecule,
+    write_renamed,
 };
 
 /// File format of a structure.

@@ -13,6 +13,7 @@ use std::io::{self, Write};
 pub use chains::{ChainMap, ChainName, Partner};
 
 use super::groups::{GroupKind, residues};
+use super::report::show_chain;
 use super::{Atom, Format, Molecule};
 
 /// Why a molecule could not be written.
@@ -105,6 +106,44 @@ pub fn write_molecule<W: Write>(
 ) -> Result<(), WriteError> {
     let rows = rows(&molecule.atoms, |atom| &atom.chain);
     write_rows(writer, format, &rows, remarks)
+}
+
+/// Writes one molecule; of chains whose names the format cannot hold, such as `A-2` in PDB, the remarks say what they are called instead.
+///
+/// # Errors
+/// As [`write_complex`].
+pub fn write_renamed<W: Write>(
+    writer: &mut W,
+    format: Format,
+    molecule: &Molecule,
+    remarks: &[String],
+) -> Result<(), WriteError> {
+    let map = ChainMap::assign(format, &[molecule])?;
+    let renamed = map
+        .chains
+        .iter()
+        .filter(|chain| chain.written != chain.original);
+    let told = renamed.map(|chain| {
+        format!(
+            "chain {} was {}",
+            chain.written,
+            show_chain(&chain.original)
+        )
+    });
+    let remarks: Vec<String> = remarks.iter().cloned().chain(told).collect();
+    write_rows(writer, format, &complex_rows(&[molecule], &map), &remarks)
+}
+
+/// Whether a format holds a molecule as [`write_renamed`] writes it.
+///
+/// # Errors
+/// [`WriteError::DoesNotFit`] with what does not.
+pub fn fits(format: Format, molecule: &Molecule) -> Result<(), WriteError> {
+    let map = ChainMap::assign(format, &[molecule])?;
+    match format {
+        Format::Pdb => pdb::check(&complex_rows(&[molecule], &map)),
+        Format::Mmcif => Ok(()),
+    }
 }
 
 fn complex_rows<'a>(molecules: &[&'a Molecule], map: &'a ChainMap) -> Vec<Row<'a>> {

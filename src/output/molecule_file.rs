@@ -1,0 +1,33 @@
+//! A molecule as it was read, written as a structure file of its own.
+
+use std::path::Path;
+
+use knotdock_structures::molecule::{Format, Molecule, write_renamed};
+
+use super::complexes::io_error;
+use super::program::VERSION;
+use super::whole_file::{FileError, write_whole};
+
+/// The format that a file's name asks for: `.pdb` or `.ent`, `.cif` or `.mmcif`; nothing for other endings.
+pub fn format_of_name(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    match ending.as_str() {
+        "pdb" | "ent" => Some(Format::Pdb),
+        "cif" | "mmcif" => Some(Format::Mmcif),
+        _ => None,
+    }
+}
+
+/// Writes the atoms that were kept, whole or not at all. Chains keep their names where the format can hold them.
+///
+/// # Errors
+/// [`FileError`].
+pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), FileError> {
+    let remark = format!(
+        "knotdock {VERSION}, what was read of {}",
+        molecule.report.file
+    );
+    write_whole(path, |mut file| {
+        write_renamed(&mut file, format, molecule, std::slice::from_ref(&remark)).map_err(io_error)
+    })
+}
