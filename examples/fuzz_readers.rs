@@ -6,6 +6,8 @@
 mod mutations;
 #[path = "../tests/fuzz/readers.rs"]
 mod readers;
+#[path = "../tests/fuzz/seeds.rs"]
+mod seeds;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

@@ -17,13 +17,12 @@ import json
 import math
 import subprocess
 import sys
-import tarfile
 import tempfile
 from pathlib import Path
 
 import gemmi
 
-from check_gemmi import FEW, MEANT, MORE, fetch
+from check_gemmi import MEANT, fetched
 
 MOST_ASSEMBLIES = 4
 MOST_ATOMS = 200_000
@@ -79,10 +78,8 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--few", action="store_true", help="the files of the smaller packages, 27 MB of downloads")
     options = parser.parse_args()
-    try:
-        paths = fetch(FEW if options.few else FEW + MORE, options.folder)
-    except (subprocess.CalledProcessError, OSError, tarfile.TarError) as error:
-        print(f"the files cannot be fetched: {error}", file=sys.stderr)
+    paths = fetched(options)
+    if paths is None:
         return 2
     counts = collections.Counter()
     with tempfile.TemporaryDirectory() as scratch:

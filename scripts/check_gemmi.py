@@ -78,6 +78,15 @@ def fetch(packages, folder):
     return list(unique.values())
 
 
+def fetched(options):
+    """The files of all packages, or with --few of the smaller ones; None, and a word on standard error, where they cannot be had."""
+    try:
+        return fetch(FEW if options.few else FEW + MORE, options.folder)
+    except (subprocess.CalledProcessError, OSError, tarfile.TarError) as error:
+        print(f"the files cannot be fetched: {error}", file=sys.stderr)
+        return None
+
+
 def additives():
     """Names of buffer and cryo additives, as the program lists them."""
     text = (ROOT / "structures/src/molecule/additives.rs").read_text()
@@ -220,10 +229,8 @@ def main():
     parser.add_argument("--few", action="store_true", help=f"at most {MOST_FEW} files of 27 MB of downloads")
     parser.add_argument("--show", type=int, default=3, help="differences to show of each kind and file")
     options = parser.parse_args()
-    try:
-        paths = fetch(FEW if options.few else FEW + MORE, options.folder)
-    except (subprocess.CalledProcessError, OSError, tarfile.TarError) as error:
-        print(f"the files cannot be fetched: {error}", file=sys.stderr)
+    paths = fetched(options)
+    if paths is None:
         return 2
     if options.few:
         # Evenly over the list, so that every package and kind has a share.

@@ -6,6 +6,7 @@
 mod found;
 mod mutations;
 mod readers;
+mod seeds;
 
 use readers::Reader;
 
