@@ -43,6 +43,8 @@ impl Overlap {
 
 /// Lines a mean radius, an axis: unions of a thousand atoms come within about 1e-5 of their volume.
 const LINES_A_RADIUS: f64 = 16.0;
+/// Balls up to which there are so many: of more the errors cancel, and fewer lines do as well.
+const MANY: f64 = 10_000.0;
 /// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer wait.
 const MOST_LINES: f64 = 4096.0;
 
@@ -133,7 +135,9 @@ fn measure(sets: &[&Knots]) -> [[f64; 3]; 3] {
     let largest = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
     let edges = (0..3).map(|axis| high[axis] - low[axis]);
     let extent = edges.fold(0.0, f64::max) + 2.0 * largest;
-    let spacing = (total / balls.len() as f64 / LINES_A_RADIUS).max(extent / MOST_LINES);
+    let count = balls.len() as f64;
+    let lines_a_radius = LINES_A_RADIUS * (MANY / count.max(MANY)).powf(0.25);
+    let spacing = (total / count / lines_a_radius).max(extent / MOST_LINES);
     let mut volumes = [[0.0; 3]; 3];
     for axis in 0..3 {
         let along = along_axis(&balls, axis, spacing);
@@ -295,6 +299,39 @@ mod tests {
         let same = overlap(&many, &many);
         assert!((same.tanimoto() - 1.0).abs() < 1e-12);
         assert!(same.protrusion().abs() < 1e-12);
+    }
+
+    /// Twice as many balls as have all lines, apart from each other and off any lattice: their volumes add up.
+    #[test]
+    fn many_balls_need_fewer_lines() {
+        let side = 28;
+        let place =
+            |i: usize, step: f64, stretch: f64| 4.4 * i as f64 + (step * i as f64).sin() * stretch;
+        let list: Vec<([f64; 3], f64)> = (0..side * side * side)
+            .map(|i| {
+                let [x, y, z] = [i % side, i / side % side, i / side / side];
+                let shift = (1.3 * i as f64).sin() * 0.2;
+                (
+                    [
+                        place(x, 1.7, 0.2) + shift,
+                        place(y, 2.3, 0.2) - shift,
+                        place(z, 0.7, 0.2) + shift,
+                    ],
+                    1.7,
+                )
+            })
+            .collect();
+        assert!(list.len() as f64 > 2.0 * MANY);
+        let exact = list.len() as f64 * ball(1.7);
+        let found = union_volume(&balls(&list));
+        assert!(
+            (found.value - exact).abs() < 1e-4 * exact,
+            "{found:?} {exact}"
+        );
+        assert!(
+            (found.value - exact).abs() <= 4.0 * found.error,
+            "{found:?} {exact}"
+        );
     }
 
     /// A pose at the other end of the world costs no more than one beside it.
