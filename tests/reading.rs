@@ -250,6 +250,23 @@ fn what_would_do_nothing_is_refused() {
         assert!(message.contains(says), "{message}");
         assert!(told["error"]["remedy"].as_str().unwrap().contains(remedy));
     }
+    // What a run read is read again as it was, whatever is asked of it now.
+    let run = "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
+    succeed(folder.path(), run.split_whitespace());
+    for (options, says) in [
+        ("--waters keep", "named by --receptor and --ligand"),
+        ("--min-plddt 50", "named by --receptor and --ligand"),
+        ("--ligand ligand.pdb --min-plddt 50", "predicted models"),
+    ] {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(format!("evaluate run {options}").split_whitespace())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{options}");
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(told.contains(says), "{options}: {told}");
+    }
     succeed(
         folder.path(),
         "score receptor.pdb model.pdb --pose 1,0,0,0,0,0,0 --min-plddt 50 --quiet"

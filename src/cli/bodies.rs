@@ -18,6 +18,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input::{Input, check_used, label};
 use super::mesh_input::{MeshInput, is_mesh};
+use super::reading_arguments::READING_OPTIONS;
 
 /// The bodies as read.
 pub enum Bodies {
@@ -71,16 +72,13 @@ impl Bodies {
         let [receptor, ligand] = &specs;
         match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
             [false, false] => {
-                let inputs = [
-                    Input::of(receptor, reading)?,
-                    Input::of(ligand, reading)?,
-                ];
+                let inputs = [Input::of(receptor, reading)?, Input::of(ligand, reading)?];
                 check_used(reading, inputs.iter().map(|input| &input.molecule))?;
                 Ok(Self::Molecules(Box::new(inputs)))
             }
-            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(
-                "--waters, --hetatm, --hydrogens, --altloc, --model, --assembly and --min-plddt belong to molecules, and these are meshes",
-            )
+            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(format!(
+                "{READING_OPTIONS} belong to molecules, and these are meshes"
+            ))
             .remedy("leave them out")),
             [true, true] => Ok(Self::Meshes(Box::new([
                 MeshInput::read(receptor)?,

@@ -7,6 +7,7 @@ use knotdock::evaluate::{Capri, PoseQuality};
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::{quality, report};
+use knotdock_structures::molecule::ReadOptions;
 use serde_json::json;
 
 use super::console::Console;
@@ -14,7 +15,7 @@ use super::failure::Failure;
 use super::input::{Input, check_used};
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
 use super::output_file::check_output;
-use super::reading_arguments::ReadingArguments;
+use super::reading_arguments::{READING_OPTIONS, ReadingArguments};
 
 /// Measure the poses of a run against a known complex.
 ///
@@ -94,10 +95,16 @@ impl Evaluate {
 
     /// The molecules docked and the known complex: those named, or else those of the run.
     fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Failure> {
+        let reading = self.reading.options();
+        if self.receptor.is_none() && self.ligand.is_none() && reading != ReadOptions::default() {
+            return Err(Failure::input(format!(
+                "{READING_OPTIONS} are for molecules named by --receptor and --ligand; those of a run are read as it read them"
+            ))
+            .remedy("leave them out, or name the molecules"));
+        }
         let native = self.native.read()?;
         if let (Some(receptor), Some(ligand), Some(native)) = (&self.receptor, &self.ligand, native)
         {
-            let reading = self.reading.options();
             let receptor = Input::read(receptor, &reading)?;
             let ligand = Input::read(ligand, &reading)?;
             check_used(&reading, [&receptor.molecule, &ligand.molecule])?;
@@ -108,7 +115,11 @@ impl Evaluate {
         let run =
             RecordedRun::read(run_path).map_err(|error| Failure::from(error).remedy(needed))?;
         let part = |named: &Option<String>, record| match named {
-            Some(text) => Input::read(text, &self.reading.options()),
+            Some(text) => {
+                let input = Input::read(text, &reading)?;
+                check_used(&reading, [&input.molecule])?;
+                Ok(input)
+            }
             None => Input::recorded(record, run_path, &run.options.reading),
         };
         let native = match (self.native.read()?, &run.native) {

@@ -7,6 +7,10 @@ use super::arguments::{assembly_name, at_least_one, plddt};
 
 const READING: &str = "Reading";
 
+/// All of them, for messages.
+pub const READING_OPTIONS: &str =
+    "--waters, --hetatm, --hydrogens, --altloc, --model, --assembly and --min-plddt";
+
 /// Options of reading. They hold for the molecules named, not for a known complex, which is read by the defaults.
 #[derive(Args, Debug)]
 pub struct ReadingArguments {

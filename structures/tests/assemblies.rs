@@ -251,6 +251,13 @@ fn what_cannot_be_built_says_why() {
         assert_eq!(line, Some(expected_line), "{told}");
         assert!(told.contains(what), "{told}");
     }
+    // An operator that no coordinates survive.
+    let far = dimer().replacen("BIOMT1   2 -1.000000", "BIOMT1   2  9e307   ", 1);
+    let (line, told) = refused(&far, "1");
+    assert!(
+        line.is_some() && told.contains("out of all bounds"),
+        "{told}"
+    );
     let cut = dimer()
         .replacen(IDENTITY.lines().last().unwrap(), "", 3)
         .replace("REMARK 350   BIOMT3", "REMARK 900");

@@ -82,7 +82,7 @@ pub(super) struct Assembly {
 pub(super) struct Assemblies {
     pub(super) list: Vec<Assembly>,
     /// 1-based line and what is wrong there, where some cannot be understood.
-    pub(super) broken: Option<(usize, String)>,
+    pub(super) broken: Option<(Option<usize>, String)>,
 }
 
 /// An assembly that was built.
@@ -162,7 +162,7 @@ pub(super) fn build(
         members.dedup();
         if built.len() + members.len().saturating_mul(part.operators.len()) > MOST_ATOMS {
             let what = format!("assembly {wanted} has more than {MOST_ATOMS} atoms");
-            return Err(broken(file, 0, what));
+            return Err(broken(file, None, what));
         }
         for operator in &part.operators {
             for name in &part.chains {
@@ -177,12 +177,11 @@ pub(super) fn build(
                 if !position.iter().all(|x| x.is_finite()) {
                     let what =
                         format!("an operator of assembly {wanted} takes an atom out of all bounds");
-                    return Err(broken(file, record.carried.line, what));
+                    return Err(broken(file, Some(record.carried.line), what));
                 }
-                if images
-                    .iter()
-                    .any(|&other| squared_distance(other, position) < ON_AXIS * ON_AXIS)
-                {
+                let coincides =
+                    |other: &[f64; 3]| squared_distance(*other, position) < ON_AXIS * ON_AXIS;
+                if images.iter().any(coincides) {
                     on_axes += 1;
                     continue;
                 }
@@ -210,10 +209,10 @@ pub(super) fn build(
     Ok(built)
 }
 
-fn broken(file: &Path, line: usize, what: String) -> ReadError {
+fn broken(file: &Path, line: Option<usize>, what: String) -> ReadError {
     ReadError::BrokenAssembly {
         file: file.to_path_buf(),
-        line: (line > 0).then_some(line),
+        line,
         what,
     }
 }

@@ -72,7 +72,7 @@ impl<'a> Items<'a> {
                     }),
                 },
                 Err(what) => {
-                    let line = row.values().map(|token| token.line).min().unwrap_or(0);
+                    let line = row.values().map(|token| token.line).min();
                     told.broken.get_or_insert((line, what));
                 }
             }

@@ -24,14 +24,17 @@ impl Remark {
         if let Err(what) = self.take(text.trim())
             && self.told.broken.is_none()
         {
-            self.told.broken = Some((line, what));
+            self.told.broken = Some((Some(line), what));
         }
     }
 
     /// What all lines came to.
     pub(super) fn assemblies(mut self) -> Assemblies {
         if !self.rows.is_empty() && self.told.broken.is_none() {
-            self.told.broken = Some((self.line, "the last BIOMT operator lacks rows".to_owned()));
+            self.told.broken = Some((
+                Some(self.line),
+                "the last BIOMT operator lacks rows".to_owned(),
+            ));
         }
         self.told
     }
