@@ -177,6 +177,10 @@ fn a_model_that_is_not_there_and_nothing_left() {
     );
     let error = place.refused(&["inspect", "receptor.pdb", "--atoms", "nowhere/atoms.csv"]);
     says(&error, "cannot write");
+    says(
+        &place.refused(&["inspect", "receptor.pdb", "--model", "2"]),
+        "none is one here",
+    );
     // What the run recorded does not go with --from.
     place.refused(&["dock", "--from", "run.json", "--waters", "keep"]);
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::output::complexes::file_names;
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use serde_json::json;
@@ -11,6 +12,7 @@ use serde_json::json;
 use super::bodies::Bodies;
 use super::console::Console;
 use super::failure::Failure;
+use super::output_file::check_replaced;
 use super::ranks::Ranks;
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
@@ -25,6 +27,9 @@ pub struct Complex {
     /// Directory to write to [default: DIR/top].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Replace complexes that are there already.
+    #[arg(long)]
+    force: bool,
 }
 
 impl Complex {
@@ -60,7 +65,14 @@ impl Complex {
             &run_path,
             &run.options.reading,
         )?;
-        let folder = self.output.unwrap_or_else(|| self.run.join("top"));
+        let own = self.run.join("top");
+        let folder = self.output.unwrap_or_else(|| own.clone());
+        // What the run itself wrote there is what would be written again.
+        let force = self.force || folder == own;
+        for name in rows.iter().flat_map(|row| file_names(row.rank)) {
+            let read = bodies.records().map(|record| record.path.as_path());
+            check_replaced(&folder.join(name), read, force)?;
+        }
         let written = bodies.write(&rows, symmetry, &folder)?;
         let paths: Vec<String> = written
             .names

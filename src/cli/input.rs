@@ -63,15 +63,16 @@ impl Input {
 }
 
 /// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
-/// says anything of one.
+/// says anything of one, `--model` where none has several.
 pub fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
 ) -> Result<(), Failure> {
-    let (mut predicted, mut built) = (false, false);
+    let (mut predicted, mut built, mut several) = (false, false, false);
     for molecule in molecules {
         predicted |= molecule.report.confidence.is_some();
         built |= molecule.report.assembly.is_some();
+        several |= molecule.report.altered.models_ignored > 0;
     }
     if options.min_plddt.is_some() && !predicted {
         return Err(Failure::input(
@@ -79,7 +80,7 @@ pub fn check_used<'a>(
         )
         .remedy(
             "leave it out, or give the file as the predictor wrote it: a model is known by `_ma_qa_metric` in mmCIF, or by one B value a residue \
-             where the file names no experiment",
+             with a mean above 60 where the file names no experiment",
         ));
     }
     if options.assembly.is_some() && !built {
@@ -89,6 +90,13 @@ pub fn check_used<'a>(
         .remedy(
             "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in _pdbx_struct_assembly_gen (mmCIF)",
         ));
+    }
+    if options.model != 1 && !several {
+        return Err(Failure::input(format!(
+            "--model {} is for files of several models, and none is one here",
+            options.model
+        ))
+        .remedy("leave it out: of a file with one model that is read"));
     }
     Ok(())
 }

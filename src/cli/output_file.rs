@@ -12,6 +12,26 @@ pub fn check_output<'a>(
     read: impl IntoIterator<Item = &'a Path>,
     force: bool,
 ) -> Result<(), Failure> {
+    check_replaced(file, read, force)?;
+    let folder = file
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
+        return Err(Failure::input(
+            "cannot write there: the folder does not exist or the name is a folder's",
+        )
+        .at(file)
+        .remedy("name a file in a folder that exists"));
+    }
+    Ok(())
+}
+
+/// Checks that `file` is none of those that are `read`, and is not there unless `force` is true.
+pub fn check_replaced<'a>(
+    file: &Path,
+    read: impl IntoIterator<Item = &'a Path>,
+    force: bool,
+) -> Result<(), Failure> {
     if read.into_iter().any(|other| is_same(file, other)) {
         return Err(Failure::input("the file to write is one of those read")
             .at(file)
@@ -22,16 +42,6 @@ pub fn check_output<'a>(
         return Err(Failure::input("the file is already there")
             .at(file)
             .remedy("choose another name, or pass --force to replace it"));
-    }
-    let folder = file
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
-        return Err(Failure::input(
-            "cannot write there: the folder does not exist or the name is a folder's",
-        )
-        .at(file)
-        .remedy("name a file in a folder that exists"));
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
+use super::complexes::file_name;
 use super::poses::{PoseRow, number};
 use super::program::VERSION;
 use super::whole_file::{FileError, write_whole};
@@ -29,7 +30,7 @@ pub fn write_assemblies(
     }
     rows.iter()
         .map(|row| {
-            let name = format!("rank_{:04}.obj", row.rank);
+            let name = file_name(row.rank, "obj");
             write_whole(&folder.join(&name), |file| {
                 write_assembly(file, receptor, ligand, row)
             })?;

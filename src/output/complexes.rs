@@ -22,6 +22,16 @@ pub struct Written {
     pub chains: ChainMap,
 }
 
+/// Name of the file that shows the complex, or of meshes the assembly, of a rank.
+pub(super) fn file_name(rank: usize, extension: &str) -> String {
+    format!("rank_{rank:04}.{extension}")
+}
+
+/// All names that it may have: as PDB, as mmCIF, and of meshes.
+pub fn file_names(rank: usize) -> [String; 3] {
+    ["pdb", "cif", "obj"].map(|extension| file_name(rank, extension))
+}
+
 /// Writes the complexes of `rows` into `folder` as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
 /// complex does not fit the PDB format. With a symmetry the ligand is a copy of the receptor, and all others of the ring are written too.
 ///
@@ -65,7 +75,7 @@ pub fn write_complexes(
     let mut chains = None;
     let mut names = Vec::new();
     for (row, poses) in rows.iter().zip(&copies) {
-        let name = format!("rank_{:04}.{}", row.rank, format.extension());
+        let name = file_name(row.rank, format.extension());
         let others = placed(poses);
         let remarks = remarks(row, symmetry);
         write_whole(&folder.join(&name), |mut file| {

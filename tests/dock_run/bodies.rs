@@ -79,13 +79,34 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
             );
         }
     }
-    let failed = cargo_bin_cmd!("knotdock")
-        .current_dir(folder.path())
-        .args(["complex", "run", "--rank", "99999"])
-        .assert()
-        .code(2);
-    let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
-    assert!(told.contains("no rank 99999"), "{told}");
+    // A file that is there stays, but for the run's own.
+    run(folder.path(), "complex run --rank 2 --quiet");
+    run(
+        folder.path(),
+        "complex run --rank 4 -o more --force --quiet",
+    );
+    let ligand = folder.path().join("rank_0002.pdb");
+    fs::write(&ligand, crate::molecules::ligand()).unwrap();
+    run(
+        folder.path(),
+        "dock receptor.pdb rank_0002.pdb --rotations 5 --no-cluster -o other --quiet",
+    );
+    for (arguments, reason) in [
+        ("run --rank 99999", "no rank 99999"),
+        ("run --rank 2 -o more", "already there"),
+        ("other --rank 2 -o . --force", "one of those read"),
+    ] {
+        let failed = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .arg("complex")
+            .args(arguments.split(' '))
+            .assert()
+            .code(2);
+        let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(told.contains(reason), "{told}");
+    }
+    let kept = fs::read_to_string(&ligand).unwrap();
+    assert_eq!(kept, crate::molecules::ligand());
 }
 
 fn positions(pdb: &str) -> Vec<[f64; 3]> {

@@ -21,6 +21,8 @@ struct Part {
 enum Range {
     /// The whole chain.
     Chain,
+    /// One number without an insertion code.
+    Plain(i64),
     /// Numbers from the first to the last, whatever their insertion codes.
     Numbers(i64, i64),
     /// One number with one insertion code.
@@ -32,7 +34,7 @@ impl std::fmt::Display for Part {
         let chain = &self.chain;
         match self.residues {
             Range::Chain => write!(f, "{chain}"),
-            Range::Numbers(first, last) if first == last => write!(f, "{chain}:{first}"),
+            Range::Plain(number) => write!(f, "{chain}:{number}"),
             Range::Numbers(first, last) => write!(f, "{chain}:{first}-{last}"),
             Range::Inserted(number, insertion) => write!(f, "{chain}:{number}{insertion}"),
         }
@@ -42,8 +44,8 @@ impl std::fmt::Display for Part {
 impl std::str::FromStr for ResidueSelection {
     type Err = String;
 
-    /// Reads parts with commas between them: `H` for a chain, `H:12` for a residue with all that is inserted after it, `H:52A` for an inserted
-    /// one, `H:1-50` for a range of numbers; `_:12` or `:12` where chains have no name.
+    /// Reads parts with commas between them: `H` for a chain, `H:52` for a residue, `H:52A` for one that is inserted, `H:1-50` for a range of
+    /// numbers with all that is inserted among them, `H:52-52` for one number so; `_:12` or `:12` where chains have no name.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split(',').map(|part| {
             let (chain, residues) = match part.trim().split_once(':') {
@@ -83,7 +85,7 @@ impl From<ResidueSelection> for String {
 /// `12`, `52A`, `-3`, `1-50` or `-5--2`.
 fn range(text: &str) -> Option<Range> {
     if let Ok(number) = text.parse() {
-        return Some(Range::Numbers(number, number));
+        return Some(Range::Plain(number));
     }
     // A minus that is not the first character parts two numbers.
     let dash = text.char_indices().skip(1).find(|(_, c)| *c == '-');
@@ -112,6 +114,7 @@ impl Molecule {
                 let meant = (atom.chain == part.chain || is_blank)
                     && match part.residues {
                         Range::Chain => true,
+                        Range::Plain(own) => (own, None) == (number, atom.insertion_code),
                         Range::Numbers(first, last) => (first..=last).contains(&number),
                         Range::Inserted(own, insertion) => {
                             (own, Some(insertion)) == (number, atom.insertion_code)
@@ -214,7 +217,8 @@ mod tests {
     #[test]
     fn parts_pick_what_they_name() {
         assert_eq!(chosen("H"), Ok(vec![0, 1, 2, 3]));
-        assert_eq!(chosen("H:52"), Ok(vec![1, 2]));
+        assert_eq!(chosen("H:52"), Ok(vec![1]));
+        assert_eq!(chosen("H:52-52"), Ok(vec![1, 2]));
         assert_eq!(chosen("H:52A"), Ok(vec![2]));
         assert_eq!(chosen("H:40-51,L:-2"), Ok(vec![0, 4]));
         assert_eq!(chosen("L:-5--2"), Ok(vec![4]));
