@@ -110,7 +110,14 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {
             assert!((number(&again["terms"][name]) - term).abs() < 1e-6 * score.abs());
         }
-        for name in ["fine_contact", "atom_pair", "relaxed", "rank_score"] {
+        for name in [
+            "fine_contact",
+            "atom_pair",
+            "relaxed",
+            "attraction",
+            "missing",
+            "rank_score",
+        ] {
             assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
         }
         assert_eq!(
@@ -118,9 +125,51 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
             score
                 + (number(&row["fine_contact"])
                     + number(&row["atom_pair"])
-                    + number(&row["relaxed"]))
+                    + number(&row["relaxed"])
+                    + number(&row["attraction"])
+                    + number(&row["missing"]))
         );
     }
+}
+
+/// Atoms that lie past the ends of the other side's chain cost their weight each, of whatever effects; scores stay as they were.
+#[test]
+fn what_lies_where_residues_are_missing_costs() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let table = |weight: &str| {
+        let options = ["--rotations", "24", "--effects", "shape", "--no-cluster"];
+        let more = ["--refine", "0", "--missing-weight", weight];
+        let all = [&options[..], &more].concat();
+        let (object, table) = dock(folder.path(), &receptor, &ligand, &all);
+        let missing = object["run"]["plan"]["missing_residues"][0].clone();
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let rows = reader.deserialize().map(|row| row.unwrap());
+        let rows: Vec<std::collections::BTreeMap<String, String>> = rows.collect();
+        (rows, missing)
+    };
+    let (rows, told) = table("12.5");
+    assert_eq!((&told["ends"], &told["balls"]), (&2.into(), &4.into()));
+    let (plain, told) = table("0");
+    assert_eq!(told["balls"], 0);
+    assert!(plain.iter().all(|row| row["missing"].is_empty()));
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
+        row[name].parse().unwrap()
+    };
+    let mut met = 0;
+    for row in &rows {
+        let missing = number(row, "missing");
+        assert!(missing <= 0.0 && (missing / 12.5).fract() == 0.0);
+        assert_eq!(number(row, "rank_score"), number(row, "score") + missing);
+        met += usize::from(missing < 0.0);
+    }
+    assert!(met > 0 && met < rows.len(), "{met} of {}", rows.len());
+    let scores = |rows: &[std::collections::BTreeMap<String, String>]| {
+        let mut scores: Vec<String> = rows.iter().map(|row| row["score"].clone()).collect();
+        scores.sort();
+        scores
+    };
+    assert_eq!(scores(&rows), scores(&plain));
 }
 
 /// Rescoring follows the contact effect and its own weight, ranks by the sum, and leaves every pose's score as it was.

@@ -16,6 +16,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use super::console::Console;
 use super::failure::Failure;
+use super::idle_options::refuse_of_meshes;
 use super::input::{Input, check_used, label};
 use super::mesh_input::{MeshInput, is_mesh};
 use super::reading_arguments::READING_OPTIONS;
@@ -157,12 +158,7 @@ impl Bodies {
             )
             .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                if options.core_weight != 1.0 {
-                    return Err(Failure::input(
-                        "--core-weight weighs buried atoms, and meshes have none",
-                    )
-                    .remedy("leave it out"));
-                }
+                refuse_of_meshes(options)?;
                 let sampling = MeshOptions {
                     per_axis: *options.sample_grid.get_or_insert(PER_AXIS),
                     weights: *options.sample_weights.get_or_insert_default(),

@@ -1,15 +1,20 @@
 //! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
 //! output and every word on standard error; under `--quiet` no words but errors.
 //!
-//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not written.
+//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not written. A disk that is full
+//! does not stop one either, but the command fails in the end.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::search::Progress;
 
 use super::failure::Failure;
+
+/// Why a part of the report could not be written, the first time that happened.
+static LOST: OnceLock<io::Error> = OnceLock::new();
 
 /// The terminal as a command sees it.
 #[derive(Clone, Copy, Debug)]
@@ -29,8 +34,18 @@ impl Console {
         if self.json {
             write_line(&mut io::stderr(), &text.to_string());
         } else {
-            write_line(&mut io::stdout(), &text.to_string());
+            let mut stream = io::stdout();
+            let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
+            if let Err(error) = written {
+                // Only the first is told.
+                let _ = LOST.set(error);
+            }
         }
+    }
+
+    /// Whether all of the report could be written, if anyone was there to read it.
+    pub fn all_said() -> Result<(), Failure> {
+        LOST.get().map_or(Ok(()), unwritten)
     }
 
     /// Writes a warning on standard error.
@@ -53,11 +68,8 @@ impl Console {
         }
         let mut stream = io::stdout();
         match writeln!(stream, "{object}").and_then(|()| stream.flush()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::other(
-                format!("cannot write to standard output: {error}"),
-            )
-            .remedy("check the free space there")),
-            _ => Ok(()),
+            Err(error) => unwritten(&error),
+            Ok(()) => Ok(()),
         }
     }
 
@@ -83,6 +95,17 @@ impl Console {
             shown: !self.quiet && io::stderr().is_terminal(),
         }
     }
+}
+
+/// A failure to write to standard output, unless its reader has gone.
+fn unwritten(error: &io::Error) -> Result<(), Failure> {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        return Ok(());
+    }
+    Err(
+        Failure::other(format!("cannot write to standard output: {error}"))
+            .remedy("check the free space there"),
+    )
 }
 
 /// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.

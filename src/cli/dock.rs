@@ -54,7 +54,8 @@ pub struct Dock {
     /// grid poses, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], help_heading = TRADE_OFFS)]
     accuracy: Option<f64>,
-    /// Take as many rotations as are expected to fit into a time, such as 5s or 2min; `knotdock calibrate` tells how fast this machine is.
+    /// Take as many rotations as are expected to fit into a time, such as 5s or 2min, but no more than 56,250; `knotdock calibrate` tells how fast this
+    /// machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "angle"], help_heading = TRADE_OFFS)]
     budget: Option<f64>,
     /// Complexes to write to top/.
@@ -77,7 +78,7 @@ const NO_RING: [&str; 6] = [
 ];
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 56] = [
+const RECORDED: [&str; 57] = [
     "receptor",
     "ligand",
     "symmetry",
@@ -120,6 +121,7 @@ const RECORDED: [&str; 56] = [
     "block_ligand",
     "attraction_weight",
     "peptidase_weight",
+    "missing_weight",
     "attract_receptor",
     "attract_ligand",
     "ph",

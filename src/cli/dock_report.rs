@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use knotdock::output::report::counted;
 use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect};
-use knotdock_structures::molecule::LabelReport;
+use knotdock_structures::molecule::{LabelReport, MissingResidues};
 
 /// Which effects were on and what they cost, and how far the fast path was off.
 pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
@@ -62,6 +62,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         ("atom pairs", row.and_then(|row| row.atom_pair)),
         ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
         (attracting, row.and_then(|row| row.attraction)),
+        ("missing residues", row.and_then(|row| row.missing)),
     ];
     let terms = terms.iter().filter(|(_, value)| value.is_some());
     let names: Vec<&str> = terms.map(|(name, _)| *name).collect();
@@ -138,6 +139,37 @@ pub fn chance_told(chance: f64) -> String {
     )
 }
 
+/// What stands for residues that are missing from one side's file, where any does.
+pub fn missing_told(side: &str, missing: &MissingResidues) -> Option<String> {
+    let MissingResidues {
+        residues,
+        gaps,
+        ends,
+        ref centers,
+    } = *missing;
+    let mut parts = Vec::new();
+    if gaps > 0 {
+        parts.push(format!(
+            "{} missing in {}",
+            counted(residues, "residue"),
+            counted(gaps, "gap")
+        ));
+    }
+    if ends > 0 {
+        parts.push(format!("{} of chains that may go on", counted(ends, "end")));
+    }
+    (!centers.is_empty()).then(|| {
+        format!(
+            "The {side}: {}; {} for them, --missing-weight 0 leaves these out",
+            parts.join(", "),
+            match centers.len() {
+                1 => "1 ball stands".to_owned(),
+                balls => format!("{balls} balls stand"),
+            }
+        )
+    })
+}
+
 /// What was assumed of one side's charges and contact types, where effects use them.
 pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
     let names = |unknown: &BTreeMap<String, usize>| {
@@ -150,8 +182,10 @@ pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<Stri
     if plan.is_on(Effect::Electrostatics) {
         let [amino, carboxyl] = labels.termini;
         parts.push(format!(
-            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} gaps capped",
-            labels.net_charge, plan.options.ph, labels.gaps
+            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} capped",
+            labels.net_charge,
+            plan.options.ph,
+            counted(labels.gaps, "gap")
         ));
         if !labels.unknown_charges.is_empty() {
             parts.push(format!(

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{assumed, chance_told, error_warning, told};
+use super::dock_report::{assumed, chance_told, error_warning, missing_told, told};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
@@ -70,6 +70,11 @@ impl Docking {
                     "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
                     request.options.dock.resolution, plan.unit
                 ));
+            }
+        }
+        for (side, missing) in sides.iter().zip(&plan.missing_residues) {
+            if let Some(text) = missing_told(side, missing) {
+                console.say(text);
             }
         }
         for (side, labels) in sides.iter().zip(&plan.labels) {

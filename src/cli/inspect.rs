@@ -10,7 +10,7 @@ use knotdock::search::attracted::sites_told;
 use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ActiveSite, Antibody, Format, InputSpec, LabelReport, fits, read_listed,
+    ActiveSite, Antibody, Format, InputSpec, LabelReport, MissingResidues, fits, read_listed,
 };
 use serde_json::json;
 
@@ -92,12 +92,14 @@ impl Inspect {
             .sum();
         let antibody = molecule.antibody();
         let active_sites = molecule.active_sites();
+        let missing = molecule.missing_residues();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
             told(
                 &labels,
+                &missing,
                 self.ph,
                 area,
                 volume,
@@ -123,6 +125,7 @@ impl Inspect {
             "labels": labels,
             "antibody": antibody.map(|antibody| antibody.domains),
             "active_sites": active_sites,
+            "missing_residues": missing,
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,
@@ -143,6 +146,7 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
 /// The labels in words.
 fn told(
     labels: &LabelReport,
+    missing: &MissingResidues,
     ph: f64,
     area: f64,
     volume: Volume,
@@ -162,8 +166,10 @@ fn told(
             labels.net_charge, labels.charged_atoms
         ),
         format!(
-            "Gaps in chains, where residues are missing: {}",
-            labels.gaps
+            "Missing residues: {} in {}; {} of chains that may go on",
+            missing.residues,
+            counted(missing.gaps, "gap"),
+            counted(missing.ends, "end")
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
         format!(

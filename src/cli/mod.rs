@@ -13,6 +13,7 @@ mod dock_report;
 mod docking;
 mod evaluate;
 mod failure;
+mod idle_options;
 mod input;
 mod inspect;
 mod library_errors;
@@ -90,6 +91,7 @@ pub fn main() -> ExitCode {
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => match command.run(console) {
+            Ok(0) => Ok(()),
             Ok(code) => return ExitCode::from(code),
             Err(failure) => Err(failure),
         },
@@ -101,7 +103,7 @@ pub fn main() -> ExitCode {
         Command::Tradeoff(command) => command.run(console),
         Command::Calibrate(command) => command.run(console),
     };
-    match done {
+    match done.and_then(|()| Console::all_said()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             console.fail(&failure);

@@ -11,7 +11,7 @@ use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::at_least_one;
 use super::console::Console;
-use super::dock_report::site_told;
+use super::dock_report::{missing_told, site_told};
 use super::failure::Failure;
 use super::input::{Input, check_used};
 use super::memory;
@@ -88,6 +88,11 @@ impl Score {
         let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
         let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
+        for (side, missing) in ["receptor", "ligand"].iter().zip(&scene.missing) {
+            if let Some(text) = missing_told(side, missing) {
+                console.say(text);
+            }
+        }
         if let Some(site) = scene.active_site() {
             console.say(site_told(site));
         }
@@ -97,6 +102,7 @@ impl Score {
                 ("atom pairs", rescored.atom_pair),
                 ("relaxed", rescored.relaxed),
                 ("attraction", rescored.attraction),
+                ("missing residues", rescored.missing),
             ];
             let told = terms
                 .iter()
@@ -118,6 +124,8 @@ impl Score {
             object.insert("geometry".to_owned(), geometry);
             let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
             object.insert("active_site".to_owned(), site);
+            let missing = serde_json::to_value(&scene.missing).map_err(Failure::other)?;
+            object.insert("missing_residues".to_owned(), missing);
             let [qw, qx, qy, qz] = pose.quaternion();
             let [tx, ty, tz]: [f64; 3] = pose.translation.into();
             object.insert(
@@ -130,6 +138,7 @@ impl Score {
                 ("atom_pair", rescored.atom_pair),
                 ("relaxed", rescored.relaxed),
                 ("attraction", rescored.attraction),
+                ("missing", rescored.missing),
             ] {
                 object.insert(name.to_owned(), serde_json::json!(value));
             }

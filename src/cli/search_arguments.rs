@@ -16,6 +16,7 @@ use knotdock_structures::molecule::ResidueSelection;
 
 use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
 use super::failure::Failure;
+use super::idle_options::refuse_idle;
 
 /// Heading of the options that trade accuracy for time.
 pub const TRADE_OFFS: &str = "Accuracy against time";
@@ -151,6 +152,9 @@ pub struct KernelArguments {
     /// sequence, and this counts where the contact effect is on, no residue is attracted and the other is neither peptidase nor antibody; 0 for none.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().peptidase_weight, help_heading = SCORE)]
     peptidase_weight: f64,
+    /// What an atom costs that lies where residues of the other side are missing from its file, in gaps of a chain or past its ends: score; 0 for nothing.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().missing_weight, help_heading = SCORE)]
+    missing_weight: f64,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -250,6 +254,7 @@ impl KernelArguments {
             block_ligand: self.block_ligand.clone(),
             attraction_weight: self.attraction_weight,
             peptidase_weight: self.peptidase_weight,
+            missing_weight: self.missing_weight,
             attract_receptor: self.attract_receptor.clone(),
             attract_ligand: self.attract_ligand.clone(),
             ph: self.ph,
@@ -265,7 +270,7 @@ impl SearchArguments {
     /// As [`KernelArguments::options`].
     pub fn options(&self) -> Result<DockOptions, Failure> {
         let kernel = self.kernel.options()?;
-        Ok(DockOptions {
+        let options = DockOptions {
             rotations: self.angle.or(self.rotations).unwrap_or(kernel.rotations),
             fine_rotations: self.fine_angle.or(self.fine_rotations),
             fine_share: self.fine_share,
@@ -279,7 +284,9 @@ impl SearchArguments {
             sample_weights: self.sample_weights,
             every_pose: self.no_cluster,
             ..kernel
-        })
+        };
+        refuse_idle(&options)?;
+        Ok(options)
     }
 
     /// The options of a search for rings, whose residues are alike on both sides.

@@ -116,6 +116,7 @@ mod tests {
             atom_pair: None,
             relaxed: None,
             attraction: None,
+            missing: None,
             other_copies: None,
             rank_score: score,
             z_score: None,

@@ -71,6 +71,8 @@ pub struct DockOptions {
     pub attraction_weight: f64,
     /// What a pose earns in which all catalytic residues of a peptidase touch: score; 0: peptidases are docked as any protein.
     pub peptidase_weight: f64,
+    /// What an atom costs that lies where residues of the other side are missing from its file: score; 0: nothing is known of these.
+    pub missing_weight: f64,
     /// What part of an antibody may touch.
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
@@ -221,6 +223,7 @@ impl Default for DockOptions {
             attraction_weight: 2000.0,
             // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
             peptidase_weight: 500.0,
+            missing_weight: 10.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
@@ -242,6 +245,7 @@ impl DockOptions {
     /// What the first version would have made of no options at all: the defaults, less all that came later and moves the ranking.
     pub fn of_first_version() -> Self {
         Self {
+            missing_weight: 0.0,
             fine_contact_weight: 0.0,
             atom_pair_weight: 0.0,
             relaxed_weight: 0.0,
@@ -291,6 +295,7 @@ impl DockOptions {
             ("restraint-weight", self.restraint_weight, 1e6),
             ("attraction-weight", self.attraction_weight, 1e6),
             ("peptidase-weight", self.peptidase_weight, 1e6),
+            ("missing-weight", self.missing_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

@@ -17,7 +17,7 @@ use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{LabelReport, Molecule};
+use knotdock_structures::molecule::{LabelReport, MissingResidues, Molecule};
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use std::sync::Arc;
@@ -77,6 +77,8 @@ pub struct DockPlan {
     pub(super) attracted: Attracted,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
+    /// Residues that are missing from the files of receptor and ligand.
+    pub missing_residues: [MissingResidues; 2],
     /// The rings that are sought, if any are.
     #[serde(skip)]
     pub(super) rings: Option<Rings>,
@@ -127,6 +129,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         labels,
         attracted,
+        missing,
         ring_axis,
     } = scene;
     let planned = |options: &DockOptions| {
@@ -255,6 +258,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         attracted,
         labels,
+        missing_residues: missing,
         rings,
         engine: Arc::new(engine),
         options: options.clone(),
@@ -352,8 +356,12 @@ impl DockPlan {
     /// What poses are rescored with; `None` where there is nothing to ask.
     pub(super) fn rescorer(&self) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
-        self.asked()
-            .rescorer(bodies, &self.attracted, &self.options)
+        self.asked().rescorer(
+            bodies,
+            &self.attracted,
+            &self.missing_residues,
+            &self.options,
+        )
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
@@ -363,7 +371,12 @@ impl DockPlan {
 
     /// What poses are asked beside their score.
     pub(crate) fn asked(&self) -> Asked {
-        Asked::of(&self.decisions, &self.attracted, &self.options)
+        Asked::of(
+            &self.decisions,
+            &self.attracted,
+            &self.missing_residues,
+            &self.options,
+        )
     }
 
     /// Whether an effect is on.

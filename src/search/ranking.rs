@@ -203,6 +203,7 @@ impl Candidate {
             atom_pair: rescored.atom_pair,
             relaxed: rescored.relaxed,
             attraction: rescored.attraction,
+            missing: rescored.missing,
             other_copies: others,
             rank_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
             z_score: None,

@@ -4,8 +4,11 @@ use super::attracted::Attracted;
 use super::effects::Decision;
 use super::options::DockOptions;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::rescoring::{AtomPairs, Attraction, FineContacts, Relaxation, Rescorer};
+use knotdock_scoring::rescoring::{
+    AtomPairs, Attraction, FineContacts, MissingContacts, Relaxation, Rescorer,
+};
 use knotdock_structures::Knots;
+use knotdock_structures::molecule::MissingResidues;
 
 /// Weights of the terms that poses are rescored by; 0 for those that are not asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,11 +17,17 @@ pub(crate) struct Asked {
     atom_pair: f64,
     relaxed: f64,
     attraction: f64,
+    missing: f64,
 }
 
 impl Asked {
-    /// Potentials where the contact effect is on, and what should be touched where there is something.
-    pub fn of(decisions: &[Decision], attracted: &Attracted, options: &DockOptions) -> Self {
+    /// Potentials where the contact effect is on, what should be touched where there is something, and residues where some are missing.
+    pub fn of(
+        decisions: &[Decision],
+        attracted: &Attracted,
+        missing: &[MissingResidues; 2],
+        options: &DockOptions,
+    ) -> Self {
         let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
         let typed = decisions.iter().any(contact);
         let when = |asked: bool, weight: f64| if asked { weight } else { 0.0 };
@@ -27,6 +36,10 @@ impl Asked {
             atom_pair: when(typed, options.atom_pair_weight),
             relaxed: when(typed, options.relaxed_weight),
             attraction: when(attracted.any(), attracted.weight),
+            missing: when(
+                missing.iter().any(|side| !side.centers.is_empty()),
+                options.missing_weight,
+            ),
         }
     }
 
@@ -37,8 +50,13 @@ impl Asked {
 
     /// Whether anything is asked.
     pub fn any(&self) -> bool {
-        let stands = self.fine_contact > 0.0 || self.atom_pair > 0.0 || self.attraction > 0.0;
-        stands || self.relaxes()
+        let stands = [
+            self.fine_contact,
+            self.atom_pair,
+            self.attraction,
+            self.missing,
+        ];
+        stands.into_iter().any(|weight| weight > 0.0) || self.relaxes()
     }
 
     /// The terms of two labelled bodies; `None` where nothing is asked.
@@ -46,6 +64,7 @@ impl Asked {
         &self,
         [receptor, ligand]: [&Knots; 2],
         attracted: &Attracted,
+        missing: &[MissingResidues; 2],
         options: &DockOptions,
     ) -> Option<Rescorer> {
         let asked = |weight: f64| (weight > 0.0).then_some(weight);
@@ -61,6 +80,10 @@ impl Asked {
                 .map(|weight| Relaxation::new(receptor, ligand, &pair_potential(), weight)),
             attraction: asked(self.attraction)
                 .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
+            missing: asked(self.missing).map(|weight| {
+                let balls = missing.each_ref().map(|side| side.centers.clone());
+                MissingContacts::new(receptor, ligand, balls, weight)
+            }),
         })
     }
 }

@@ -4,11 +4,9 @@
 //! The search draws poses to residues that are named by all contacts of their atoms ([`crate::effect::restraint`]), since a correlation can count
 //! nothing else; buried deep, one residue would earn what several should. So what it keeps is asked how many touch at all.
 
-use super::cells::{Atom, Cells};
-use crate::exact::center;
+use super::side::Side;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
-use nalgebra::Vector3;
 
 /// Distance in Å within which two atoms of residues are in contact, as the field counts native contacts.
 const TOUCHING: f64 = 5.0;
@@ -27,12 +25,6 @@ pub struct Attraction {
 
 /// Where the atoms of a residue stand (Å).
 type Positions = Vec<[f64; 3]>;
-
-/// All atoms of one side, about its middle.
-struct Side {
-    atoms: Cells,
-    middle: Vector3<f64>,
-}
 
 impl Attraction {
     /// Sets of residues, any one of which should be in contact; `weight` is what a pose earns in which all residues of a set touch.
@@ -59,38 +51,23 @@ impl Attraction {
     pub fn score(&self, pose: &Pose) -> f64 {
         let inverse = pose.inverse();
         let shares = self.sets.iter().map(|[receptor, ligand]| {
-            let own = self.ligand.touched(receptor, &inverse);
-            let other = self.receptor.touched(ligand, pose);
+            let own = touched(&self.ligand, receptor, &inverse);
+            let other = touched(&self.receptor, ligand, pose);
             (own + other) as f64 / (receptor.len() + ligand.len()).max(1) as f64
         });
         self.weight * shares.fold(0.0, f64::max)
     }
 }
 
-impl Side {
-    fn new(knots: &Knots) -> Self {
-        let middle = center(knots);
-        let atom = |x: &[f64; 3]| Atom {
-            position: Vector3::from(*x) - middle,
-            kind: 0,
-        };
-        Self {
-            atoms: Cells::new(knots.centers.iter().map(atom).collect()),
-            middle,
-        }
-    }
-
-    /// How many of the other side's residues, carried by `pose` into this one's frame, have an atom within [`TOUCHING`] of one of its.
-    fn touched(&self, residues: &[Positions], pose: &Pose) -> usize {
-        let touches = |atom: &[f64; 3]| {
-            let x = Vector3::from(pose.apply(*atom)) - self.middle;
-            let mut near = false;
-            self.atoms.near(x, TOUCHING, |_, _| near = true);
-            near
-        };
-        let residues = residues.iter();
-        residues.filter(|atoms| atoms.iter().any(touches)).count()
-    }
+/// How many of the other side's residues, carried by `pose` into this one's frame, have an atom within [`TOUCHING`] of one of its.
+fn touched(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
+    let touches = |atom: &[f64; 3]| {
+        let mut near = false;
+        side.near(pose, *atom, TOUCHING, |_| near = true);
+        near
+    };
+    let residues = residues.iter();
+    residues.filter(|atoms| atoms.iter().any(touches)).count()
 }
 
 #[cfg(test)]

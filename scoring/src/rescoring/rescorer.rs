@@ -1,6 +1,6 @@
 //! All that poses are rescored with.
 
-use super::{AtomPairs, Attraction, FineContacts, Relaxation, Workspace};
+use super::{AtomPairs, Attraction, FineContacts, MissingContacts, Relaxation, Workspace};
 use crate::se3::Pose;
 
 /// Terms that are asked of a pose beside its score.
@@ -13,6 +13,8 @@ pub struct Rescorer {
     pub relaxation: Option<Relaxation>,
     /// Residues that should be in contact.
     pub attraction: Option<Attraction>,
+    /// Residues that are missing where the other side may not be.
+    pub missing: Option<MissingContacts>,
 }
 
 /// What they say of a pose, weighted; higher is better. `None` where the term is left out.
@@ -26,6 +28,8 @@ pub struct Rescored {
     pub relaxed: Option<f64>,
     /// The residues that touch of those that should.
     pub attraction: Option<f64>,
+    /// The atoms that lie where residues are missing.
+    pub missing: Option<f64>,
 }
 
 impl Rescorer {
@@ -39,6 +43,7 @@ impl Rescorer {
                 .as_ref()
                 .map(|relaxation| relaxation.score(pose, workspace)),
             attraction: self.attraction.as_ref().map(|terms| terms.score(pose)),
+            missing: self.missing.as_ref().map(|terms| terms.score(pose)),
         }
     }
 }
@@ -50,5 +55,6 @@ impl Rescored {
             + self.atom_pair.unwrap_or(0.0)
             + self.relaxed.unwrap_or(0.0)
             + self.attraction.unwrap_or(0.0)
+            + self.missing.unwrap_or(0.0)
     }
 }

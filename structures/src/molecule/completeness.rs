@@ -12,6 +12,7 @@ pub(super) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> 
     let mut warnings = trace_only(atoms, residues);
     warnings.extend(missing_side_chains(atoms, residues));
     warnings.extend(duplicates(atoms, residues));
+    warnings.extend(in_one_place(atoms));
     warnings
 }
 
@@ -101,6 +102,16 @@ fn missing_side_chains(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<Strin
             "{incomplete} {residues} side-chain atoms ({missing_atoms} in all: {}{more})",
             examples.join(", ")
         )
+    })
+}
+
+/// Atoms none of which has a place of its own, as in files that were written before there were coordinates.
+fn in_one_place(atoms: &[Atom]) -> Option<String> {
+    let (first, rest) = atoms.split_first()?;
+    let same = |atom: &Atom| atom.position == first.position;
+    (!rest.is_empty() && rest.iter().all(same)).then(|| {
+        let [x, y, z] = first.position;
+        format!("all atoms are in one place ({x}, {y}, {z}), so that no score means anything: were coordinates ever written?")
     })
 }
 

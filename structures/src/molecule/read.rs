@@ -4,7 +4,7 @@ use super::error::ReadError;
 use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
 use super::policy::ReadOptions;
-use super::report::{ChainCount, DropKind, GroupCount, ReadReport};
+use super::report::{ChainCount, DropKind, GroupCount, ReadReport, count};
 use super::{Atom, Format, Molecule, assembly, completeness, parse, radii, select, sieve, source};
 
 /// An atom of the model that was read, and what became of it.
@@ -98,6 +98,12 @@ fn read_telling(
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
+    if let Some(line) = sieved.other_blocks.first() {
+        report.warnings.push(format!(
+            "only the first structure is read: {} with atoms, the first at line {line}",
+            count(sieved.other_blocks.len(), "further data block")
+        ));
+    }
     let provenance = sieved.provenance;
     let assemblies = std::mem::take(&mut sieved.assemblies);
     let mut parsed = parse::parse(file, format, sieved)?;

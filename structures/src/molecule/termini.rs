@@ -13,7 +13,7 @@ use super::labels::{Labels, is_proline};
 use super::{Atom, Molecule, squared_distance};
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.
-const BOND: f64 = 2.5;
+pub(super) const BOND: f64 = 2.5;
 
 /// Longest distance in Å of a terminal atom from what is bonded to it.
 const LONGEST_CAP: f64 = 1.7;
@@ -27,7 +27,7 @@ struct Cap<'a> {
 }
 
 /// All of them, sorted by place.
-struct Caps<'a> {
+pub(super) struct Caps<'a> {
     atoms: Vec<Cap<'a>>,
     cells: Cells,
 }
@@ -84,7 +84,7 @@ impl Molecule {
 
     /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
     /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
-    fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
+    pub(super) fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
         let Some(end) = self.atom(residue, name) else {
             return true;
         };
@@ -98,7 +98,7 @@ impl Molecule {
     }
 
     /// Atoms that may be bonded to the ends of chains.
-    fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
+    pub(super) fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
         let mut atoms = Vec::new();
         for group in groups {
             let mut add = |atom: &Atom, end| {

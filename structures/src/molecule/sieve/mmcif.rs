@@ -22,7 +22,10 @@ pub(in crate::molecule) fn sieve(
     let mut stream = tokens(text).peekable();
     while let Some(token) = stream.next() {
         match token.kind {
-            Kind::Data if !table.values.is_empty() => break,
+            Kind::Data if !table.values.is_empty() => {
+                sieved.other_blocks = blocks_with_atoms(token.line, stream);
+                break;
+            }
             Kind::Data => sieved.recognised = true,
             Kind::Loop => {
                 let mut tags = Vec::new();
@@ -67,6 +70,21 @@ pub(in crate::molecule) fn sieve(
     sieved.assemblies = assemblies.assemblies();
     table.sieve(file, model, &mut sieved)?;
     Ok(sieved)
+}
+
+/// Lines of the data blocks that have an atom table, from one that starts at `first` on.
+fn blocks_with_atoms<'a>(first: usize, rest: impl Iterator<Item = Token<'a>>) -> Vec<usize> {
+    let (mut block, mut lines) = (first, Vec::new());
+    for token in rest {
+        match token.kind {
+            Kind::Data => block = token.line,
+            Kind::Tag(tag) if item(tag).is_some() && lines.last() != Some(&block) => {
+                lines.push(block);
+            }
+            _ => {}
+        }
+    }
+    lines
 }
 
 fn is_value(kind: Kind<'_>) -> bool {

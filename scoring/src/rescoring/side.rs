@@ -1,0 +1,33 @@
+//! All atoms of one side of a pose, so that those near a point are found.
+
+use super::cells::{Atom, Cells};
+use crate::exact::center;
+use crate::se3::Pose;
+use knotdock_structures::Knots;
+use nalgebra::Vector3;
+
+/// All atoms of one side, about its middle.
+pub(super) struct Side {
+    atoms: Cells,
+    middle: Vector3<f64>,
+}
+
+impl Side {
+    pub fn new(knots: &Knots) -> Self {
+        let middle = center(knots);
+        let atom = |(index, x): (usize, &[f64; 3])| Atom {
+            position: Vector3::from(*x) - middle,
+            kind: index,
+        };
+        Self {
+            atoms: Cells::new(knots.centers.iter().enumerate().map(atom).collect()),
+            middle,
+        }
+    }
+
+    /// Visits the atoms, by their place, that lie within `reach` (Å) of a point of the other side, carried by `pose` into this one's frame.
+    pub fn near(&self, pose: &Pose, point: [f64; 3], reach: f64, mut visit: impl FnMut(usize)) {
+        let x = Vector3::from(pose.apply(point)) - self.middle;
+        self.atoms.near(x, reach, |atom, _| visit(atom.kind));
+    }
+}
