@@ -27,6 +27,7 @@ import concurrent.futures
 import csv
 import gzip
 import hashlib
+import io
 import json
 import math
 import os
@@ -80,7 +81,7 @@ def main():
     for ranking in RANKINGS:
         write_csv(options, pairs, results, ranking)
         text = markdown(options, pairs, results, ranking, program)
-        (options.out / f"{ranking}.md").write_text(text)
+        write(options.out / f"{ranking}.md", text)
         if ranking == "poses":
             print(text)
     print(f"tables in {options.out}", file=sys.stderr)
@@ -325,17 +326,18 @@ def write_csv(options, pairs, results, ranking):
     known = [column for column in ("unbound_interface_rmsd_angstrom", *MEGADOCK.values()) if column in pairs[0]]
     header = ["id", "split", "seed", "first_acceptable_rank", "first_near_native_rank", ranking, "cpu_seconds"]
     header += ["wall_seconds", "peak_memory_bytes", "error", *known]
-    with open(options.out / f"{ranking}.csv", "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        for pair in pairs:
-            for seed in options.seeds:
-                result = results[pair["id"], seed]
-                ranks = result.get(ranking, {})
-                row = [pair["id"], pair["split"], seed]
-                row += [ranks.get(key) for key in ("acceptable", "near_native", "count")]
-                row += [result.get(key) for key in ("cpu_seconds", "wall_seconds", "peak_memory_bytes", "error")]
-                writer.writerow(row + [pair[column] for column in known])
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(header)
+    for pair in pairs:
+        for seed in options.seeds:
+            result = results[pair["id"], seed]
+            ranks = result.get(ranking, {})
+            row = [pair["id"], pair["split"], seed]
+            row += [ranks.get(key) for key in ("acceptable", "near_native", "count")]
+            row += [result.get(key) for key in ("cpu_seconds", "wall_seconds", "peak_memory_bytes", "error")]
+            writer.writerow(row + [pair[column] for column in known])
+    write(options.out / f"{ranking}.csv", table.getvalue())
 
 
 def markdown(options, pairs, results, ranking, program):

@@ -273,3 +273,24 @@ fn what_would_do_nothing_is_refused() {
             .split_whitespace(),
     );
 }
+
+/// Found by a review: the known complex was read twice, which of a pipe is nothing the second time.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_known_complex_may_come_from_a_pipe() {
+    let folder = place();
+    let folder = folder.path();
+    let run = "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 -o run --quiet";
+    succeed(folder, run.split_whitespace());
+    let piped = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args("evaluate run --native /dev/stdin --json".split_whitespace())
+        .write_stdin(fs::read(folder.join("native.pdb")).unwrap())
+        .output()
+        .unwrap();
+    let told: Value = serde_json::from_slice(&piped.stdout).unwrap();
+    assert_eq!(
+        told,
+        json(folder, "evaluate run --native native.pdb --json")
+    );
+}

@@ -102,14 +102,15 @@ impl Evaluate {
             ))
             .remedy("leave them out, or name the molecules"));
         }
-        let native = self.native.read()?;
-        if let (Some(receptor), Some(ligand), Some(native)) = (&self.receptor, &self.ligand, native)
-        {
-            let receptor = Input::read(receptor, &reading)?;
-            let ligand = Input::read(ligand, &reading)?;
-            check_used(&reading, [&receptor.molecule, &ligand.molecule])?;
-            return Ok((receptor, ligand, native));
-        }
+        let native = match (&self.receptor, &self.ligand, self.native.read()?) {
+            (Some(receptor), Some(ligand), Some(native)) => {
+                let receptor = Input::read(receptor, &reading)?;
+                let ligand = Input::read(ligand, &reading)?;
+                check_used(&reading, [&receptor.molecule, &ligand.molecule])?;
+                return Ok((receptor, ligand, native));
+            }
+            (_, _, native) => native,
+        };
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";
         let run =
@@ -122,7 +123,7 @@ impl Evaluate {
             }
             None => Input::recorded(record, run_path, &run.options.reading),
         };
-        let native = match (self.native.read()?, &run.native) {
+        let native = match (native, &run.native) {
             (Some(native), _) => native,
             (None, Some(record)) => NativeFiles::recorded(record, run_path)?,
             (None, None) => {

@@ -18,7 +18,7 @@ use super::arguments::not_negative;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::{Input, check_used};
-use super::output_file::check_output;
+use super::output_file::{check_output, is_same};
 use super::reading_arguments::ReadingArguments;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
@@ -66,7 +66,11 @@ impl Inspect {
         let format = match &self.write {
             Some(file) => {
                 check_output(file, [structure.as_path()], self.force)?;
-                if self.atoms.as_ref() == Some(file) {
+                if self
+                    .atoms
+                    .as_ref()
+                    .is_some_and(|atoms| is_same(atoms, file))
+                {
                     return Err(Failure::input("--atoms and --write name one file")
                         .at(file)
                         .remedy("give each a name of its own"));

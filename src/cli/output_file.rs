@@ -1,6 +1,6 @@
 //! Where a single file may be written: never over one that is read, and over another only on request.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use knotdock::output::whole_file::is_stream;
 
@@ -47,9 +47,37 @@ pub fn check_replaced<'a>(
 }
 
 /// Whether two names, of which either may be of nothing yet, are of one file, by links and detours too.
-fn is_same(one: &Path, other: &Path) -> bool {
-    match (one.canonicalize(), other.canonicalize()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => one == other,
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    plain(one) == plain(other)
+}
+
+/// A file's path without links and detours; of one that is not there yet its folder's, with its name.
+fn plain(file: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = file
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+        Some(folder.join(file.file_name()?))
+    };
+    let there = file.canonicalize().ok();
+    there.or_else(in_folder).unwrap_or_else(|| file.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by a review: `--atoms a.pdb --write ./a.pdb` wrote one over the other.
+    #[test]
+    fn a_file_that_is_not_there_yet_is_known_under_every_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("inner")).unwrap();
+        assert!(is_same(&at("a.pdb"), &at("./inner/../a.pdb")));
+        assert!(is_same(Path::new("a.pdb"), Path::new("./a.pdb")));
+        assert!(!is_same(&at("a.pdb"), &at("inner/a.pdb")));
+        assert!(!is_same(&at("a.pdb"), &at("b.pdb")));
+        assert!(is_same(&at("nowhere/a.pdb"), &at("nowhere/a.pdb")));
     }
 }

@@ -49,6 +49,16 @@ pub enum EvaluateError {
         /// Backbone atoms matched.
         atoms: usize,
     },
+    /// Too few backbone atoms to superpose, of residues whose neighbours across the interface are matched as well.
+    #[error(
+        "only {} and {} backbone atoms of receptor and ligand are matched on both sides of one place of the native's interface; some of \
+         each and 3 in all are needed",
+        atoms[0], atoms[1]
+    )]
+    Across {
+        /// Backbone atoms matched of receptor and ligand, within 10 Å of a matched residue across.
+        atoms: [usize; 2],
+    },
 }
 
 impl EvaluateError {
@@ -75,6 +85,10 @@ impl EvaluateError {
             }
             Self::Backbone { .. } => {
                 "give files with backbone atoms (N, CA, C and O) for all residues"
+            }
+            Self::Across { .. } => {
+                "what is missing of one side lies where the other is known: give files with the residues of the interface and their \
+                 backbone atoms (N, CA, C and O), and check that the native is of the same proteins"
             }
         }
     }

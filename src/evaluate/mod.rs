@@ -270,6 +270,13 @@ fn arrange(
             return Err(EvaluateError::Backbone { side, atoms });
         }
     }
+    // Each side may have half of the interface and yet no place of it be matched on both.
+    let across_atoms = rmsds.interface_atoms();
+    if across_atoms.contains(&0) || across_atoms.iter().sum::<usize>() < LEAST_ATOMS {
+        return Err(EvaluateError::Across {
+            atoms: across_atoms,
+        });
+    }
     let (kept, interface) = (
         receptor_match.interface_matched + ligand_match.interface_matched,
         receptor_match.interface_residues + ligand_match.interface_residues,

@@ -8,7 +8,7 @@
 
 use std::collections::HashSet;
 
-use knotdock_structures::molecule::{Atom, Molecule};
+use knotdock_structures::molecule::{Atom, Molecule, plain_atom_name, plain_residue_name};
 use nalgebra::Point3;
 
 use super::EvaluateError;
@@ -27,6 +27,12 @@ const LEAST_PIECE: usize = 20;
 /// What a residue is called in its file: number and insertion code.
 pub(super) type Number = (i64, Option<char>);
 
+/// Places of P and O3' among the [`BACKBONE_ATOMS`].
+const PHOSPHORUS: usize = 4;
+const LINKING_OXYGEN: usize = 8;
+/// Longest distance in Å of O3' from the next nucleotide's P: a bond of 1.6 Å, with room for poor structures.
+const PHOSPHATE_BOND: f64 = 2.5;
+
 /// One residue with its heavy atoms.
 #[derive(Clone, Debug)]
 pub(super) struct Residue {
@@ -36,6 +42,8 @@ pub(super) struct Residue {
     pub kind: String,
     /// Coordinates of the backbone atoms, in the order of [`BACKBONE_ATOMS`], in Å; `None` where the file has none.
     pub backbone: [Option<Point3<f64>>; BACKBONE_ATOMS.len()],
+    /// Whether its records are HETATM.
+    pub hetero: bool,
     /// Coordinates of all heavy atoms, in Å; never empty.
     pub heavy: Vec<Point3<f64>>,
     /// Centre of a ball that holds all of `heavy`, in Å.
@@ -66,7 +74,8 @@ impl Residues {
     /// Reads the residues of `molecule`; `role` names it in errors, e.g. "native ligand".
     ///
     /// Kept: every ATOM residue with a heavy atom, and of HETATM residues those with N, CA and C, which are modified
-    /// amino acids (selenomethionine). Cofactors, ions and glycans play no part, as in DockQ.
+    /// amino acids (selenomethionine), and nucleotides bonded to a neighbour, which are modified ones (pseudouridine).
+    /// Cofactors, FMN and AMP among them, ions and glycans play no part, as in DockQ.
     ///
     /// # Errors
     /// [`EvaluateError::NotFinite`] and [`EvaluateError::NoResidues`].
@@ -107,10 +116,12 @@ impl Residues {
 
     /// Cuts one chain's atoms into residues and appends them as one or more segments.
     fn add_chain(&mut self, name: &str, atoms: &[&Atom]) {
-        let found: Vec<_> = residue_runs(atoms)
-            .into_iter()
-            .filter_map(Residue::of)
-            .collect();
+        let found = without_free_nucleotides(
+            residue_runs(atoms)
+                .into_iter()
+                .filter_map(Residue::of)
+                .collect(),
+        );
         let mut left = found.len();
         let mut seen: HashSet<Number> = HashSet::new();
         let mut members: Vec<usize> = Vec::new();
@@ -208,18 +219,52 @@ fn residue_runs<'a>(atoms: &'a [&'a Atom]) -> Vec<&'a [&'a Atom]> {
     runs
 }
 
+/// Leaves out the nucleotides of HETATM records that are bonded to neither neighbour: they are cofactors.
+fn without_free_nucleotides(found: Vec<Residue>) -> Vec<Residue> {
+    let bonded = |before: Option<&Residue>, after: Option<&Residue>| {
+        let ends = before.zip(after).and_then(|(before, after)| {
+            before.backbone[LINKING_OXYGEN].zip(after.backbone[PHOSPHORUS])
+        });
+        ends.is_some_and(|(oxygen, phosphorus)| {
+            nalgebra::distance(&oxygen, &phosphorus) < PHOSPHATE_BOND
+        })
+    };
+    let stays = |place: usize| {
+        let residue = found.get(place);
+        let before = place.checked_sub(1).and_then(|before| found.get(before));
+        residue.is_none_or(|one| !one.hetero || one.is_amino_acid())
+            || bonded(before, residue)
+            || bonded(residue, found.get(place + 1))
+    };
+    let keep: Vec<bool> = (0..found.len()).map(stays).collect();
+    let kept = found.into_iter().zip(keep);
+    kept.filter_map(|(residue, keep)| keep.then_some(residue))
+        .collect()
+}
+
 impl Residue {
+    /// Whether it has an amino acid's backbone.
+    fn is_amino_acid(&self) -> bool {
+        self.backbone[..3].iter().all(Option::is_some)
+    }
+
+    /// Whether it has what [`knotdock_structures::molecule::GroupKind`] takes for a nucleotide: P, C1', C3' and O3'.
+    fn is_nucleotide(&self) -> bool {
+        ["P", "C1'", "C3'", "O3'"].iter().all(|name| {
+            let mut atoms = BACKBONE_ATOMS.iter().zip(&self.backbone);
+            atoms.any(|(atom, place)| atom == name && place.is_some())
+        })
+    }
+
     /// The residue made of these atoms, or nothing where they are no residue of a polymer.
     fn of(atoms: &[&Atom]) -> Option<Self> {
         let first = atoms.first()?;
         let backbone = BACKBONE_ATOMS.map(|name| {
-            let atom = atoms.iter().find(|atom| atom.name == name)?;
+            let atom = atoms
+                .iter()
+                .find(|atom| plain_atom_name(&atom.name) == name)?;
             Some(Point3::from(atom.position))
         });
-        let [alpha_carbon, carbon, nitrogen, ..] = &backbone;
-        if first.hetero && (alpha_carbon.is_none() || carbon.is_none() || nitrogen.is_none()) {
-            return None;
-        }
         let heavy: Vec<_> = atoms
             .iter()
             .map(|atom| Point3::from(atom.position))
@@ -230,36 +275,28 @@ impl Residue {
             .iter()
             .map(|point| nalgebra::distance(point, &center))
             .fold(0.0, f64::max);
-        Some(Self {
+        let residue = Self {
             number: (first.residue_number, first.insertion_code),
             kind: kind(&first.residue_name),
             backbone,
+            hetero: first.hetero,
             heavy,
             center,
             radius,
-        })
+        };
+        (!residue.hetero || residue.is_amino_acid() || residue.is_nucleotide()).then_some(residue)
     }
 }
 
 /// The name under which residues are compared.
 ///
-/// Selenomethionine counts as methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; force
-/// fields' names for protonation states and disulphides (Amber, CHARMM) count as the plain residue; deoxynucleotides
-/// as their base.
+/// Selenomethionine counts as methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force
+/// fields count as the plain residue's, and nucleotides as their base ([`plain_residue_name`]).
 fn kind(name: &str) -> String {
     let plain = match name.trim() {
         "MSE" => "MET",
-        "CME" | "CYX" | "CYM" => "CYS",
-        "HID" | "HIE" | "HIP" | "HSD" | "HSE" | "HSP" => "HIS",
-        "ASH" => "ASP",
-        "GLH" => "GLU",
-        "LYN" => "LYS",
-        "DA" | "ADE" => "A",
-        "DC" | "CYT" => "C",
-        "DG" | "GUA" => "G",
-        "DT" | "THY" => "T",
-        "DU" | "URA" => "U",
-        other => other,
+        "CME" => "CYS",
+        other => plain_residue_name(other),
     };
     plain.to_owned()
 }
@@ -327,6 +364,40 @@ mod tests {
         let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
         assert_eq!(residues.residues.len(), 1, "calcium is no alpha carbon");
         assert_eq!(residues.residues[0].kind, "MET");
+    }
+
+    /// Found by a review: of force fields' names only some were known, and of old files' the atoms of the backbone were not.
+    #[test]
+    fn names_of_force_fields_and_old_files_are_known() {
+        for (name, plain) in [("LSN", "LYS"), ("ASPP", "ASP"), ("RU", "U"), ("DA5", "A")] {
+            assert_eq!(kind(name), plain);
+        }
+        let names = ["P", "O1P", "O2P", "C1*", "O3*"];
+        let atoms = names.map(|name| atom("A", 1, "DA", name, [0.0; 3]));
+        let residues = Residues::of(&molecule(atoms.to_vec()), "receptor").unwrap();
+        let backbone = residues.residues[0].backbone.iter().flatten();
+        assert_eq!(backbone.count(), names.len());
+    }
+
+    /// Pseudouridine within a strand counts, and AMP beside it does not.
+    #[test]
+    fn modified_nucleotides_count_where_they_are_linked() {
+        let mut atoms = Vec::new();
+        for (number, residue, hetero) in [(1, "U", false), (2, "PSU", true), (9, "AMP", true)] {
+            for (name, along) in [("P", 0.0), ("C1'", 3.0), ("C3'", 4.0), ("O3'", 5.0)] {
+                let position = [6.6 * number as f64 + along, 0.0, 0.0];
+                let mut one = atom("A", number, residue, name, position);
+                one.hetero = hetero;
+                atoms.push(one);
+            }
+        }
+        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
+        let kinds: Vec<&str> = residues
+            .residues
+            .iter()
+            .map(|one| one.kind.as_str())
+            .collect();
+        assert_eq!(kinds, ["U", "PSU"]);
     }
 
     #[test]

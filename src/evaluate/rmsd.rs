@@ -95,6 +95,11 @@ impl RmsdForms {
         (self.receptor.count as usize, self.ligand.count as usize)
     }
 
+    /// Numbers of backbone atoms that the interface RMSD is of: receptor, ligand.
+    pub fn interface_atoms(&self) -> [usize; 2] {
+        [&self.receptor_interface, &self.ligand_interface].map(|side| side.count as usize)
+    }
+
     /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can mend.
     pub fn of_the_parts(&self) -> (f64, f64) {
         (

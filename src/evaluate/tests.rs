@@ -272,6 +272,35 @@ fn half_an_interface_is_an_error() {
     assert!(error.remedy().contains("--native-receptor"));
 }
 
+/// Found by a review: where each side had the half of the interface that the other lacked, the interface RMSD of every pose was 0.
+#[test]
+fn halves_of_an_interface_that_do_not_meet_are_an_error() {
+    let (receptor, ligand) = both_ends();
+    let first = |atoms: &[Atom], numbers: std::ops::Range<i64>| -> Vec<Atom> {
+        let kept = atoms
+            .iter()
+            .filter(|one| numbers.contains(&one.residue_number));
+        kept.cloned().collect()
+    };
+    let halves = (first(&receptor, 1..5), first(&ligand, 5..9));
+    let error = evaluator((&halves.0, &halves.1), (&receptor, &ligand)).unwrap_err();
+    assert_eq!(error, EvaluateError::Across { atoms: [0, 0] });
+    assert!(error.remedy().contains("backbone"));
+    evaluator((&halves.0, &ligand), (&receptor, &ligand)).unwrap();
+}
+
+/// Two chains that touch at both ends of a long way: residues 1 to 4 at one, 5 to 8 at the other.
+fn both_ends() -> (Vec<Atom>, Vec<Atom>) {
+    let chain = |name: &str, x: f64| -> Vec<Atom> {
+        let mut atoms = helix(name, "ACDEFGHI", [x, 0.0, 0.0]);
+        for one in atoms.iter_mut().filter(|one| one.residue_number > 4) {
+            one.position[2] += 100.0;
+        }
+        atoms
+    };
+    (chain("A", 0.0), chain("B", 8.0))
+}
+
 #[test]
 fn strangers_and_lone_sides_are_errors() {
     let (receptor, ligand) = bound();

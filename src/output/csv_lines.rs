@@ -4,21 +4,23 @@
 /// over theirs.
 pub(super) fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
-    let lines: Vec<&[u8]> = text
-        .get(from..)
-        .unwrap_or_default()
-        .split(|&byte| byte == b'\n')
-        .collect();
-    let passed = lines
-        .iter()
-        .take_while(|line| {
-            line.strip_suffix(b"\r").unwrap_or(line).is_empty()
-                || comment.is_some_and(|comment| line.starts_with(&[comment]))
-        })
-        .count();
-    // A record there is, if only a last line that the reader took for one.
-    let rest = lines.iter().rev().skip_while(|line| line.is_empty());
-    position.line() + passed.min(rest.count().saturating_sub(1)) as u64
+    let lines = || {
+        let rest = text.get(from..).unwrap_or_default();
+        rest.split(|&byte| byte == b'\n')
+    };
+    let is_passed = |line: &[u8]| {
+        line.strip_suffix(b"\r").unwrap_or(line).is_empty()
+            || comment.is_some_and(|comment| line.starts_with(&[comment]))
+    };
+    // Lines after the record's are not looked at: rows that each went through the rest of their file would be quadratic.
+    let passed = lines()
+        .position(|line| !is_passed(line))
+        .unwrap_or_else(|| {
+            // A record there is, if only a last line that the reader took for one.
+            let rest = lines().rev().skip_while(|line| line.is_empty());
+            rest.count().saturating_sub(1)
+        });
+    position.line() + passed as u64
 }
 
 #[cfg(test)]

@@ -20,6 +20,34 @@ pub struct Product {
     record: &'static str,
 }
 
+impl Product {
+    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none. `interrupted` says that a
+    /// staging folder was found there, so that entries without their record are a killed run's.
+    fn refuse_existing(
+        &self,
+        directory: &Path,
+        interrupted: bool,
+        force: bool,
+    ) -> Result<(), StagingError> {
+        let mut entries = self.entries.iter();
+        let Some(entry) = entries.find(|entry| directory.join(entry).symlink_metadata().is_ok())
+        else {
+            return Ok(());
+        };
+        if !interrupted && !is_ours(&directory.join(self.record)) {
+            return Err(StagingError::NotARun {
+                directory: directory.to_owned(),
+                entry,
+                record: self.record,
+            });
+        }
+        if !force {
+            return Err(StagingError::ExistingRun(directory.to_owned()));
+        }
+        Ok(())
+    }
+}
+
 /// What `knotdock dock` leaves.
 pub const RUN: Product = Product {
     entries: &["top", "poses.csv", "run.json"],
@@ -134,22 +162,18 @@ impl Staging {
         let folder = directory.join(PARTIAL);
         // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its renames: what that left is ours.
         let interrupted = folder.is_dir();
-        if let Some(&entry) = product
-            .entries
-            .iter()
-            .find(|entry| directory.join(entry).symlink_metadata().is_ok())
-        {
-            if !interrupted && !is_ours(&directory.join(product.record)) {
-                return Err(StagingError::NotARun {
-                    directory: directory.to_owned(),
-                    entry,
-                    record: product.record,
-                });
-            }
-            if !force {
-                return Err(StagingError::ExistingRun(directory.to_owned()));
-            }
-        }
+        product.refuse_existing(directory, interrupted, force)?;
+        Self::claim(product, directory, interrupted, force)
+    }
+
+    /// Makes and locks the staging folder of a directory in which nothing was found that may not be replaced.
+    fn claim(
+        product: &'static Product,
+        directory: &Path,
+        interrupted: bool,
+        force: bool,
+    ) -> Result<Self, StagingError> {
+        let folder = directory.join(PARTIAL);
         let unwritable = |source| FileError::unwritable(directory, source);
         let made_directory = !directory.exists();
         fs::create_dir_all(&folder).map_err(unwritable)?;
@@ -157,15 +181,18 @@ impl Staging {
         let Some(lock) = lock else {
             return Err(StagingError::Busy(directory.to_owned()));
         };
-        clear(&folder).map_err(unwritable)?;
-        Ok(Self {
+        let staging = Self {
             product,
             directory: directory.to_owned(),
             folder,
             made_directory,
             state: State::Open,
             lock: Some(lock),
-        })
+        };
+        // Another run may have come to its end between the first look and the lock.
+        product.refuse_existing(directory, interrupted, force)?;
+        clear(&staging.folder).map_err(unwritable)?;
+        Ok(staging)
     }
 
     /// The folder to write into.
@@ -351,6 +378,27 @@ mod tests {
             fs::read_to_string(directory.join("poses.csv")).unwrap(),
             "first"
         );
+    }
+
+    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced without --force.
+    #[test]
+    fn a_run_that_ends_before_the_lock_is_taken_is_not_replaced() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        let first = Staging::open(&directory, false).unwrap();
+        fill(&first, "first");
+        first.commit().unwrap();
+        for interrupted in [false, true] {
+            assert!(matches!(
+                Staging::claim(&RUN, &directory, interrupted, false),
+                Err(StagingError::ExistingRun(_))
+            ));
+        }
+        assert_eq!(
+            fs::read_to_string(directory.join("poses.csv")).unwrap(),
+            "first"
+        );
+        assert!(!directory.join(PARTIAL).exists());
     }
 
     #[test]

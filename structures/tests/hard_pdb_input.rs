@@ -237,6 +237,25 @@ fn bytes_that_are_not_utf8_stop_nothing_outside_the_atoms() {
     assert!(read_bytes("x.pdb", &tab, "").is_ok());
 }
 
+/// Found by a review: programs that let the serial number grow to the left wrote records that were dropped without a word.
+#[test]
+fn serial_numbers_may_grow_into_the_columns_before_theirs() {
+    let wide = |record: &str| format!("{record}{}", &ATOM.text()[11..]);
+    let records = ["ATOM  99999", "ATOM 100000", "ATOM1000000", "HETATM100000"];
+    let file: String = records.map(|record| wide(&record[..11])).concat();
+    let molecule = read_text(&file).unwrap();
+    let hetero: Vec<bool> = molecule.atoms.iter().map(|atom| atom.hetero).collect();
+    assert_eq!(hetero, [false, false, false, true]);
+    // Without a sound record before them the file is known as PDB all the same.
+    assert_eq!(
+        read_bytes("x", wide("ATOM 100000").as_bytes(), "")
+            .unwrap()
+            .atoms
+            .len(),
+        1
+    );
+}
+
 #[test]
 fn more_atoms_than_serial_numbers() {
     // Serial numbers have five columns, and pdbtbx counts on by itself after 99,999.

@@ -11,7 +11,7 @@ use knotdock_structures::sampler::Ball;
 
 use super::Sample;
 use crate::cli::failure::Failure;
-use crate::cli::output_file::check_output;
+use crate::cli::output_file::{check_output, is_same};
 
 /// Form in which balls are exported.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl Sample {
         .flatten()
         .collect();
         for (index, file) in files.iter().enumerate() {
-            if files[..index].contains(file) {
+            if files[..index].iter().any(|other| is_same(other, file)) {
                 return Err(Failure::input("the same file is named twice")
                     .at(file)
                     .remedy("give each file to write a name of its own"));

@@ -78,10 +78,11 @@ impl Molecule {
     /// The variable domains of antibodies in this molecule; `None` where there is none.
     pub fn antibody(&self) -> Option<Antibody> {
         let groups = residue_runs(&self.atoms);
+        let annotators = Annotators::new()?;
         let mut domains = Vec::new();
         let mut determining = vec![false; self.atoms.len()];
         for chain in peptides(&groups) {
-            for (domain, regions) in variable_domains(chain) {
+            for (domain, regions) in annotators.variable_domains(chain) {
                 for (residue, region) in chain.iter().zip(regions) {
                     if region.is_some() {
                         for &atom in &residue.atoms {
@@ -116,51 +117,64 @@ impl Molecule {
     }
 }
 
-/// The variable domains of one chain, each with the CDR (0 to 2) that each of the chain's residues belongs to, if to one of this domain.
-fn variable_domains(chain: &[Residue<'_>]) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
-    let sequence: String = chain.iter().map(|residue| letter(residue.key.3)).collect();
-    // A chain too short, or longer than any antibody's, is an error of the search, as is one without a domain.
-    let numbered = |scheme: Scheme| {
-        let annotator = Annotator::new(IG_CHAINS, scheme, None).ok()?;
-        annotator.number_domains(&sequence).ok()
-    };
-    let (Some(imgt), Some(kabat)) = (numbered(Scheme::IMGT), numbered(Scheme::Kabat)) else {
-        return Vec::new();
-    };
-    let mut found = Vec::new();
-    for domain in &imgt {
-        let Some(kind) = VariableKind::of(domain.chain) else {
-            continue;
+/// Both numberings, ready for any chain: to make one takes longer than to number a chain that is no antibody's.
+struct Annotators {
+    imgt: Annotator,
+    kabat: Annotator,
+}
+
+impl Annotators {
+    fn new() -> Option<Self> {
+        let of = |scheme| Annotator::new(IG_CHAINS, scheme, None).ok();
+        Some(Self {
+            imgt: of(Scheme::IMGT)?,
+            kabat: of(Scheme::Kabat)?,
+        })
+    }
+
+    /// The variable domains of one chain, each with the CDR (0 to 2) that each of the chain's residues belongs to, if to one of this domain.
+    fn variable_domains(&self, chain: &[Residue<'_>]) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
+        let sequence: String = chain.iter().map(|residue| letter(residue.key.3)).collect();
+        // A chain too short, or longer than any antibody's, is an error of the search, as is one without a domain.
+        let numbered = |annotator: &Annotator| annotator.number_domains(&sequence).ok();
+        let (Some(imgt), Some(kabat)) = (numbered(&self.imgt), numbered(&self.kabat)) else {
+            return Vec::new();
         };
-        let span = domain.query_start..=domain.query_end;
-        let mut regions = vec![None; chain.len()];
-        for numbering in [domain].into_iter().chain(&kabat) {
-            let places = (numbering.query_start..).zip(&numbering.positions);
-            for (place, position) in places.filter(|(place, _)| span.contains(place)) {
-                let region =
-                    region_for_position(position.number, numbering.scheme, numbering.chain);
-                if let (Some(cdr), Some(own)) = (region.and_then(cdr), regions.get_mut(place)) {
-                    *own = Some(cdr);
+        let mut found = Vec::new();
+        for domain in &imgt {
+            let Some(kind) = VariableKind::of(domain.chain) else {
+                continue;
+            };
+            let span = domain.query_start..=domain.query_end;
+            let mut regions = vec![None; chain.len()];
+            for numbering in [domain].into_iter().chain(&kabat) {
+                let places = (numbering.query_start..).zip(&numbering.positions);
+                for (place, position) in places.filter(|(place, _)| span.contains(place)) {
+                    let region =
+                        region_for_position(position.number, numbering.scheme, numbering.chain);
+                    if let (Some(cdr), Some(own)) = (region.and_then(cdr), regions.get_mut(place)) {
+                        *own = Some(cdr);
+                    }
                 }
             }
+            let label = |place: usize| chain.get(place).map_or(String::new(), number);
+            let cdrs = std::array::from_fn(|cdr| {
+                let own = (0..chain.len()).filter(|&place| regions[place] == Some(cdr));
+                own.map(label).collect()
+            });
+            let first = chain.get(domain.query_start);
+            found.push((
+                VariableDomain {
+                    kind,
+                    chain: first.map_or(String::new(), |residue| residue.key.0.to_owned()),
+                    residues: [label(domain.query_start), label(domain.query_end)],
+                    cdrs,
+                },
+                regions,
+            ));
         }
-        let label = |place: usize| chain.get(place).map_or(String::new(), number);
-        let cdrs = std::array::from_fn(|cdr| {
-            let own = (0..chain.len()).filter(|&place| regions[place] == Some(cdr));
-            own.map(label).collect()
-        });
-        let first = chain.get(domain.query_start);
-        found.push((
-            VariableDomain {
-                kind,
-                chain: first.map_or(String::new(), |residue| residue.key.0.to_owned()),
-                residues: [label(domain.query_start), label(domain.query_end)],
-                cdrs,
-            },
-            regions,
-        ));
+        found
     }
-    found
 }
 
 /// Which CDR a region is, from 0.

@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::Atom;
 use super::error::ReadError;
 use super::parse::Parsed;
+use super::plain_names::links_nucleotides;
 use super::report::{DropKind, ReadReport, count, show_chain};
 use super::residues::{is_amino_acid, is_nucleotide};
 use super::select;
@@ -108,7 +109,7 @@ fn part_name(record: &Parsed) -> &str {
 fn polymers(parsed: &[Parsed]) -> HashSet<&str> {
     let is_polymer = |record: &&Parsed| {
         let name = record.carried.residue_name.as_str();
-        is_amino_acid(name) || is_nucleotide(name)
+        is_amino_acid(name) || is_nucleotide(name) && links_nucleotides(&record.name)
     };
     parsed.iter().filter(is_polymer).map(part_name).collect()
 }

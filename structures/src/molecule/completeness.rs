@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashSet};
 
 use super::Atom;
-use super::groups::{GroupKind, Residue};
+use super::groups::{GroupKind, Residue, ResidueKey, residue_key};
 use super::report::show_chain;
 use super::residues::side_chain;
 
@@ -11,7 +11,7 @@ use super::residues::side_chain;
 pub(super) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
     let mut warnings = trace_only(atoms, residues);
     warnings.extend(missing_side_chains(atoms, residues));
-    warnings.extend(duplicates(atoms, residues));
+    warnings.extend(duplicates(atoms));
     warnings.extend(in_one_place(atoms));
     warnings
 }
@@ -116,11 +116,13 @@ fn in_one_place(atoms: &[Atom]) -> Option<String> {
 }
 
 /// Atoms that are there twice: same residue, same name, no alternate location.
-fn duplicates(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<String> {
-    let repeated: usize = residues
+fn duplicates(atoms: &[Atom]) -> Option<String> {
+    // By key: where chains were merged under one name, residues of one key are several.
+    let distinct: HashSet<(ResidueKey<'_>, &str)> = atoms
         .iter()
-        .map(|residue| residue.atoms.len() - names(atoms, residue).len())
-        .sum();
+        .map(|atom| (residue_key(atom), atom.name.as_str()))
+        .collect();
+    let repeated = atoms.len() - distinct.len();
     (repeated > 0).then(|| {
         let atoms = if repeated == 1 { "atom repeats" } else { "atoms repeat" };
         format!(

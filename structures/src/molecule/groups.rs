@@ -1,10 +1,12 @@
 //! Residues as wholes: which atoms belong together, and what kind of group they make.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use serde::Serialize;
 
 use super::Atom;
+use super::plain_names::{links_nucleotides, plain_atom_name};
 use super::residues::{is_amino_acid, is_nucleotide};
 
 /// What a residue is, as far as it can be told from its name and atoms.
@@ -79,15 +81,31 @@ pub(super) struct Residue<'a> {
 }
 
 /// The residues of a list of atoms, in order of first appearance.
+///
+/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name comes again, chains were
+/// merged under one name whose numbers begin anew: that is another residue. A name that comes again among atoms that stand together is an
+/// atom given twice, and stays.
 pub(super) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut place: HashMap<ResidueKey<'_>, usize> = HashMap::new();
     let mut grouped: Vec<(ResidueKey<'_>, Vec<usize>)> = Vec::new();
-    for (index, atom) in atoms.iter().enumerate() {
-        let key = residue_key(atom);
-        let at = *place.entry(key).or_insert(grouped.len());
-        match grouped.get_mut(at) {
-            Some((_, members)) => members.push(index),
-            None => grouped.push((key, vec![index])),
+    let mut first = 0;
+    for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
+        let members = first..first + run.len();
+        first = members.end;
+        let Some(key) = run.first().map(residue_key) else {
+            continue;
+        };
+        let repeats = |there: &[usize]| {
+            let mut there = there.iter().filter_map(|&index| atoms.get(index));
+            there.any(|one| run.iter().any(|other| one.name == other.name))
+        };
+        let before = place.get(&key).and_then(|&at| grouped.get_mut(at));
+        match before {
+            Some((_, there)) if !repeats(there) => there.extend(members),
+            _ => {
+                place.insert(key, grouped.len());
+                grouped.push((key, members.collect()));
+            }
         }
     }
     grouped
@@ -140,26 +158,30 @@ pub(super) fn kind<'a>(
     if is_amino_acid(residue_name) {
         return GroupKind::AminoAcid;
     }
+    let atoms: Vec<(&str, &str)> = atoms.collect();
     if is_nucleotide(residue_name) {
-        return GroupKind::Nucleotide;
+        // Of a trace the sugar's carbon is all there is.
+        let is_trace = matches!(atoms.as_slice(), [(name, _)] if name.ends_with(['\'', '*']));
+        if is_trace || atoms.iter().any(|(name, _)| links_nucleotides(name)) {
+            return GroupKind::Nucleotide;
+        }
     }
     if GLYCANS.contains(&residue_name) {
         return GroupKind::Glycan;
     }
-    let atoms: Vec<(&str, &str)> = atoms.collect();
     if let [(_, element)] = atoms.as_slice()
         && !NON_METALS.contains(element)
     {
         return GroupKind::Metal;
     }
-    let names: HashSet<&str> = atoms.iter().map(|(name, _)| *name).collect();
-    if ["N", "CA", "C"].iter().all(|name| names.contains(name)) {
-        GroupKind::ModifiedResidue
-    } else if ["C1'", "C3'", "O3'"]
+    let names: HashSet<Cow<'_, str>> = atoms
         .iter()
-        .all(|name| names.contains(name))
-        && names.contains("P")
-    {
+        .map(|(name, _)| plain_atom_name(name))
+        .collect();
+    let has_all = |wanted: &[&str]| wanted.iter().all(|name| names.contains(*name));
+    if has_all(&["N", "CA", "C"]) {
+        GroupKind::ModifiedResidue
+    } else if has_all(&["P", "C1'", "C3'", "O3'"]) {
         // Modified nucleotides; free ones (ATP) have numbered phosphorus atoms.
         GroupKind::Nucleotide
     } else {
@@ -186,9 +208,60 @@ mod tests {
         assert_eq!(of("XE", &[("XE", "Xe")]), GroupKind::Cofactor);
         assert_eq!(of("HEM", &[("FE", "Fe"), ("NA", "N")]), GroupKind::Cofactor);
         assert_eq!(of("DG", &[("P", "P")]), GroupKind::Nucleotide);
+        assert_eq!(of("A", &[("C4'", "C")]), GroupKind::Nucleotide);
         let psu = [("P", "P"), ("C1'", "C"), ("C3'", "C"), ("O3'", "O")];
         assert_eq!(of("PSU", &psu), GroupKind::Nucleotide);
+        let old = [("P", "P"), ("C1*", "C"), ("C3*", "C"), ("O3*", "O")];
+        assert_eq!(of("PSU", &old), GroupKind::Nucleotide);
         let atp = [("PG", "P"), ("C1'", "C"), ("C3'", "C"), ("O3'", "O")];
         assert_eq!(of("ATP", &atp), GroupKind::Cofactor);
+    }
+
+    /// Found by a review: these passed for uridine, inosine and thymidine.
+    #[test]
+    fn names_like_nucleotides_are_none_without_their_atoms() {
+        assert_eq!(of("RU", &[("RU", "Ru")]), GroupKind::Metal);
+        let iodide = [("IN", "In"), ("I1", "I"), ("I2", "I"), ("I3", "I")];
+        assert_eq!(of("IN", &iodide), GroupKind::Cofactor);
+        let hormone = [("C1'", "C"), ("C4'", "C"), ("O4'", "O"), ("I3", "I")];
+        assert_eq!(of("T3", &hormone), GroupKind::Cofactor);
+    }
+
+    #[test]
+    fn residues_part_where_a_name_comes_again_in_another_place() {
+        let atom = |residue: &str, number: i64, name: &str| Atom {
+            name: name.to_owned(),
+            residue_name: residue.to_owned(),
+            chain: "A".to_owned(),
+            residue_number: number,
+            insertion_code: None,
+            alternate_location: None,
+            element: "C".to_owned(),
+            position: [0.0; 3],
+            occupancy: 1.0,
+            b_factor: 0.0,
+            hetero: false,
+            radius: 1.7,
+            line: 1,
+        };
+        let chain = [
+            atom("ALA", 1, "N"),
+            atom("ALA", 1, "CA"),
+            atom("GLY", 2, "N"),
+            // Hydrogens at the end of their chain belong to what stands before.
+            atom("ALA", 1, "HA"),
+            atom("GLY", 2, "HA"),
+        ];
+        let members = |atoms: &[Atom]| -> Vec<Vec<usize>> {
+            residues(atoms).into_iter().map(|one| one.atoms).collect()
+        };
+        let merged = [&chain[..], &chain[..]].concat();
+        assert_eq!(
+            members(&merged),
+            [vec![0, 1, 3], vec![2, 4], vec![5, 6, 8], vec![7, 9]]
+        );
+        // An atom given twice.
+        let twice = [chain[0].clone(), chain[0].clone(), chain[1].clone()];
+        assert_eq!(members(&twice), [vec![0, 1, 2]]);
     }
 }

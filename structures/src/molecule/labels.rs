@@ -211,6 +211,20 @@ mod tests {
         assert_eq!(gap.report.net_charge, 0.0);
     }
 
+    /// Found by a review: merged chains whose numbers begin again had their residues fused, and with them the ends.
+    #[test]
+    fn merged_chains_that_begin_again_at_one_keep_their_ends() {
+        let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
+        let second = atoms.clone().into_iter().map(|mut atom| {
+            atom.position[1] += 10.0;
+            atom
+        });
+        atoms.extend(second);
+        let labels = labels(atoms);
+        assert_eq!((labels.report.termini, labels.report.gaps), ([2, 2], 0));
+        assert_eq!(labels.charges[..8], labels.charges[8..]);
+    }
+
     #[test]
     fn an_acetyl_cap_leaves_the_amide_neutral() {
         let mut atoms = chain(&[("ALA", 1)]);

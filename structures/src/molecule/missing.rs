@@ -7,7 +7,7 @@
 use serde::{Serialize, Serializer};
 
 use super::cells::Cells;
-use super::groups::{GroupKind, Residue, residue_runs};
+use super::groups::{GroupKind, Residue, residues};
 use super::termini::BOND;
 use super::{Molecule, squared_distance};
 
@@ -76,7 +76,7 @@ enum Between {
 impl Molecule {
     /// Residues that the chains must have and the file does not show, as far as atoms and residue numbers tell.
     pub fn missing_residues(&self) -> MissingResidues {
-        let groups = residue_runs(&self.atoms);
+        let groups = residues(&self.atoms);
         let caps = self.caps(&groups);
         let body = Body::new(self);
         let mut found = MissingResidues::default();

@@ -17,6 +17,7 @@
 //!
 //! Few distinct radii matter: each is a class of the lifted axis and costs time.
 
+use super::groups::GroupKind;
 use super::residues::{AtomType, amino_acid_type, backbone_type, nucleotide_type};
 
 impl AtomType {
@@ -124,18 +125,16 @@ const OTHER: f64 = 1.7;
 
 /// United-atom radius of a heavy atom, in Å.
 ///
-/// `is_amino_acid_like` says whether the residue has an amino acid's backbone (N, CA and C), as modified residues do.
-pub(super) fn radius(
-    residue_name: &str,
-    atom_name: &str,
-    element: &str,
-    is_amino_acid_like: bool,
-) -> f64 {
+/// `kind` is the residue's: those named like nucleotides are not all of them such, and modified residues have an amino acid's backbone.
+pub(super) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: GroupKind) -> f64 {
     amino_acid_type(residue_name, atom_name)
-        .or_else(|| nucleotide_type(residue_name, atom_name))
-        .or_else(|| backbone_type(atom_name).filter(|_| is_amino_acid_like))
+        .or_else(|| match kind {
+            GroupKind::Nucleotide => nucleotide_type(residue_name, atom_name),
+            GroupKind::AminoAcid | GroupKind::ModifiedResidue => backbone_type(atom_name),
+            _ => None,
+        })
         // A name in the tables is not enough where the element says otherwise.
-        .filter(|kind| element_of(*kind) == element)
+        .filter(|atom_type| element_of(*atom_type) == element)
         .or_else(|| class_of_element(element))
         .map_or_else(|| of_element(element), AtomType::radius)
 }
@@ -199,7 +198,7 @@ mod tests {
         ];
         for (residue, atom, element, expected) in examples {
             assert_eq!(
-                radius(residue, atom, element, true),
+                radius(residue, atom, element, GroupKind::AminoAcid),
                 expected,
                 "{residue} {atom}"
             );
@@ -208,13 +207,17 @@ mod tests {
 
     #[test]
     fn modified_residues_keep_the_backbone_and_ligands_go_by_element() {
-        assert_eq!(radius("SEP", "CA", "C", true), 1.88);
-        assert_eq!(radius("SEP", "P", "P", true), 1.80);
+        let modified = GroupKind::ModifiedResidue;
+        assert_eq!(radius("SEP", "CA", "C", modified), 1.88);
+        assert_eq!(radius("SEP", "P", "P", modified), 1.80);
         // Calcium named CA in a residue that has no backbone.
-        assert_eq!(radius("CA", "CA", "Ca", false), 1.7);
-        assert_eq!(radius("HEM", "FE", "Fe", false), 1.5);
-        assert_eq!(radius("HEM", "CHA", "C", false), 1.76);
-        assert_eq!(radius("U1", "U", "U", false), 1.7);
+        assert_eq!(radius("CA", "CA", "Ca", GroupKind::Metal), 1.7);
+        assert_eq!(radius("HEM", "FE", "Fe", GroupKind::Cofactor), 1.5);
+        assert_eq!(radius("HEM", "CHA", "C", GroupKind::Cofactor), 1.76);
+        assert_eq!(radius("U1", "U", "U", GroupKind::Metal), 1.7);
+        // A thyroid hormone, whose name is a nucleotide's.
+        assert_eq!(radius("T3", "C5", "C", GroupKind::Nucleotide), 1.61);
+        assert_eq!(radius("T3", "C5", "C", GroupKind::Cofactor), 1.76);
     }
 
     #[test]

@@ -137,16 +137,12 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
     let all_atom = atoms.iter().any(Atom::is_hydrogen);
     let mut all_radii = vec![0.0; atoms.len()];
     for group in &groups {
-        let has_backbone = matches!(
-            group.kind,
-            GroupKind::AminoAcid | GroupKind::ModifiedResidue
-        );
         for &index in &group.atoms {
             if let (Some(atom), Some(radius)) = (atoms.get(index), all_radii.get_mut(index)) {
                 *radius = if all_atom {
                     radii::all_atom_radius(&atom.element)
                 } else {
-                    radii::radius(&atom.residue_name, &atom.name, &atom.element, has_backbone)
+                    radii::radius(&atom.residue_name, &atom.name, &atom.element, group.kind)
                 };
             }
         }

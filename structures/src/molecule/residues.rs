@@ -3,6 +3,8 @@
 //! Names are those of the wwPDB Chemical Component Dictionary, and the protonation variants of AMBER and CHARMM, which
 //! stand for the same heavy atoms.
 
+use super::plain_names::plain_atom_name;
+
 /// Atom types of Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: element, number of bonds (4:
 /// tetrahedral, 3: trigonal carbon), number of hydrogens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,7 +184,7 @@ pub(super) fn is_amino_acid(residue_name: &str) -> bool {
 }
 
 /// Bases of the nucleotides, as one letter, from the names in use: `DA`, `A`, `ADE`, `RA5`, ...
-fn base(residue_name: &str) -> Option<char> {
+pub(super) fn base(residue_name: &str) -> Option<&str> {
     let letter = match residue_name {
         "ADE" => "A",
         "CYT" => "C",
@@ -194,14 +196,10 @@ fn base(residue_name: &str) -> Option<char> {
             other.strip_prefix(['D', 'R']).unwrap_or(other)
         }
     };
-    let mut letters = letter.chars();
-    match (letters.next(), letters.next()) {
-        (Some(base @ ('A' | 'C' | 'G' | 'T' | 'U' | 'I')), None) => Some(base),
-        _ => None,
-    }
+    matches!(letter, "A" | "C" | "G" | "T" | "U" | "I").then_some(letter)
 }
 
-/// Whether this is one of the standard nucleotides.
+/// Whether this is the name of one of the standard nucleotides; other molecules have such names too.
 pub(super) fn is_nucleotide(residue_name: &str) -> bool {
     base(residue_name).is_some()
 }
@@ -264,21 +262,20 @@ pub(super) fn amino_acid_type(residue_name: &str, atom_name: &str) -> Option<Ato
 /// J. Mol. Biol. 346 (2005) 477-492 (NucProt).
 pub(super) fn nucleotide_type(residue_name: &str, atom_name: &str) -> Option<AtomType> {
     let base = base(residue_name)?;
-    // `*` for the prime of the sugar, and O1P for OP1, before the remediation of 2007.
-    let name = atom_name.replace('*', "'");
+    let name = plain_atom_name(atom_name);
     if name.starts_with('P') {
         return Some(P);
     }
-    if matches!(name.as_str(), "OP1" | "OP2" | "O1P" | "O2P") {
+    if matches!(name.as_ref(), "OP1" | "OP2") {
         return Some(O1H0);
     }
-    if name.ends_with('\'') || matches!(name.as_str(), "OP3" | "O3P") {
+    if name.ends_with('\'') || name == "OP3" {
         return Some(if name.starts_with('C') { C4 } else { O2H1 });
     }
-    match (base, name.as_str()) {
+    match (base, name.as_ref()) {
         (_, "C7" | "C5M") => Some(C4),
-        ('A' | 'I', "C2") | ('A' | 'G' | 'I', "C8") => Some(C3H1),
-        ('C' | 'U', "C5") | ('C' | 'U' | 'T', "C6") => Some(C3H1),
+        ("A" | "I", "C2") | ("A" | "G" | "I", "C8") => Some(C3H1),
+        ("C" | "U", "C5") | ("C" | "U" | "T", "C6") => Some(C3H1),
         (_, name) if name.starts_with('C') => Some(C3H0),
         (_, name) if name.starts_with('N') => Some(N),
         (_, name) if name.starts_with('O') => Some(O1H0),

@@ -8,6 +8,7 @@ use flate2::read::MultiGzDecoder;
 
 use super::Format;
 use super::error::ReadError;
+use super::sieve::pdb::is_atom;
 
 /// The first two bytes of every gzip stream (RFC 1952, section 2.3.1).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -83,7 +84,7 @@ pub(super) fn format_of(path: &Path, text: &str) -> Option<Format> {
 
 fn by_content(text: &str) -> Option<Format> {
     for (_, line) in lines(text) {
-        if line.starts_with("ATOM  ") || line.starts_with("HETATM") {
+        if is_atom(line) {
             return Some(Format::Pdb);
         }
         let starts = |word: &str| {
@@ -125,6 +126,7 @@ mod tests {
         assert_eq!(format("x.pdb", "data_1ABC\nloop_\n"), Some(Format::Mmcif));
         assert_eq!(format("x.cif", "REMARK\nATOM      1\n"), Some(Format::Pdb));
         assert_eq!(format("x", "HETATM    1\n"), Some(Format::Pdb));
+        assert_eq!(format("x", "ATOM 100000\n"), Some(Format::Pdb));
         assert_eq!(format("pdb1abc.ENT.gz", "HEADER\n"), Some(Format::Pdb));
         assert_eq!(format("x.mmcif", ""), Some(Format::Mmcif));
         assert_eq!(format("x.txt", "hello\n"), None);

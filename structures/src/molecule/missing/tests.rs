@@ -1,6 +1,7 @@
 //! What is found missing, and where balls stand for it.
 
 use super::*;
+use crate::molecule::groups::residue_runs;
 use crate::molecule::{Atom, Format, InputSpec, ReadOptions, read};
 
 fn trypsin() -> Molecule {

@@ -14,6 +14,9 @@ use crate::molecule::error::ReadError;
 /// Prefix of the tags of the atom table, in lower case; tags are case-insensitive.
 const CATEGORY: &str = "_atom_site.";
 
+/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues small.
+const SHOWN_NUMBERS: i64 = 1000;
+
 /// The header of the table as pdbtbx expects it.
 const HEADER: &str = "data_sieved\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.label_atom_id\n\
 _atom_site.label_alt_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.label_seq_id\n\
@@ -250,10 +253,9 @@ impl<'a> Row<'_, 'a> {
         self.quote(&mut sieved.text, "label_alt_id", &shown_alternate)?;
         self.quote(&mut sieved.text, "label_comp_id", residue_name)?;
         self.quote(&mut sieved.text, "auth_asym_id", chain)?;
-        // pdbtbx's reader overflows on large numbers; those go by what is carried alone.
-        let shown_number = Some(residue_number)
-            .filter(|number| number.unsigned_abs() < 1_000_000_000)
-            .unwrap_or(0);
+        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What it takes for one residue
+        // is of no matter: the number travels past it.
+        let shown_number = residue_number.rem_euclid(SHOWN_NUMBERS);
         let _ = write!(sieved.text, "{shown_number} ");
         match insertion {
             Some(code) => self.quote(&mut sieved.text, "pdbx_PDB_ins_code", &code.to_string())?,

@@ -53,8 +53,17 @@ pub(in crate::molecule) fn sieve(
 }
 
 /// Whether a record is an atom's.
-pub(super) fn is_atom(record: &str) -> bool {
-    record.starts_with("ATOM  ") || record.starts_with("HETATM")
+pub(in crate::molecule) fn is_atom(record: &str) -> bool {
+    record.starts_with("ATOM  ") || record.starts_with("HETATM") || has_wide_serial(record)
+}
+
+/// Whether an ATOM record's serial number has grown beyond 99,999 to the left, into columns 6 and 5, as some programs write it.
+fn has_wide_serial(record: &str) -> bool {
+    let columns = record.strip_prefix("ATOM").and_then(|rest| rest.get(..7));
+    columns.is_some_and(|columns| {
+        let serial = columns.trim_start_matches(' ');
+        serial.len() > 5 && serial.bytes().all(|byte| byte.is_ascii_digit())
+    })
 }
 
 /// Tells the models apart.
@@ -121,7 +130,7 @@ fn atom(
             length: record.len(),
         });
     }
-    // The serial number in columns 7-11 is not used, and may hold anything.
+    // The serial number in columns 7-11, perhaps from 5 on, is not used, and may hold anything.
     let columns = record.as_bytes().iter().take(66).skip(12);
     if let Some(odd) = columns.into_iter().find(|byte| !(32..127).contains(*byte)) {
         let text = format!("byte {odd:#04x}");
@@ -196,7 +205,11 @@ fn atom(
     let _ = writeln!(
         sieved.text,
         "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  ",
-        slice(0, 6),
+        if record.starts_with("HETATM") {
+            "HETATM"
+        } else {
+            "ATOM"
+        },
         alternate.unwrap_or(NO_ALTERNATE),
         residue_name,
         "",
