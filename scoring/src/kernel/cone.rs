@@ -60,11 +60,6 @@ impl Cone {
     pub fn value(&self, distance: f64, sigma: f64) -> f64 {
         self.bump.value(distance / sigma) * self.trim_value(sigma)
     }
-
-    /// d kappa / d d.
-    pub fn derivative(&self, distance: f64, sigma: f64) -> f64 {
-        self.bump.derivative(distance / sigma) / sigma * self.trim_value(sigma)
-    }
 }
 
 #[cfg(test)]
