@@ -264,7 +264,6 @@ impl DockOptions {
             },
             spacing: self.spacing,
             tolerance: self.tolerance,
-            rank: None,
         }
     }
 

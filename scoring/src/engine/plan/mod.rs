@@ -39,8 +39,6 @@ pub struct EngineOptions {
     pub spacing: Option<f64>,
     /// Error of the fast path that is aimed at, relative to the best score.
     pub tolerance: f64,
-    /// Rank of the lifted axis; `None`: as the tolerance needs.
-    pub rank: Option<usize>,
 }
 
 /// The function of two balls that a plan correlates.
