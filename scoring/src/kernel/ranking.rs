@@ -162,17 +162,15 @@ impl RankingKernel {
         })
     }
 
-    /// Largest value of the score kernel over d for one radius sum: what one touching pair can earn.
-    pub fn rim(&self, radius_sum: f64) -> f64 {
-        let table = self.distance_table(radius_sum);
+    /// Largest value of the score kernel over d, of a radius sum's [`Self::distance_table`]: what one touching pair can earn.
+    pub fn rim(&self, table: &Table<4>) -> f64 {
         (0..1000)
             .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
             .fold(0.0, f64::max)
     }
 
-    /// Distance in Å beyond which the score kernel of `radius_sum` stays below `threshold` in magnitude.
-    pub fn effective_reach(&self, radius_sum: f64, threshold: f64) -> f64 {
-        let table = self.distance_table(radius_sum);
+    /// Distance in Å beyond which the score kernel of such a table stays below `threshold` in magnitude.
+    pub fn effective_reach(&self, table: &Table<4>, threshold: f64) -> f64 {
         (0..1000)
             .rev()
             .map(|i| self.reach() * f64::from(i) / 1000.0)
