@@ -243,7 +243,7 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
 
 /// What no table can hold is refused by name. First, these ran until memory or patience ended: a pass length next to the
 /// resolution rings for 1e8 Å, and a table's size is that length over the resolution, its time the square; lambda = 1e200 had the
-/// score inf - inf. A pass length of half a per cent above took minutes.
+/// score inf - inf. A pass length of half a per cent above took minutes, and so did a skin of some hundred resolutions.
 #[test]
 fn kernels_that_nothing_can_hold_are_refused() {
     let good = kernel_options();
@@ -276,6 +276,10 @@ fn kernels_that_nothing_can_hold_are_refused() {
         },
         KernelOptions {
             offset: 1e6,
+            ..good
+        },
+        KernelOptions {
+            offset: 300.0,
             ..good
         },
         KernelOptions {
