@@ -43,7 +43,7 @@ pub enum KernelError {
          or a pass length farther from it, smaller radii or a smaller offset"
     )]
     TooLong {
-        /// Distance at which the kernel would end, in Å.
+        /// Distance at which the kernel would end, or radius sum at which its trim does if that is farther, in Å.
         reach: f64,
         /// The resolution asked for, in Å.
         resolution: f64,
@@ -57,6 +57,8 @@ pub(super) const LONGEST: f64 = 140.0;
 pub(super) const LONGEST_RING: f64 = 102.0;
 /// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal numbers.
 pub(super) const SMALLEST: f64 = 1e-6;
+/// What errors call `Trim::BehandishIlies::length`.
+pub(super) const TRIM_LENGTH: &str = "length of the trim";
 /// Largest |lambda|: its square times weights and volumes must stay within single precision.
 const LARGEST_LAMBDA: f64 = 1e6;
 
@@ -101,8 +103,11 @@ impl KernelOptions {
             self.pass_length,
             self.pass_length > self.resolution,
             "above the resolution",
-        )
-        .map(|()| bump)
+        )?;
+        if let Trim::BehandishIlies { length } = self.trim {
+            finite(TRIM_LENGTH, length, length > 0.0, "above 0")?;
+        }
+        Ok(bump)
     }
 }
 

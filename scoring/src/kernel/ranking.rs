@@ -7,8 +7,8 @@
 //!
 //! Both are the work of [`super::radial_filter`].
 
-use super::cone::Cone;
-use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST};
+use super::cone::{Cone, Trim};
+use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST, TRIM_LENGTH};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -50,20 +50,35 @@ impl RankingKernel {
                 bound: "at least 1e-6 of the resolution, which leaves nothing of smaller balls",
             });
         }
+        if let Trim::BehandishIlies { length } = options.trim
+            && 2.0 * length <= cone.high
+        {
+            return Err(KernelError::Length {
+                name: TRIM_LENGTH,
+                value: length,
+                bound: "above half of the largest sum of radii and skins, for it ends at twice its length",
+            });
+        }
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
         let [_, reach] = RadialFilter::window_ends(pass, stop, cone.high, reach_factor);
         let ring = 1.0 / (1.0 - options.resolution / options.pass_length);
-        if !(0.0..=LONGEST).contains(&(reach / options.resolution))
+        // The flat top ends near the reach, while B&I's trim may end anywhere.
+        let longest = match options.trim {
+            Trim::FlatTop => reach,
+            Trim::BehandishIlies { length } => reach.max(2.0 * length),
+        };
+        if !(0.0..=LONGEST).contains(&(longest / options.resolution))
             || !(0.0..=LONGEST_RING).contains(&ring)
         {
             return Err(KernelError::TooLong {
-                reach,
+                reach: longest,
                 resolution: options.resolution,
             });
         }
         let filter = RadialFilter::new(pass, stop, cone.high, reach_factor);
-        let q_max = stop * (cone.high + cone.taper());
+        let [_, last] = cone.ends();
+        let q_max = stop * last;
         let quadrature = RadialTransform::new(bump, q_max);
         let transform = Table::fit(q_max * 1.001, 0.125, |q| [quadrature.value(q)]);
         Ok(Self {
