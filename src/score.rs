@@ -1,5 +1,6 @@
 //! One pose scored: exactly, and from ever more modes, with the error and the time of each.
 
+use crate::search::outcome::error_scale;
 use crate::search::{Scene, SearchError};
 use knotdock_scoring::configuration::Configuration;
 use knotdock_scoring::engine::Folded;
@@ -263,14 +264,7 @@ fn scale(plan: &Arc<Plan>, folded: &Folded<f64>, ligand: &Knots, pose: &Pose) ->
     let engine = CpuEngine::new(Arc::clone(plan), folded, ligand, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);
-    let best = work.grid.iter().copied().fold(0.0, f64::max);
-    let largest = work.grid.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    // Transforms ring about zero by their tolerance where no pose scores (lambda = 0, or no skin).
-    if best > plan.options.tolerance * largest {
-        best
-    } else {
-        largest
-    }
+    error_scale(work.grid.iter().copied(), plan.options.tolerance)
 }
 
 /// d score / d rho and d slices / d rho by central differences of the exact sum: growing the ligand's radii by h moves every

@@ -35,13 +35,18 @@ impl HalfTurn {
     /// The rotation that turns by `rotation` first and by the half-turn then: exact, since it only permutes and negates the
     /// quaternion's parts.
     pub fn after(self, rotation: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-        let (w, i, j, k) = (rotation.w, rotation.i, rotation.j, rotation.k);
-        UnitQuaternion::new_unchecked(match self {
-            Self::None => Quaternion::new(w, i, j, k),
-            Self::X => Quaternion::new(-i, w, -k, j),
-            Self::Y => Quaternion::new(-j, k, w, -i),
-            Self::Z => Quaternion::new(-k, -j, i, w),
-        })
+        let [w, i, j, k] = self.after_parts([rotation.w, rotation.i, rotation.j, rotation.k]);
+        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
+    }
+
+    /// [`Self::after`] of a quaternion's parts (w, x, y, z).
+    pub fn after_parts(self, [w, x, y, z]: [f64; 4]) -> [f64; 4] {
+        match self {
+            Self::None => [w, x, y, z],
+            Self::X => [-x, w, -z, y],
+            Self::Y => [-y, z, w, -x],
+            Self::Z => [-z, -y, x, w],
+        }
     }
 }
 

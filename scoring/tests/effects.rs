@@ -31,7 +31,6 @@ fn options(tolerance: f64) -> EngineOptions {
         },
         spacing: None,
         tolerance,
-        rank: None,
     }
 }
 

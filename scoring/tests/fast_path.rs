@@ -5,8 +5,9 @@
 mod scene;
 
 use knotdock_scoring::engine::Folded;
-use knotdock_scoring::engine::{CpuEngine, Plan};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::kernel::Trim;
 use knotdock_scoring::lifted_axis::Fold;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_scoring::transform::Real;
@@ -31,7 +32,18 @@ fn worst_after<T: Real>(
     fold: Fold,
     half_turn: HalfTurn,
 ) -> f64 {
-    let plan = Arc::new(Plan::new(a, b, options(tolerance)).unwrap());
+    worst_of::<T>(a, b, options(tolerance), fold, half_turn)
+}
+
+/// The same of any options.
+fn worst_of<T: Real>(
+    a: &Knots,
+    b: &Knots,
+    options: EngineOptions,
+    fold: Fold,
+    half_turn: HalfTurn,
+) -> f64 {
+    let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(&plan.kernel, a, b).unwrap();
     let folded = Folded::<T>::new(&plan, a, b, fold);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
@@ -71,6 +83,41 @@ fn scores_meet_the_tolerance_asked() {
         println!("f32 {tolerance:e}: {error:.2e}");
         assert!(error <= tolerance, "f32 at {tolerance:e}: {error:e}");
     }
+}
+
+/// With B&I's trim the lifted series once had the flat top's period, and errors of 3e-4 to 1e-2 at any tolerance.
+#[test]
+fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
+    let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
+    for length in [4.5, 7.0] {
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let mut options = options(tolerance);
+            options.kernel.trim = Trim::BehandishIlies { length };
+            let error = worst_of::<f64>(&a, &b, options, Fold::Score, HalfTurn::None);
+            println!("{length} {tolerance:e}: {error:.2e}");
+            assert!(error <= tolerance, "{length} at {tolerance:e}: {error:e}");
+        }
+    }
+}
+
+/// Searches for a spacing that fits into memory ask for grids alone.
+#[test]
+fn a_plan_with_another_spacing_is_the_plan_made_for_it() {
+    let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
+    let first = Plan::new(&a, &b, options(1e-2)).unwrap();
+    let spaced = EngineOptions {
+        spacing: Some(2.7),
+        ..options(1e-2)
+    };
+    let made = Plan::new(&a, &b, spaced).unwrap();
+    let changed = first.with_spacing(2.7).unwrap();
+    assert_eq!(changed.options, made.options);
+    assert_eq!(changed.spacing, made.spacing);
+    assert_eq!(changed.size(), made.size());
+    assert_eq!(changed.fine, made.fine);
+    assert_eq!(changed.modes.columns, made.modes.columns);
+    assert_eq!(changed.axis.modes(), made.axis.modes());
+    assert!(first.with_spacing(f64::NAN).is_err() && first.with_spacing(1e-4).is_err());
 }
 
 #[test]

@@ -43,7 +43,6 @@ fn engine_options(spacing: Option<f64>, tolerance: f64) -> EngineOptions {
         kernel: kernel_options(2.0),
         spacing,
         tolerance,
-        rank: None,
     }
 }
 

@@ -268,7 +268,6 @@ impl DockOptions {
             },
             spacing: self.spacing,
             tolerance: self.tolerance,
-            rank: None,
         }
     }
 

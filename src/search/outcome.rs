@@ -66,6 +66,21 @@ pub struct MeasuredError {
 /// Scores below this are none: a pair of balls that touch earns about one.
 const NOTHING: f64 = 1e-6;
 
+/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by more than `ringing` of that. Transforms ring about
+/// zero by their tolerance where no pose scores (lambda = 0, or no skin); exact sums do not.
+pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -> f64 {
+    let (best, largest) = scores
+        .into_iter()
+        .fold((0.0f64, 0.0f64), |(best, largest), score| {
+            (best.max(score), largest.max(score.abs()))
+        });
+    if best > ringing * largest {
+        best
+    } else {
+        largest
+    }
+}
+
 impl MeasuredError {
     /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
     pub(super) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
@@ -159,4 +174,18 @@ pub struct DockOutcome {
     pub timing: Vec<StageTime>,
     /// The graphics processor that correlated, where one did.
     pub adapter: Option<Adapter>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
+    #[test]
+    fn errors_are_shares_of_the_best_score_and_of_magnitudes_only_where_nothing_scores() {
+        assert_eq!(error_scale([100.0, 30.0, -20_000.0], 0.0), 100.0);
+        assert_eq!(error_scale([-30.0, -20_000.0], 0.0), 20_000.0);
+        assert_eq!(error_scale([-3.0, 1e-9, -20_000.0], 1e-2), 20_000.0);
+        assert_eq!(error_scale([], 1e-2), 0.0);
+    }
 }

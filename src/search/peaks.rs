@@ -9,7 +9,7 @@ pub struct Peak {
     pub score: f64,
     /// Index in the rotation set.
     pub rotation: u32,
-    /// Voxel, row-major.
+    /// Voxel, row-major: plans refuse grids of more points than 32 bits number.
     pub voxel: u32,
 }
 

@@ -172,15 +172,15 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     if let Some(allowed) = options.memory {
         let room = allowed.saturating_sub(fixed) / per_rotation.max(1);
         if room == 0 {
-            let fits = (0..60).find_map(|step| {
+            let fits = least_coarse(|step| {
                 let coarser = coarser(options, step, angstrom);
                 let plan = planned(&coarser).ok()?;
-                let coarser = DockOptions {
-                    spacing: Some(rounded_up(plan.spacing, angstrom)),
+                let spacing = rounded_up(plan.spacing, angstrom);
+                let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
+                (fixed + per_rotation <= allowed).then_some(DockOptions {
+                    spacing: Some(spacing),
                     ..coarser
-                };
-                let (fixed, per_rotation) = needs(&planned(&coarser).ok()?);
-                (fixed + per_rotation <= allowed).then_some(coarser)
+                })
             });
             return Err(SearchError::Memory {
                 needed: fixed + per_rotation,
@@ -274,6 +274,21 @@ fn fine_bytes(options: &DockOptions) -> u64 {
     let finer = options.fine_rotations.unwrap_or(0);
     let searched = (options.fine_share * finer as f64).ceil() as u64;
     64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
+}
+
+/// What fits at the least of 60 ever coarser steps, found by halving. From the coarse end, where a plan takes least: its time falls with the square of the resolution,
+/// so that all plans together take three times what the finest does.
+fn least_coarse<T>(at: impl Fn(i32) -> Option<T>) -> Option<T> {
+    let (mut least, mut last) = (0, 59);
+    let mut fits = at(last)?;
+    while least < last {
+        let middle = (least + last) / 2;
+        match at(middle) {
+            Some(coarse) => (fits, last) = (coarse, middle),
+            None => least = middle + 1,
+        }
+    }
+    Some(fits)
 }
 
 /// The options with the grid that their resolution calls for and, from the second step on, a resolution coarser by a tenth each: a grid
@@ -437,5 +452,26 @@ impl std::fmt::Display for DockPlan {
             )?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    /// Each step was planned twice, from the finest on: refusing --resolution 0.1 took half a minute.
+    #[test]
+    fn the_least_coarse_step_that_fits_is_found_with_few_plans() {
+        for first in [0, 1, 17, 59] {
+            let plans = Cell::new(0);
+            let found = least_coarse(|step| {
+                plans.set(plans.get() + 1);
+                (step >= first).then_some(step)
+            });
+            assert_eq!(found, Some(first));
+            assert!(plans.get() <= 7, "{}", plans.get());
+        }
+        assert_eq!(least_coarse(|_| None::<i32>), None);
     }
 }

@@ -92,16 +92,6 @@ fn domain(count: usize) -> Vec<Point> {
     }
 }
 
-/// Image of a point under a half-turn, as [`HalfTurn::after`] gives it.
-fn image(turn: HalfTurn, [w, x, y, z]: Point) -> Point {
-    match turn {
-        HalfTurn::None => [w, x, y, z],
-        HalfTurn::X => [-x, w, -z, y],
-        HalfTurn::Y => [-y, z, w, -x],
-        HalfTurn::Z => [-z, -y, x, w],
-    }
-}
-
 /// Pushes points apart on the sphere of quaternions, their images and antipodes included: 40 steps, which shrink to nothing.
 fn relax(base: &mut [Point]) {
     const STEPS: usize = 40;
@@ -116,7 +106,7 @@ fn relax(base: &mut [Point]) {
     for step in 0..STEPS {
         let mut all: Vec<(usize, Point)> = base
             .iter()
-            .flat_map(|&point| HalfTurn::ALL.map(|turn| image(turn, point)))
+            .flat_map(|&point| HalfTurn::ALL.map(|turn| turn.after_parts(point)))
             .flat_map(|point| [point, point.map(|part| -part)])
             .map(|point| (place(&point), point))
             .collect();

@@ -8,7 +8,7 @@ use super::correlator::Correlator;
 use super::costs::costs;
 use super::error::SearchError;
 use super::options::Precision;
-use super::outcome::{DockOutcome, MeasuredError, StageTime};
+use super::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
 use super::peaks::Peak;
 use super::plan::DockPlan;
 use super::ranking::{Judge, report};
@@ -193,8 +193,8 @@ fn dock_in<T: Real>(
         2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
-    let scores = ranking.poses.iter().map(|row| row.score.abs());
-    let best = scores.reduce(f64::max).unwrap_or(1.0);
+    let scores = ranking.poses.iter().map(|row| row.score);
+    let best = error_scale(scores, 0.0);
     let error = MeasuredError::over(&peaks, &at_grid, best);
     clock.lap("score");
 

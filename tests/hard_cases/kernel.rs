@@ -7,7 +7,7 @@
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_options, some_rotation};
 use knotdock_scoring::kernel::KernelError;
-use knotdock_scoring::kernel::{Bump, KernelOptions, RankingKernel};
+use knotdock_scoring::kernel::{Bump, KernelOptions, RankingKernel, Trim};
 
 /// alpha, x, psi_alpha(x); 0 where psi is below all doubles.
 const BUMP: [(f64, f64, f64); 42] = [
@@ -243,7 +243,7 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
 
 /// What no table can hold is refused by name. First, these ran until memory or patience ended: a pass length next to the
 /// resolution rings for 1e8 Å, and a table's size is that length over the resolution, its time the square; lambda = 1e200 had the
-/// score inf - inf. A pass length of half a per cent above took minutes.
+/// score inf - inf. A pass length of half a per cent above took minutes, and so did a skin of some hundred resolutions.
 #[test]
 fn kernels_that_nothing_can_hold_are_refused() {
     let good = kernel_options();
@@ -279,7 +279,15 @@ fn kernels_that_nothing_can_hold_are_refused() {
             ..good
         },
         KernelOptions {
+            offset: 300.0,
+            ..good
+        },
+        KernelOptions {
             offset: f64::MAX,
+            ..good
+        },
+        KernelOptions {
+            trim: Trim::BehandishIlies { length: 300.0 },
             ..good
         },
     ] {
@@ -295,6 +303,16 @@ fn kernels_that_nothing_can_hold_are_refused() {
         ..good
     };
     assert!(RankingKernel::new(narrow, 3.0, 3.8, 1.0).is_ok());
+    // B&I's trim must reach beyond the widest pair with both skins, 7.8 here.
+    for length in [3.9, 0.0, -6.0, f64::NAN, f64::INFINITY] {
+        let trim = Trim::BehandishIlies { length };
+        let refused = RankingKernel::new(KernelOptions { trim, ..good }, 3.0, 3.8, 1.0);
+        assert!(
+            matches!(refused, Err(KernelError::Length { name, .. }) if name == "length of the trim"),
+            "{length}: {:?}",
+            refused.err()
+        );
+    }
     for (sum_low, sum_high) in [(3.0, 1e6), (3.0, f64::INFINITY), (f64::NAN, f64::NAN)] {
         assert!(RankingKernel::new(good, sum_low, sum_high, 1.0).is_err());
     }

@@ -82,8 +82,8 @@ fn size(kernel: &RankingKernel, a: &Knots, b: &Knots) -> f64 {
 /// in overlap, where the kernel rewards nothing: with lambda = 0 an error of 3.5e-4 of the overlap was met at a tolerance of 1e-2).
 fn best(plan: &Plan, a: &Knots, b: &Knots) -> f64 {
     let widest = crate::scene::ends(a).1 + crate::scene::ends(b).1;
-    let overlap = plan.kernel.distance_table(widest).value(0.0)[3].abs();
-    plan.kernel.rim(widest).max(0.1 * overlap) * pairs(a, b)
+    let table = plan.kernel.distance_table(widest);
+    plan.kernel.rim(&table).max(0.1 * table.value(0.0)[3].abs()) * pairs(a, b)
 }
 
 fn pairs(a: &Knots, b: &Knots) -> f64 {

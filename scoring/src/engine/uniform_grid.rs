@@ -31,7 +31,7 @@ use crate::lifted_axis::Fold;
 use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
 use crate::transform::{Real, fast_size};
 use knotdock_structures::Knots;
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -221,11 +221,7 @@ impl<T: Real> UniformGrid<T> {
     pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut UniformGridWorkspace<T>) {
         let matrix = rotation.to_rotation_matrix();
         for (index, (receptor, body)) in self.products.iter().enumerate() {
-            let turned = self.ligand.iter().map(|ball| Ball {
-                position: matrix * ball.position,
-                ..*ball
-            });
-            rasterise(&self.plan, *body, turned, &mut work.grid);
+            self.rasterise_turned(&matrix, *body, &mut work.grid);
             self.fft
                 .forward(&mut work.grid, &mut work.spectrum, &mut work.fft);
             let last = index + 1 == self.products.len();
@@ -254,13 +250,18 @@ impl<T: Real> UniformGrid<T> {
         let start = std::time::Instant::now();
         let matrix = rotation.to_rotation_matrix();
         for (_, body) in &self.products {
-            let turned = self.ligand.iter().map(|ball| Ball {
-                position: matrix * ball.position,
-                ..*ball
-            });
-            rasterise(&self.plan, *body, turned, &mut work.grid);
+            self.rasterise_turned(&matrix, *body, &mut work.grid);
         }
         start.elapsed().as_secs_f64()
+    }
+
+    /// Samples a body's function of the turned ligand.
+    fn rasterise_turned(&self, rotation: &Rotation3<f64>, body: Body, grid: &mut [T]) {
+        let turned = self.ligand.iter().map(|ball| Ball {
+            position: rotation * ball.position,
+            ..*ball
+        });
+        rasterise(&self.plan, body, turned, grid);
     }
 }
 

@@ -63,6 +63,27 @@ impl Places {
     }
 }
 
+/// Functions of a distance on so many panels, and the panel of zeros after them.
+fn lines_of<const COUNT: usize>(
+    panels: f64,
+    panels_per_unit: f64,
+    values: impl Fn(f64) -> [f64; COUNT],
+) -> impl Iterator<Item = [Line; COUNT]> {
+    let fit = PanelFit::new();
+    let half = 0.5 / panels_per_unit;
+    let lines = (0..panels as usize).map(move |panel| {
+        let middle = panel as f64 / panels_per_unit;
+        let coefficients = fit.coefficients(middle, half, |d| values(d.abs()));
+        // From the fit's variable in [-1, 1] to u: exact, by powers of two.
+        std::array::from_fn(|index| {
+            let scaled =
+                |power: usize| coefficients[power][index] * f64::from(1u32 << power as u32);
+            Line(std::array::from_fn(scaled))
+        })
+    });
+    lines.chain(std::iter::once([Line([0.0; TERMS]); COUNT]))
+}
+
 impl PairTables {
     pub fn new(kernel: &RankingKernel, receptor_radii: &[f64], ligand_radii: &[f64]) -> Self {
         let sums: Vec<Vec<f64>> = ligand_radii
@@ -76,22 +97,9 @@ impl PairTables {
         let panels_per_unit = (panels - 0.5) / kernel.reach();
         let lines = panels as usize + 1;
         let weights = kernel.options().slice_weights();
-        let fit = PanelFit::new();
-        let zero = Line([0.0; TERMS]);
         let mut slices = Vec::with_capacity(lines * distinct.len());
         for &sum in &distinct {
-            let slices_at = kernel.slices_of(sum);
-            for panel in 0..lines - 1 {
-                let (middle, half) = (panel as f64 / panels_per_unit, 0.5 / panels_per_unit);
-                let coefficients = fit.coefficients(middle, half, |d| slices_at(d.abs()));
-                // From the fit's variable in [-1, 1] to u: exact, by powers of two.
-                slices.push([0, 1, 2].map(|slice| {
-                    let scaled =
-                        |power: usize| coefficients[power][slice] * f64::from(1u32 << power as u32);
-                    Line(std::array::from_fn(scaled))
-                }));
-            }
-            slices.push([zero; 3]);
+            slices.extend(lines_of(panels, panels_per_unit, kernel.slices_of(sum)));
         }
         let weighted = |line: &[Line; 3]| {
             let term = |power: usize| (0..3).map(|i| weights[i] * line[i].0[power]).sum();
@@ -113,22 +121,8 @@ impl PairTables {
 
     /// A radial function over the same panels, the one of zeros included.
     pub fn lines_of(&self, value: impl Fn(f64) -> f64) -> Vec<Line> {
-        let fit = PanelFit::new();
-        let panels = self.last as usize;
-        let mut lines: Vec<Line> = (0..panels)
-            .map(|panel| {
-                let (middle, half) = (
-                    panel as f64 / self.panels_per_unit,
-                    0.5 / self.panels_per_unit,
-                );
-                let coefficients = fit.coefficients(middle, half, |d| [value(d.abs())]);
-                let scaled =
-                    |power: usize| coefficients[power][0] * f64::from(1u32 << power as u32);
-                Line(std::array::from_fn(scaled))
-            })
-            .collect();
-        lines.push(Line([0.0; TERMS]));
-        lines
+        let lines = lines_of(self.last, self.panels_per_unit, |d| [value(d)]);
+        lines.map(|[line]| line).collect()
     }
 
     /// First lines of the tables that a ligand class needs, by receptor class.

@@ -52,22 +52,6 @@ impl Bump {
         let log_u = self.alpha * x.ln();
         (log_u.exp() / log_u.exp_m1()).exp()
     }
-
-    /// d psi_alpha / dx at x >= 0 (for alpha < 1 the slope at 0 is minus infinity; there 0 is returned, the mean of
-    /// both sides).
-    pub fn derivative(&self, x: f64) -> f64 {
-        if x >= 1.0 || x == 0.0 || self.alpha.is_infinite() {
-            return 0.0;
-        }
-        let log_u = self.alpha * x.ln();
-        let one_minus_u = -log_u.exp_m1();
-        let u = log_u.exp();
-        let value = (-u / one_minus_u).exp();
-        if value == 0.0 {
-            return 0.0;
-        }
-        -value * self.alpha * u / (x * one_minus_u * one_minus_u)
-    }
 }
 
 #[cfg(test)]
@@ -107,7 +91,6 @@ mod tests {
                     (0.0..=last).contains(&value),
                     "alpha {alpha}, x {x}: {value}"
                 );
-                assert!(bump.derivative(x).is_finite());
                 last = value;
             }
         }
@@ -115,17 +98,5 @@ mod tests {
         assert!(Bump::new(1e-6).unwrap().value(0.5) < 1e-300);
         // alpha -> infinity: the indicator.
         assert!((Bump::new(1e6).unwrap().value(0.99) - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn derivative_matches_central_differences() {
-        for alpha in [1.0, 2.0, 3.5] {
-            let bump = Bump::new(alpha).unwrap();
-            for i in 1..99 {
-                let (x, h) = (i as f64 / 100.0, 1e-6);
-                let numeric = (bump.value(x + h) - bump.value(x - h)) / (2.0 * h);
-                assert!((numeric - bump.derivative(x)).abs() < 1e-7);
-            }
-        }
     }
 }

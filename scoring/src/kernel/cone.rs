@@ -14,9 +14,10 @@ pub enum Trim {
     /// 1 on the radii in use, C-infinity down to 0 outside: changes no pair (default).
     #[default]
     FlatTop,
-    /// B&I's product trim psi_alpha(1 - sigma / length): re-weights pairs by their radii, so lambda means another thing.
+    /// B&I's product trim psi_alpha(1 - sigma / length): re-weights pairs by their radii, so lambda means another thing. It is smooth, and its series short,
+    /// where alpha is even alone.
     BehandishIlies {
-        /// Radius sum at which the trim is 1, in Å; it falls to 0 at 0 and at twice this.
+        /// Radius sum at which the trim is 1, in Å; it falls to 0 at 0 and at twice this, which must lie beyond all radius sums in use.
         length: f64,
     },
 }
@@ -40,9 +41,20 @@ impl Cone {
         (0.6 * (self.high - self.low)).max(0.35 * self.high)
     }
 
-    /// Period P of the lifted axis in Å: the radius sums in use and two tapers.
+    /// Radius sums in Å between which the trim is not 0, all those in use among them: one period of the lifted axis.
+    pub fn ends(&self) -> [f64; 2] {
+        match self.trim {
+            Trim::FlatTop => [self.low - self.taper(), self.high + self.taper()],
+            Trim::BehandishIlies { length } => [0.0, 2.0 * length],
+        }
+    }
+
+    /// Period P of the lifted axis in Å: from one of the trim's ends to the other, which of the flat top are the radius sums in use and two tapers.
     pub fn period(&self) -> f64 {
-        self.high - self.low + 2.0 * self.taper()
+        match self.trim {
+            Trim::FlatTop => self.high - self.low + 2.0 * self.taper(),
+            Trim::BehandishIlies { length } => 2.0 * length,
+        }
     }
 
     /// The trim w(sigma); sigma may be below 0, where the flat top's taper may end.
@@ -59,11 +71,6 @@ impl Cone {
     /// kappa(d, sigma) for sigma in [low, high], d >= 0 in Å.
     pub fn value(&self, distance: f64, sigma: f64) -> f64 {
         self.bump.value(distance / sigma) * self.trim_value(sigma)
-    }
-
-    /// d kappa / d d.
-    pub fn derivative(&self, distance: f64, sigma: f64) -> f64 {
-        self.bump.derivative(distance / sigma) / sigma * self.trim_value(sigma)
     }
 }
 
@@ -90,5 +97,6 @@ mod tests {
         };
         assert_eq!(paper.trim_value(6.0), 1.0);
         assert!(paper.trim_value(3.0) < 0.8);
+        assert_eq!(paper.ends().map(|end| paper.trim_value(end)), [0.0; 2]);
     }
 }

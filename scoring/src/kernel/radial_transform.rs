@@ -1,7 +1,7 @@
 //! The three-dimensional Fourier transform of the bump function, a radial function of q = |w| (cycles per unit length).
 //!
 //! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z). A ball of radius
-//! sigma has the transform sigma^3 psi^(q sigma), which this module also continues to sigma < 0 as the odd function it is.
+//! sigma has the transform sigma^3 psi^(q sigma), which continues to sigma < 0 as an odd function.
 
 use super::bump::Bump;
 use std::f64::consts::PI;
@@ -73,11 +73,6 @@ impl RadialTransform {
                 .sum(),
         }
     }
-
-    /// Transform of the bump of radius sigma at frequency w: sigma^3 psi^(w sigma), odd in sigma.
-    pub fn scaled(&self, w: f64, sigma: f64) -> f64 {
-        sigma.powi(3) * self.value(w * sigma)
-    }
 }
 
 /// Transform of the unit ball's indicator: (sin z - z cos z) / (2 pi^2 q^3), z = 2 pi q.
@@ -118,11 +113,5 @@ mod tests {
                 "alpha {alpha}, q {q}: {ours} against {value}"
             );
         }
-    }
-
-    #[test]
-    fn odd_in_sigma() {
-        let transform = RadialTransform::new(Bump::new(2.0).unwrap(), 5.0);
-        assert_eq!(transform.scaled(0.2, 3.0), -transform.scaled(0.2, -3.0));
     }
 }

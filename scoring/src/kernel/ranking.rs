@@ -7,8 +7,8 @@
 //!
 //! Both are the work of [`super::radial_filter`].
 
-use super::cone::Cone;
-use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST};
+use super::cone::{Cone, Trim};
+use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST, TRIM_LENGTH};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -50,20 +50,35 @@ impl RankingKernel {
                 bound: "at least 1e-6 of the resolution, which leaves nothing of smaller balls",
             });
         }
+        if let Trim::BehandishIlies { length } = options.trim
+            && 2.0 * length <= cone.high
+        {
+            return Err(KernelError::Length {
+                name: TRIM_LENGTH,
+                value: length,
+                bound: "above half of the largest sum of radii and skins, for it ends at twice its length",
+            });
+        }
         let stop = 1.0 / options.resolution;
         let pass = 1.0 / options.pass_length;
         let [_, reach] = RadialFilter::window_ends(pass, stop, cone.high, reach_factor);
         let ring = 1.0 / (1.0 - options.resolution / options.pass_length);
-        if !(0.0..=LONGEST).contains(&(reach / options.resolution))
+        // The flat top ends near the reach, while B&I's trim may end anywhere.
+        let longest = match options.trim {
+            Trim::FlatTop => reach,
+            Trim::BehandishIlies { length } => reach.max(2.0 * length),
+        };
+        if !(0.0..=LONGEST).contains(&(longest / options.resolution))
             || !(0.0..=LONGEST_RING).contains(&ring)
         {
             return Err(KernelError::TooLong {
-                reach,
+                reach: longest,
                 resolution: options.resolution,
             });
         }
         let filter = RadialFilter::new(pass, stop, cone.high, reach_factor);
-        let q_max = stop * (cone.high + cone.taper());
+        let [_, last] = cone.ends();
+        let q_max = stop * last;
         let quadrature = RadialTransform::new(bump, q_max);
         let transform = Table::fit(q_max * 1.001, 0.125, |q| [quadrature.value(q)]);
         Ok(Self {
@@ -162,17 +177,15 @@ impl RankingKernel {
         })
     }
 
-    /// Largest value of the score kernel over d for one radius sum: what one touching pair can earn.
-    pub fn rim(&self, radius_sum: f64) -> f64 {
-        let table = self.distance_table(radius_sum);
+    /// Largest value of the score kernel over d, of a radius sum's [`Self::distance_table`]: what one touching pair can earn.
+    pub fn rim(&self, table: &Table<4>) -> f64 {
         (0..1000)
             .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
             .fold(0.0, f64::max)
     }
 
-    /// Distance in Å beyond which the score kernel of `radius_sum` stays below `threshold` in magnitude.
-    pub fn effective_reach(&self, radius_sum: f64, threshold: f64) -> f64 {
-        let table = self.distance_table(radius_sum);
+    /// Distance in Å beyond which the score kernel of such a table stays below `threshold` in magnitude.
+    pub fn effective_reach(&self, table: &Table<4>, threshold: f64) -> f64 {
         (0..1000)
             .rev()
             .map(|i| self.reach() * f64::from(i) / 1000.0)

@@ -14,6 +14,7 @@ pub use basis::RadiusBasis;
 use crate::affinity::DoubleSkin;
 use crate::kernel::RankingKernel;
 use num_complex::Complex64;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// What the engine correlates: one slice, or the score that folds all three.
@@ -42,13 +43,19 @@ impl LiftedAxis {
     pub fn new(kernel: &RankingKernel, modes: usize) -> Self {
         let cone = kernel.cone();
         let period = cone.period();
-        let low = cone.low - cone.taper();
+        let [low, _] = cone.ends();
         // The integrand is smooth and periodic: the trapezoidal rule needs a few points a mode.
         let samples = (4 * modes).max(32);
+        let sigmas: Vec<f64> = (0..samples)
+            .map(|sample| low + period * sample as f64 / samples as f64)
+            .collect();
+        // All the time goes here, with the square of the kernel's length in resolutions.
+        let sampled: Vec<Vec<f64>> = sigmas
+            .par_iter()
+            .map(|&sigma| kernel.profile(sigma))
+            .collect();
         let mut profiles: Vec<(Vec<f64>, Vec<f64>)> = vec![Default::default(); modes + 1];
-        for sample in 0..samples {
-            let sigma = low + period * sample as f64 / samples as f64;
-            let profile = kernel.profile(sigma);
+        for (sigma, profile) in sigmas.iter().zip(&sampled) {
             for (k, (re, im)) in profiles.iter_mut().enumerate() {
                 re.resize(profile.len(), 0.0);
                 im.resize(profile.len(), 0.0);

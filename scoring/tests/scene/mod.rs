@@ -66,7 +66,6 @@ pub fn engine_options(tolerance: f64) -> EngineOptions {
         kernel: kernel_options(),
         spacing: None,
         tolerance,
-        rank: None,
     }
 }
 

@@ -31,7 +31,7 @@ pub enum PlanError {
         "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
     )]
     WeightRange(f64),
-    /// The box would need more grid points than any machine holds.
+    /// The box would need more grid points than can be numbered or held: 2^32, or fewer where it is flat.
     #[error("a grid of {0:.2e} points is needed; use a coarser spacing")]
     TooLarge(f64),
 }

@@ -5,11 +5,14 @@ use super::error::PlanError;
 use crate::effect::ActiveTerm;
 use crate::exact::center;
 use crate::kernel::product::rim_and_reach;
+use crate::kernel::table::Table;
 use crate::kernel::{Band, ProductKernel, RankingKernel};
 use crate::transform::fast_size;
+use crate::transform::modes::ModeSet;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// Where two bodies lie and how far they extend, in Å.
 pub(super) struct Extents {
@@ -22,6 +25,13 @@ pub(super) struct Extents {
     /// Distance of the farthest ligand knot from it.
     pub ligand_radius: f64,
 }
+
+/// Most points of a grid: voxels are numbered in 32 bits.
+const MOST_POINTS: f64 = u32::MAX as f64;
+/// Most points along an axis: transforms of that length are planned without delay.
+const MOST_ALONG: f64 = 1e6;
+/// Most pairs (y, z) of points, half of which become columns of modes: these are made before anyone can ask how much memory a plan takes, and are 400 MB by then.
+const MOST_ROWS: f64 = (1u32 << 25) as f64;
 
 impl Extents {
     pub fn of(receptor: &Knots, ligand: &Knots) -> Self {
@@ -41,26 +51,47 @@ impl Extents {
 
     /// Points per axis of a grid that holds the receptor, the ligand turned however, and the kernel's reach between them; `width` is
     /// that of the spreading window.
+    ///
+    /// # Errors
+    /// [`PlanError::TooLarge`] where the points cannot be numbered, or the columns of modes held.
     pub fn grid(&self, reach: f64, width: usize, spacing: f64) -> Result<[usize; 3], PlanError> {
-        let mut points = 1.0;
-        let size = self.receptor_extent.map(|extent| {
+        let counts = self.receptor_extent.map(|extent| {
             let length = 2.0 * (extent + self.ligand_radius + reach);
             // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
             // a kernel shorter than that window would make too small.
             let block = 2.0 * extent.max(self.ligand_radius) + (width as f64 + 6.0) * spacing;
-            let count = (length.max(block) / spacing).ceil().max(4.0);
-            points *= count;
-            if count < 1e6 {
-                fast_size(count as usize)
-            } else {
-                0
-            }
+            (length.max(block) / spacing).ceil().max(4.0)
         });
-        if points > 1e11 || size.contains(&0) {
-            return Err(PlanError::TooLarge(points));
+        let asked: f64 = counts.iter().product();
+        // Good sizes are sought for such alone as can be: that would not end for absurd ones. Written so that NaN is refused with the rest.
+        if !counts.iter().all(|count| (0.0..MOST_ALONG).contains(count)) || asked > MOST_POINTS {
+            return Err(PlanError::TooLarge(asked));
+        }
+        let size = counts.map(|count| fast_size(count as usize));
+        let [nx, ny, nz] = size.map(|n| n as f64);
+        if nx * ny * nz > MOST_POINTS || ny * nz > MOST_ROWS {
+            return Err(PlanError::TooLarge(nx * ny * nz));
         }
         Ok(size)
     }
+}
+
+/// The modes of such a grid, and the points per axis of the nonequispaced transforms' fine one, `ratio` times as fine.
+///
+/// # Errors
+/// As [`Extents::grid`].
+pub(super) fn modes_at(
+    spacing: f64,
+    extents: &Extents,
+    reach: f64,
+    width: usize,
+    ratio: f64,
+) -> Result<(Arc<ModeSet>, [usize; 3]), PlanError> {
+    let size = extents.grid(reach, width, spacing)?;
+    let lengths = size.map(|n| n as f64 * spacing);
+    let modes = ModeSet::new(size, lengths, 0.5 / spacing);
+    let fine = size.map(|n| fast_size((n as f64 * ratio).ceil() as usize));
+    Ok((Arc::new(modes), fine))
 }
 
 /// Oversampling of the fine grid against the mode grid. The low-pass takes the modes near the grid's own limit down to
@@ -83,19 +114,38 @@ pub(super) fn window_width(tolerance: f64, severity: f64, oversampling: f64) -> 
     SpreadingKernel::<f64>::width_for(share * tolerance, oversampling * 1.2).min(MAX_WIDTH)
 }
 
+/// The score kernel of the widest pair, by which what may be left out is measured.
+pub(super) struct Widest {
+    sum: f64,
+    table: Table<4>,
+    /// What that pair earns at most; not 0.
+    rim: f64,
+}
+
+impl Widest {
+    pub fn new(kernel: &RankingKernel, sum: f64) -> Self {
+        let table = kernel.distance_table(sum);
+        let rim = kernel.rim(&table).max(f64::MIN_POSITIVE);
+        Self { sum, table, rim }
+    }
+}
+
 /// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest sum of radii.
 pub(super) fn longest_reach(
     kernel: &RankingKernel,
     effects: &[ActiveTerm],
-    widest: f64,
+    widest: &Widest,
     tolerance: f64,
 ) -> f64 {
-    let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
+    let rim = widest.rim;
     let of_effects = effects.iter().map(|ActiveTerm { term, kernel }| {
         let largest = term.largest().max(f64::MIN_POSITIVE);
         kernel.effective_reach(tolerance * rim / largest)
     });
-    of_effects.fold(kernel.effective_reach(widest, tolerance * rim), f64::max)
+    of_effects.fold(
+        kernel.effective_reach(&widest.table, tolerance * rim),
+        f64::max,
+    )
 }
 
 /// By how much the bound on what dropped modes take may exceed the tolerance. It has them in phase for a pair at its worst, while whole sums were off by at most a tenth of it
@@ -105,7 +155,7 @@ const SLACK: f64 = 6.0;
 /// Grid spacing that keeps all modes of the ranking kernel that count; `severity` as for [`window_width`].
 pub(super) fn ranking_spacing(
     kernel: &RankingKernel,
-    widest: f64,
+    widest: &Widest,
     tolerance: f64,
     severity: f64,
 ) -> f64 {
@@ -113,10 +163,9 @@ pub(super) fn ranking_spacing(
     let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
         kernel.stop()
     } else {
-        let rim = kernel.rim(widest).max(f64::MIN_POSITIVE);
         // Beyond the usual penalty there is none: with it, lambda = 1,000 misses 1e-3 by a twentieth (tests/hard_cases/kernel.rs).
         let slack = if severity > 1.0 { 1.0 } else { SLACK };
-        kernel.band_end(widest, slack * tolerance * rim)
+        kernel.band_end(widest.sum, slack * tolerance * widest.rim)
     };
     0.5 / cut
 }
@@ -152,4 +201,49 @@ pub(super) fn product_kernel(
         Band::LowPass => rim_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1,
     };
     Ok((kernel, spacing, reach))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two atoms at (0, 0, 0) and (0, 120000, 60000) against two near each other: a grid of a few points along x had nearly 1e9 columns of modes, and the process was killed
+    /// for lack of memory before anyone asked how much there is. Voxels beyond 2^32 were numbered wrongly.
+    #[test]
+    fn grids_that_cannot_be_numbered_or_held_are_refused_before_anything_is_made() {
+        let grid = |extent: [f64; 3], spacing: f64| {
+            let bodies = Extents {
+                receptor_center: Vector3::zeros(),
+                receptor_extent: extent,
+                ligand_center: Vector3::zeros(),
+                ligand_radius: 3.0,
+            };
+            bodies.grid(15.0, 6, spacing)
+        };
+        let refused =
+            |extent, spacing| matches!(grid(extent, spacing), Err(PlanError::TooLarge(_)));
+        assert!(refused([0.0, 6e4, 3e4], 2.0));
+        // Rather few points, but all of them columns.
+        assert!(refused([0.0, 1e4, 1e4], 2.0));
+        // Just short of 2^32 points as asked for, and beyond with sizes that transforms like.
+        let half = 0.5 * 1625.0 - 18.0;
+        assert!(refused([half; 3], 1.0));
+        assert!(
+            refused([f64::MAX; 3], 1.0)
+                && refused([1e12, 0.0, 0.0], 1.0)
+                && refused([10.0; 3], 1e-300)
+        );
+        for fits in [
+            [780.0; 3],
+            [4e5, 0.0, 0.0],
+            [0.0, 0.0, 4e5],
+            [0.0, 4e5, 0.0],
+        ] {
+            let size = grid(fits, 1.0).unwrap();
+            assert!(
+                size.iter().product::<usize>() <= u32::MAX as usize,
+                "{size:?}"
+            );
+        }
+    }
 }

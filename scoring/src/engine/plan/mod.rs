@@ -16,11 +16,13 @@ use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
 use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
 use crate::lifted_axis::{Fold, LiftedAxis, RadiusBasis};
-use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_tolerance, checked_spacing};
-use grid::{Extents, longest_reach, oversampling, product_kernel, ranking_spacing, window_width};
+use grid::{
+    Extents, Widest, longest_reach, modes_at, oversampling, product_kernel, ranking_spacing,
+    window_width,
+};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use radii::Radii;
@@ -39,8 +41,6 @@ pub struct EngineOptions {
     pub spacing: Option<f64>,
     /// Error of the fast path that is aimed at, relative to the best score.
     pub tolerance: f64,
-    /// Rank of the lifted axis; `None`: as the tolerance needs.
-    pub rank: Option<usize>,
 }
 
 /// The function of two balls that a plan correlates.
@@ -182,9 +182,10 @@ impl Plan {
         let chosen = checked_spacing(options.spacing)?;
         let (pair, spacing, effective_reach) = match band {
             None => {
-                let spacing =
-                    chosen.unwrap_or_else(|| ranking_spacing(&kernel, widest, tolerance, severity));
-                let reach = longest_reach(&kernel, &effects, widest, tolerance);
+                let widest = Widest::new(&kernel, widest);
+                let spacing = chosen
+                    .unwrap_or_else(|| ranking_spacing(&kernel, &widest, tolerance, severity));
+                let reach = longest_reach(&kernel, &effects, &widest, tolerance);
                 (PairKernel::Lifted, spacing, reach)
             }
             Some(band) => {
@@ -196,19 +197,17 @@ impl Plan {
         let extents = Extents::of(receptor, ligand);
         let ratio = oversampling(tolerance, band);
         let width = window_width(tolerance, severity, ratio);
-        let size = extents.grid(effective_reach, width, spacing)?;
-        let lengths = size.map(|n| n as f64 * spacing);
-        let cut = 0.5 / spacing;
-        let (axis, basis, axis_error) = radii.meet(&kernel, &pair, cut, 1e-3 * tolerance);
+        let (modes, fine) = modes_at(spacing, &extents, effective_reach, width, ratio)?;
+        let (axis, basis, axis_error) = radii.meet(&kernel, &pair, modes.cut, 1e-3 * tolerance);
         Ok(Self {
             options,
             pair,
             axis,
             axis_error,
             basis,
-            modes: Arc::new(ModeSet::new(size, lengths, cut)),
+            modes,
             spacing,
-            fine: size.map(|n| fast_size((n as f64 * ratio).ceil() as usize)),
+            fine,
             width,
             effective_reach,
             receptor_center: extents.receptor_center,
@@ -217,6 +216,37 @@ impl Plan {
             ligand_radius: extents.ligand_radius,
             kernel,
             effects,
+        })
+    }
+
+    /// The same correlation on a grid of another spacing in Å, which is all that depends on it. The tables of a product kernel end with the grid's frequencies: it
+    /// serves coarser spacings alone.
+    ///
+    /// # Errors
+    /// [`PlanError`] on a spacing that gives no grid.
+    pub fn with_spacing(&self, spacing: f64) -> Result<Self, PlanError> {
+        checked_spacing(Some(spacing))?;
+        let band = match &self.pair {
+            PairKernel::Lifted => None,
+            PairKernel::Product(product) => Some(product.band()),
+        };
+        let extents = Extents {
+            receptor_center: self.receptor_center,
+            receptor_extent: self.receptor_extent,
+            ligand_center: self.ligand_center,
+            ligand_radius: self.ligand_radius,
+        };
+        let ratio = oversampling(self.options.tolerance, band);
+        let (modes, fine) = modes_at(spacing, &extents, self.effective_reach, self.width, ratio)?;
+        Ok(Self {
+            options: EngineOptions {
+                spacing: Some(spacing),
+                ..self.options
+            },
+            modes,
+            spacing,
+            fine,
+            ..self.clone()
         })
     }
 

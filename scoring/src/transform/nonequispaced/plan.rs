@@ -33,7 +33,6 @@ pub struct Plan<T: Real, const D: usize> {
     pub(super) factors: [Vec<T>; D],
     pub(super) to_modes: [Arc<dyn Fft<T>>; D],
     pub(super) to_grid: [Arc<dyn Fft<T>>; D],
-    estimate: f64,
 }
 
 impl<T: Real, const D: usize> Plan<T, D> {
@@ -87,7 +86,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 least,
             });
         }
-        let mut choice: Option<(f64, [usize; D], usize, Quality, f64)> = None;
+        let mut choice: Option<(f64, [usize; D], usize, Quality)> = None;
         let mut least = f64::INFINITY;
         let mut fits = false;
         let addressable = |sizes: &[usize; D]| {
@@ -142,7 +141,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                     .as_ref()
                     .is_none_or(|(cheapest, ..)| cost < *cheapest)
                 {
-                    choice = Some((cost, fine, width, quality, error));
+                    choice = Some((cost, fine, width, quality));
                 }
                 break;
             }
@@ -152,7 +151,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 modes: modes.to_vec(),
             });
         }
-        let Some((_, fine, width, quality, estimate)) = choice else {
+        let Some((_, fine, width, quality)) = choice else {
             return Err(PlanError::Tolerance {
                 asked: tolerance,
                 least,
@@ -180,7 +179,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
             to_modes: fine.map(T::forward_fft),
             to_grid: fine.map(T::inverse_fft),
             window,
-            estimate,
         })
     }
 
@@ -202,11 +200,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Width of the spreading window in grid points.
     pub fn width(&self) -> usize {
         self.window.width
-    }
-
-    /// The error to expect, relative, in the 2-norm, for points without special relation to each other.
-    pub fn expected_error(&self) -> f64 {
-        self.estimate
     }
 
     /// Buffers for transforms by this plan; executions allocate nothing.
