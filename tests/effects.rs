@@ -179,7 +179,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |options: &[&str]| {
         let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
-        all.extend(["--peptidase-weight", "0"]);
+        all.extend(["--peptidase-weight", "0", "--missing-weight", "0"]);
         all.extend(options);
         let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
         let mut reader = csv::Reader::from_reader(table.as_bytes());

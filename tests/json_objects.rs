@@ -222,6 +222,7 @@ fn inspect_tells_what_was_read_and_assumed() {
             "antibody",
             "input",
             "labels",
+            "missing_residues",
             "volume",
             "volume_error"
         ]

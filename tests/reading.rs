@@ -294,3 +294,23 @@ fn the_known_complex_may_come_from_a_pipe() {
         json(folder, "evaluate run --native native.pdb --json")
     );
 }
+
+/// Found by an audit: a table that a full disk cut short was a success.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_that_cannot_be_written_is_a_failure() {
+    let folder = place();
+    for more in [&[][..], &["--json"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full");
+        let output = std::process::Command::new(assert_cmd::cargo::cargo_bin!("knotdock"))
+            .current_dir(folder.path())
+            .args(["inspect", "receptor.pdb"])
+            .args(more)
+            .stdout(full.unwrap())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(told.contains("cannot write to standard output"), "{told}");
+    }
+}

@@ -269,7 +269,7 @@ mod tests {
              shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
              fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,\n"
+             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,,\n"
         );
     }
 

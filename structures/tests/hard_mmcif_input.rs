@@ -51,6 +51,21 @@ fn names_are_the_authors_and_survive_that_they_look_like_numbers() {
 }
 
 #[test]
+fn further_data_blocks_with_atoms_are_warned_of() {
+    let block = format!("{HEAD}ATOM 1 C CA . GLY A 1 ? 1 2 3 1 9 1 A 1\n");
+    assert!(read_text(&block, "").unwrap().report.warnings.is_empty());
+    let without = format!("{block}data_note\n_struct.title 'no atoms'\n");
+    assert!(read_text(&without, "").unwrap().report.warnings.is_empty());
+    let molecule = read_text(&format!("{without}{block}{block}"), "").unwrap();
+    assert_eq!(molecule.atoms.len(), 1);
+    let line = without.lines().count() + 1;
+    let expected = format!(
+        "only the first structure is read: 2 further data blocks with atoms, the first at line {line}"
+    );
+    assert_eq!(molecule.report.warnings, [expected]);
+}
+
+#[test]
 fn archive_names_stand_in_for_missing_author_names() {
     let file = "data_x\nloop_\n_ATOM_SITE.label_asym_id\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
                 _atom_site.label_seq_id\n_atom_site.cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\nQ CA GLY 5 1 2 3\n";

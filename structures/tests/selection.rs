@@ -194,6 +194,14 @@ fn a_trace_and_missing_side_chains_are_warned_of() {
     let molecule = read_text(&text(&lines)).unwrap();
     let expected = "1 residue lacks side-chain atoms (3 in all: LEU A1)";
     assert_eq!(molecule.report.warnings, [expected]);
+    let nowhere: Vec<Line> = (1..=10)
+        .map(|number| Line::of("ATOM", " N  ", "GLY", number, " N"))
+        .collect();
+    let warnings = read_text(&text(&nowhere)).unwrap().report.warnings;
+    assert!(
+        warnings.iter().any(|told| told.contains("in one place")),
+        "{warnings:?}"
+    );
     // The same atom twice: two chains of one name in a file put together by hand.
     let warnings = read_text(&text(&[ATOM, ATOM])).unwrap().report.warnings;
     assert!(warnings[0].starts_with("1 atom repeats"), "{warnings:?}");

@@ -29,7 +29,8 @@ fn a_ring_that_is_known_to_fit_is_found_first() {
         "dock both.pdb --symmetry C2 --rotations 200 --poses 400 --effects shape -o run --quiet";
     succeed(folder.path(), options.split(' '));
     let rows = rows(&folder.path().join("run"));
-    assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.0);
+    // Of the ring's poses that one is first in which the ends of chains are least in the way.
+    assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.5);
     assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
 }
 
@@ -124,7 +125,8 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
             if !row["other_copies"].is_empty() {
                 assert!(close(number(row, "other_copies"), others), "{name}");
             }
-            assert!(close(number(row, "rank_score"), own + others), "{name}");
+            let ranked = own + others + number(row, "missing");
+            assert!(close(number(row, "rank_score"), ranked), "{name}");
         }
     }
 }

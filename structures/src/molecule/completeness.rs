@@ -105,11 +105,14 @@ fn missing_side_chains(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<Strin
     })
 }
 
+/// Fewest atoms that are asked whether they have places of their own.
+const PLACED: usize = 10;
+
 /// Atoms none of which has a place of its own, as in files that were written before there were coordinates.
 fn in_one_place(atoms: &[Atom]) -> Option<String> {
     let (first, rest) = atoms.split_first()?;
     let same = |atom: &Atom| atom.position == first.position;
-    (!rest.is_empty() && rest.iter().all(same)).then(|| {
+    (atoms.len() >= PLACED && rest.iter().all(same)).then(|| {
         let [x, y, z] = first.position;
         format!("all atoms are in one place ({x}, {y}, {z}), so that no score means anything: were coordinates ever written?")
     })
