@@ -139,33 +139,24 @@ pub fn chance_told(chance: f64) -> String {
     )
 }
 
-/// What stands for residues that are missing from one side's file, where any does.
+/// What one side's file does not show of its chains, where anything is missing.
 pub fn missing_told(side: &str, missing: &MissingResidues) -> Option<String> {
-    let MissingResidues {
-        residues,
-        gaps,
-        ends,
-        ref centers,
-    } = *missing;
     let mut parts = Vec::new();
-    if gaps > 0 {
+    if missing.gaps > 0 {
         parts.push(format!(
             "{} missing in {}",
-            counted(residues, "residue"),
-            counted(gaps, "gap")
+            counted(missing.residues, "residue"),
+            counted(missing.gaps, "gap")
         ));
     }
-    if ends > 0 {
-        parts.push(format!("{} of chains that may go on", counted(ends, "end")));
+    if missing.ends > 0 {
+        let ends = counted(missing.ends, "end");
+        parts.push(format!("{ends} of chains that may go on"));
     }
-    (!centers.is_empty()).then(|| {
+    (!parts.is_empty()).then(|| {
         format!(
-            "The {side}: {}; {} for them, --missing-weight 0 leaves these out",
-            parts.join(", "),
-            match centers.len() {
-                1 => "1 ball stands".to_owned(),
-                balls => format!("{balls} balls stand"),
-            }
+            "The {side}: {}; poses pay for atoms that lie there, --missing-weight 0 leaves that out",
+            parts.join(", ")
         )
     })
 }

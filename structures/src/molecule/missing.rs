@@ -1,4 +1,5 @@
-//! Residues that a chain has and its file does not show: where they may be, as a ball of a residue's volume each.
+//! Residues that a chain has and its file does not show: where they may be, as balls of a residue's volume, 134 Å³ or a radius of 3.2 Å (the mean
+//! over proteins of the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123).
 //!
 //! A loop that was not seen bridges a gap in the chain, and the ends of chains move or go on unseen; what is docked there meets them. So balls
 //! stand for them: in a gap as many as residues are missing, along a bow from end to end that leans away from the body, and two past each end of
@@ -10,9 +11,6 @@ use super::cells::Cells;
 use super::groups::{GroupKind, Residue, residues};
 use super::termini::BOND;
 use super::{Molecule, squared_distance};
-
-/// Radius in Å of a ball of a residue's volume: 134 Å³, the mean over proteins of the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123.
-pub const RESIDUE_RADIUS: f64 = 3.2;
 
 /// Distance in Å of the first ball past an end from its N or C, where the next CA would be, and of the second.
 const PAST_END: [f64; 2] = [2.5, 6.0];
@@ -49,7 +47,7 @@ pub struct MissingResidues {
     pub gaps: usize,
     /// Ends of chains, past which more may follow; of peptides and where something is bonded to an end none.
     pub ends: usize,
-    /// Where balls of [`RESIDUE_RADIUS`] stand for them, in the file's frame (Å).
+    /// Where balls of 3.2 Å stand for them, in the file's frame (Å).
     #[serde(rename = "balls", serialize_with = "count")]
     pub centers: Vec<[f64; 3]>,
 }
@@ -124,7 +122,7 @@ impl Molecule {
         };
         let (from, to) = (from.position, to.position);
         let apart = squared_distance(from, to).sqrt();
-        let counted = next_number.saturating_sub(number) - 1;
+        let counted = next_number.saturating_sub(number).saturating_sub(1);
         let missing = if counted >= 1 && apart <= STRETCHED * (counted + 1) as f64 {
             counted
         } else {

@@ -62,7 +62,7 @@ pub use error::ReadError;
 pub use groups::GroupKind;
 pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
-pub use missing::{MissingResidues, RESIDUE_RADIUS};
+pub use missing::MissingResidues;
 pub use peptidase::ActiveSite;
 pub use plain_names::{plain_atom_name, plain_residue_name};
 pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
