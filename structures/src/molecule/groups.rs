@@ -80,6 +80,13 @@ pub(super) struct Residue<'a> {
     pub(super) kind: GroupKind,
 }
 
+impl Residue<'_> {
+    /// Whether this is one of a peptide chain.
+    pub(super) fn is_peptide(&self) -> bool {
+        matches!(self.kind, GroupKind::AminoAcid | GroupKind::ModifiedResidue)
+    }
+}
+
 /// The residues of a list of atoms, in order of first appearance.
 ///
 /// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name comes again, chains were

@@ -8,7 +8,7 @@
 use serde::{Serialize, Serializer};
 
 use super::cells::Cells;
-use super::groups::{GroupKind, Residue, residues};
+use super::groups::{Residue, residues};
 use super::termini::BOND;
 use super::{Molecule, squared_distance};
 
@@ -79,7 +79,7 @@ impl Molecule {
         let body = Body::new(self);
         let mut found = MissingResidues::default();
         let mut chains: Vec<Vec<&Residue<'_>>> = Vec::new();
-        for residue in groups.iter().filter(|residue| is_peptide(residue)) {
+        for residue in groups.iter().filter(|residue| residue.is_peptide()) {
             let before = chains.last().and_then(|chain| chain.last().copied());
             let between = before.map_or(Between::Ends, |before| self.between(before, residue));
             if let (Between::Gap { missing, from, to }, Some(before)) = (&between, before)
@@ -143,14 +143,6 @@ impl Molecule {
             Between::Gap { missing, from, to }
         }
     }
-}
-
-/// Whether a residue is one of a peptide chain.
-fn is_peptide(residue: &Residue<'_>) -> bool {
-    matches!(
-        residue.kind,
-        GroupKind::AminoAcid | GroupKind::ModifiedResidue
-    )
 }
 
 /// All atoms of a molecule, by place.

@@ -37,12 +37,7 @@ impl Molecule {
     pub(super) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
         let peptide: Vec<&Residue<'_>> = groups
             .iter()
-            .filter(|residue| {
-                matches!(
-                    residue.kind,
-                    GroupKind::AminoAcid | GroupKind::ModifiedResidue
-                )
-            })
+            .filter(|residue| residue.is_peptide())
             .collect();
         let caps = self.caps(groups);
         for (place, residue) in peptide.iter().enumerate() {
