@@ -13,9 +13,16 @@ struct Place {
 
 /// A box 4 by 2 by 1 as OBJ.
 fn box_obj() -> String {
+    box_of(1.0)
+}
+
+/// The like in another unit.
+fn box_of(unit: f64) -> String {
     let mut text = String::new();
     for i in 0..8 {
-        text += &format!("v {} {} {}\n", 4 * (i & 1), 2 * (i >> 1 & 1), i >> 2 & 1);
+        let [x, y, z] =
+            [4 * (i & 1), 2 * (i >> 1 & 1), i >> 2 & 1].map(|side| f64::from(side) * unit);
+        text += &format!("v {x} {y} {z}\n");
     }
     text + "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n"
 }
@@ -209,6 +216,33 @@ fn files_that_are_there_stay_there() {
     place.refused(&["box.obj", "-o", "box.obj", "--force"]);
     place.refused(&["box.obj", "-o", "a.svg", "--picture", "a.svg"]);
     place.refused(&["box.obj", "-o", "a.csv", "--export", "a.xyz"]);
+}
+
+/// What does not fit into a PDB file's columns is found before the table is written.
+#[test]
+fn an_export_that_fails_leaves_no_table() {
+    let place = Place::new();
+    let far = box_obj().replace("v 4 ", "v 40000 ");
+    fs::write(place.path("far.obj"), far).unwrap();
+    let error = place.refused(&["far.obj", "--grid", "64", "--export", "far.pdb"]);
+    assert!(error["message"].as_str().unwrap().contains("columns"));
+}
+
+/// Found by an audit: with six decimals all figures of a mesh in small units were zero.
+#[test]
+fn figures_of_small_meshes_keep_their_digits() {
+    let place = Place::new();
+    fs::write(place.path("small.obj"), box_of(1e-6)).unwrap();
+    let output = place
+        .command(&["small.obj", "--grid", "2^12"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap() + &String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("4.000000e-6 x 2.000000e-6 x 1.000000e-6 across, volume 8.000000e-18"),
+        "{said}"
+    );
+    assert!(!said.contains("epsilon 0.000000"), "{said}");
 }
 
 #[test]

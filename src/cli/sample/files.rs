@@ -86,12 +86,13 @@ impl Sample {
         balls: &[Ball],
         export: Option<Export>,
     ) -> Result<Vec<String>, Failure> {
-        write_table(knots, &self.output)?;
-        let mut files = vec![&self.output];
+        // First what balls may not fit into, so that nothing is left of a command that fails by it.
         if let (Some(path), Some(export)) = (&self.export, export) {
             export.write(knots, path)?;
-            files.push(path);
         }
+        write_table(knots, &self.output)?;
+        let mut files = vec![&self.output];
+        files.extend(&self.export);
         if let Some(path) = &self.picture {
             write_picture(solid, balls, path)?;
             files.push(path);

@@ -1,6 +1,7 @@
 //! What `knotdock sample` says of a sampled solid.
 
 use knotdock::output::report;
+use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampler::hausdorff::Fit;
 use knotdock_structures::sampler::weights::FittedWeights;
 use knotdock_structures::sampler::{Sampling, SetName};
@@ -55,8 +56,8 @@ impl Told<'_> {
             lines.push(vec![
                 set_name(set.name).to_owned(),
                 set.balls.len().to_string(),
-                format!("{:.6}", fit.hausdorff_inward * self.unit),
-                format!("{:.6}", fit.hausdorff_outward * self.unit),
+                Figure(fit.hausdorff_inward * self.unit).to_string(),
+                Figure(fit.hausdorff_outward * self.unit).to_string(),
                 self.percent(fit.volume_missed),
                 self.percent(fit.volume_outside),
                 format!("{:.2}", set.seconds),
@@ -82,12 +83,12 @@ impl Told<'_> {
             None => String::new(),
         };
         format!(
-            "Grid: {n} x {n} x {n} nodes, {} inside, spacing {:.6}, epsilon {:.6}\n\n{}\n\
+            "Grid: {n} x {n} x {n} nodes, {} inside, spacing {}, epsilon {}\n\n{}\n\
              Inward: the farthest that a point of the solid is from the balls; outward: that a point of the balls is from the solid.\n\
              {added}Time: {}",
             self.sampling.inside_nodes,
-            grid.spacing() * self.unit,
-            self.epsilon(),
+            Figure(grid.spacing() * self.unit),
+            Figure(self.epsilon()),
             report::align(&lines),
             steps.join(", ")
         )
@@ -96,9 +97,9 @@ impl Told<'_> {
     /// How a level of detail fits, for a person.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
-            "Level of detail: {balls} balls, {:.6} from the solid outward and {:.6} inward",
-            fit.hausdorff_outward * self.unit,
-            fit.hausdorff_inward * self.unit
+            "Level of detail: {balls} balls, {} from the solid outward and {} inward",
+            Figure(fit.hausdorff_outward * self.unit),
+            Figure(fit.hausdorff_inward * self.unit)
         )
     }
 

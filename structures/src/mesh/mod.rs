@@ -15,6 +15,7 @@
 
 mod distance;
 mod error;
+mod figure;
 mod read;
 mod report;
 mod solid;
@@ -26,6 +27,7 @@ mod weld;
 pub(crate) mod winding;
 
 pub use error::{MeshError, MeshErrorKind};
+pub use figure::Figure;
 pub use read::{MeshFormat, from_triangles, parse, read};
 pub use report::MeshReport;
 pub use solid::{Frame, Solid};

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::figure::Figure;
 use super::read::MeshFormat;
 use super::topology::Topology;
 use super::vector::{add, norm};
@@ -114,11 +115,11 @@ impl MeshReport {
         let mut warnings = Vec::new();
         if !self.is_closed() {
             warnings.push(format!(
-                "the mesh is not closed: {} of its edges do not balance ({} open, {:.6} long in all; {} of more than two triangles) and \
+                "the mesh is not closed: {} of its edges do not balance ({} open, {} long in all; {} of more than two triangles) and \
                  holes take at least {:.3}% of its area; inside is where the generalised winding number is above one half",
                 self.unbalanced_edges,
                 self.open_edges,
-                self.open_length,
+                Figure(self.open_length),
                 self.nonmanifold_edges,
                 100.0 * self.missing_share
             ));
@@ -160,14 +161,14 @@ impl fmt::Display for MeshReport {
             .low
             .iter()
             .zip(self.high)
-            .map(|(low, high)| format!("{:.6}", high - low))
+            .map(|(low, high)| Figure(high - low).to_string())
             .collect();
         write!(
             f,
-            "; {} across, volume {:.6}, area {:.6}",
+            "; {} across, volume {}, area {}",
             size.join(" x "),
-            self.volume,
-            self.area
+            Figure(self.volume),
+            Figure(self.area)
         )
     }
 }
