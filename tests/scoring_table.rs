@@ -32,7 +32,7 @@ const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
 /// The helices once more, at the same poses, with residues of both sides blocked.
 const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 15] = [
     "score",
     "shape",
     "electrostatics",
@@ -47,6 +47,7 @@ const COLUMNS: [&str; 14] = [
     "restraint",
     "attraction",
     "missing",
+    "chain_ends",
 ];
 
 fn folder() -> PathBuf {
@@ -276,7 +277,7 @@ fn scores_terms_slices_and_ranks_of_poses() {
             values.push(Some(exact.unfiltered));
             values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
             values.extend([term(Effect::Restraint), rescored.attraction]);
-            values.push(rescored.missing);
+            values.extend([rescored.missing, rescored.chain_ends]);
             found.insert((case.clone(), *number), values);
         }
     }

@@ -78,7 +78,7 @@ const NO_RING: [&str; 6] = [
 ];
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 57] = [
+const RECORDED: [&str; 58] = [
     "receptor",
     "ligand",
     "symmetry",
@@ -122,6 +122,7 @@ const RECORDED: [&str; 57] = [
     "attraction_weight",
     "peptidase_weight",
     "missing_weight",
+    "chain_end_weight",
     "attract_receptor",
     "attract_ligand",
     "ph",

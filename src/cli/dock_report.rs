@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use knotdock::output::report::counted;
-use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect};
-use knotdock_structures::molecule::{LabelReport, MissingResidues};
+use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect, Loose};
+use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.
 pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
@@ -63,6 +63,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
         (attracting, row.and_then(|row| row.attraction)),
         ("missing residues", row.and_then(|row| row.missing)),
+        ("ends of chains", row.and_then(|row| row.chain_ends)),
     ];
     let terms = terms.iter().filter(|(_, value)| value.is_some());
     let names: Vec<&str> = terms.map(|(name, _)| *name).collect();
@@ -139,26 +140,40 @@ pub fn chance_told(chance: f64) -> String {
     )
 }
 
-/// What one side's file does not show of its chains, where anything is missing.
-pub fn missing_told(side: &str, missing: &MissingResidues) -> Option<String> {
-    let mut parts = Vec::new();
-    if missing.gaps > 0 {
-        parts.push(format!(
-            "{} missing in {}",
-            counted(missing.residues, "residue"),
-            counted(missing.gaps, "gap")
-        ));
-    }
-    if missing.ends > 0 {
-        let ends = counted(missing.ends, "end");
-        parts.push(format!("{ends} of chains that may go on"));
-    }
-    (!parts.is_empty()).then(|| {
-        format!(
-            "The {side}: {}; poses pay for atoms that lie there, --missing-weight 0 leaves that out",
-            parts.join(", ")
-        )
-    })
+/// What is loose of each side and costs poses something: residues that its file does not show, and those near ends.
+pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
+    let of = loose.missing_residues.iter().zip(&loose.chain_ends);
+    let told = sides.iter().zip(of).map(|(side, (missing, near))| {
+        let (mut parts, mut options) = (Vec::new(), Vec::new());
+        if missing.gaps > 0 {
+            parts.push(format!(
+                "{} missing in {}",
+                counted(missing.residues, "residue"),
+                counted(missing.gaps, "gap")
+            ));
+        }
+        if missing.ends > 0 {
+            let ends = counted(missing.ends, "end");
+            parts.push(format!("{ends} of chains that may go on"));
+        }
+        if !parts.is_empty() {
+            options.push("--missing-weight 0");
+        }
+        if near.residues > 0 {
+            let residues = counted(near.residues, "residue");
+            parts.push(format!("{residues} near ends of chains or gaps"));
+            options.push("--chain-end-weight 0");
+        }
+        (!parts.is_empty()).then(|| {
+            let leave = if options.len() > 1 { "leave" } else { "leaves" };
+            format!(
+                "The {side}: {}; poses pay for atoms that lie or touch there, {} {leave} that out",
+                parts.join(", "),
+                options.join(" and ")
+            )
+        })
+    });
+    told.flatten().collect()
 }
 
 /// What was assumed of one side's charges and contact types, where effects use them.

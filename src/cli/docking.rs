@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{assumed, chance_told, error_warning, missing_told, told};
+use super::dock_report::{assumed, chance_told, error_warning, loose_told, told};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
@@ -72,10 +72,8 @@ impl Docking {
                 ));
             }
         }
-        for (side, missing) in sides.iter().zip(&plan.missing_residues) {
-            if let Some(text) = missing_told(side, missing) {
-                console.say(text);
-            }
+        for text in loose_told(sides, &plan.loose) {
+            console.say(text);
         }
         for (side, labels) in sides.iter().zip(&plan.labels) {
             if let Some(text) = assumed(side, labels, plan) {

@@ -23,7 +23,7 @@ macro_rules! of_molecules {
     };
 }
 
-const OF_MOLECULES: [OfMolecules; 14] = [
+const OF_MOLECULES: [OfMolecules; 15] = [
     of_molecules!("core-weight", core_weight),
     of_molecules!("electrostatics-weight", electrostatics_weight),
     of_molecules!("ph", ph),
@@ -36,6 +36,7 @@ const OF_MOLECULES: [OfMolecules; 14] = [
     of_molecules!("atom-pair-potential", atom_pair_potential),
     of_molecules!("peptidase-weight", peptidase_weight),
     of_molecules!("missing-weight", missing_weight),
+    of_molecules!("chain-end-weight", chain_end_weight),
     of_molecules!("restraint-weight", restraint_weight),
     of_molecules!("antibody", antibody),
 ];

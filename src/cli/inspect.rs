@@ -10,7 +10,8 @@ use knotdock::search::attracted::sites_told;
 use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ActiveSite, Antibody, Format, InputSpec, LabelReport, MissingResidues, fits, read_listed,
+    ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    read_listed,
 };
 use serde_json::json;
 
@@ -97,13 +98,14 @@ impl Inspect {
         let antibody = molecule.antibody();
         let active_sites = molecule.active_sites();
         let missing = molecule.missing_residues();
+        let ends = molecule.chain_ends();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
             told(
                 &labels,
-                &missing,
+                (&missing, &ends),
                 self.ph,
                 area,
                 volume,
@@ -130,6 +132,7 @@ impl Inspect {
             "antibody": antibody.map(|antibody| antibody.domains),
             "active_sites": active_sites,
             "missing_residues": missing,
+            "chain_ends": ends,
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,
@@ -150,7 +153,7 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
 /// The labels in words.
 fn told(
     labels: &LabelReport,
-    missing: &MissingResidues,
+    (missing, ends): (&MissingResidues, &ChainEnds),
     ph: f64,
     area: f64,
     volume: Volume,
@@ -170,10 +173,11 @@ fn told(
             labels.net_charge, labels.charged_atoms
         ),
         format!(
-            "Missing residues: {} in {}; {} of chains that may go on",
+            "Missing residues: {} in {}; {} of chains that may go on; {} near ends of chains or gaps",
             missing.residues,
             counted(missing.gaps, "gap"),
-            counted(missing.ends, "end")
+            counted(missing.ends, "end"),
+            counted(ends.residues, "residue")
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
         format!(

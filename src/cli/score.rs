@@ -11,7 +11,7 @@ use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::at_least_one;
 use super::console::Console;
-use super::dock_report::{missing_told, site_told};
+use super::dock_report::{loose_told, site_told};
 use super::failure::Failure;
 use super::input::{Input, check_used};
 use super::memory;
@@ -88,10 +88,8 @@ impl Score {
         let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
         let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
-        for (side, missing) in ["receptor", "ligand"].iter().zip(&scene.missing) {
-            if let Some(text) = missing_told(side, missing) {
-                console.say(text);
-            }
+        for text in loose_told(&["receptor", "ligand"], &scene.loose) {
+            console.say(text);
         }
         if let Some(site) = scene.active_site() {
             console.say(site_told(site));
@@ -103,6 +101,7 @@ impl Score {
                 ("relaxed", rescored.relaxed),
                 ("attraction", rescored.attraction),
                 ("missing residues", rescored.missing),
+                ("ends of chains", rescored.chain_ends),
             ];
             let told = terms
                 .iter()
@@ -124,8 +123,15 @@ impl Score {
             object.insert("geometry".to_owned(), geometry);
             let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
             object.insert("active_site".to_owned(), site);
-            let missing = serde_json::to_value(&scene.missing).map_err(Failure::other)?;
-            object.insert("missing_residues".to_owned(), missing);
+            for (name, loose) in [
+                (
+                    "missing_residues",
+                    serde_json::to_value(&scene.loose.missing_residues),
+                ),
+                ("chain_ends", serde_json::to_value(&scene.loose.chain_ends)),
+            ] {
+                object.insert(name.to_owned(), loose.map_err(Failure::other)?);
+            }
             let [qw, qx, qy, qz] = pose.quaternion();
             let [tx, ty, tz]: [f64; 3] = pose.translation.into();
             object.insert(
@@ -139,6 +145,7 @@ impl Score {
                 ("relaxed", rescored.relaxed),
                 ("attraction", rescored.attraction),
                 ("missing", rescored.missing),
+                ("chain_ends", rescored.chain_ends),
             ] {
                 object.insert(name.to_owned(), serde_json::json!(value));
             }

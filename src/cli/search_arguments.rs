@@ -155,6 +155,9 @@ pub struct KernelArguments {
     /// What an atom costs that lies where residues of the other side are missing from its file, in gaps of a chain or past its ends: score; 0 for nothing.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().missing_weight, help_heading = SCORE)]
     missing_weight: f64,
+    /// What an atom near an end of its chain, or near a gap in it, costs that touches the other side: score; 0 for nothing.
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().chain_end_weight, help_heading = SCORE)]
+    chain_end_weight: f64,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -255,6 +258,7 @@ impl KernelArguments {
             attraction_weight: self.attraction_weight,
             peptidase_weight: self.peptidase_weight,
             missing_weight: self.missing_weight,
+            chain_end_weight: self.chain_end_weight,
             attract_receptor: self.attract_receptor.clone(),
             attract_ligand: self.attract_ligand.clone(),
             ph: self.ph,

@@ -16,7 +16,7 @@ use super::whole_file::{FileError, write_whole};
 use crate::search::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 31] = [
+pub const COLUMNS: [&str; 32] = [
     "rank",
     "score",
     "cluster",
@@ -48,6 +48,7 @@ pub const COLUMNS: [&str; 31] = [
     "attraction",
     "other_copies",
     "missing",
+    "chain_ends",
 ];
 
 /// A column to append: its name and one field a row.
@@ -110,6 +111,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         row.attraction.map_or(String::new(), number),
         row.other_copies.map_or(String::new(), number),
         row.missing.map_or(String::new(), number),
+        row.chain_ends.map_or(String::new(), number),
     ]
 }
 
@@ -248,6 +250,7 @@ mod tests {
             relaxed: Some(2.5),
             attraction: None,
             missing: None,
+            chain_ends: None,
             other_copies: None,
             rank_score: 1.0 / 3.0,
             z_score: Some(2.5),
@@ -267,9 +270,9 @@ mod tests {
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
              shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
-             fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing\n\
+             fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,,\n"
+             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,,,\n"
         );
     }
 

@@ -117,6 +117,7 @@ mod tests {
             relaxed: None,
             attraction: None,
             missing: None,
+            chain_ends: None,
             other_copies: None,
             rank_score: score,
             z_score: None,

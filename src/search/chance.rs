@@ -76,7 +76,7 @@ mod tests {
             on[effect] = !on[effect];
             assert_eq!(chance(&default(), on, 1000), None);
         }
-        let changes: [fn(&mut DockOptions); 15] = [
+        let changes: [fn(&mut DockOptions); 16] = [
             |options| options.rotations = 7200,
             |options| options.resolution = 6.0,
             |options| options.tolerance = 1e-3,
@@ -87,6 +87,7 @@ mod tests {
             |options| options.restraint_weight = 2.0,
             |options| options.peptidase_weight = 0.0,
             |options| options.missing_weight = 0.0,
+            |options| options.chain_end_weight = 0.0,
             |options| options.poses = 1000,
             |options| options.refine = Some(300),
             |options| options.cluster_radius = 4.0,

@@ -3,6 +3,7 @@
 use super::attracted::{AssumedSite, Attracted};
 use super::effect_choice::EffectChoice;
 use super::error::SearchError;
+use super::loose::Loose;
 use super::meshes::MeshPair;
 use super::options::DockOptions;
 use super::rescoring::Asked;
@@ -11,7 +12,7 @@ use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint}
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{LabelReport, Labels, MissingResidues, Molecule};
+use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
 
 /// Whether an effect is on, and why.
@@ -63,8 +64,8 @@ pub struct Scene {
     pub labels: [LabelReport; 2],
     /// What poses should touch.
     pub attracted: Attracted,
-    /// Residues that are missing from the files of receptor and ligand; none where they cost nothing.
-    pub missing: [MissingResidues; 2],
+    /// Residues that are missing, and those near ends of chains; none where they cost nothing.
+    pub loose: Loose,
     /// The axis of the ring that the molecule is, where two such rings are asked for.
     pub ring_axis: Option<RingAxis>,
 }
@@ -214,7 +215,7 @@ impl Scene {
             decisions,
             labels: [receptor_report, ligand_report],
             attracted,
-            missing: molecules.map(|molecule| missing_residues(molecule, options)),
+            loose: Loose::of(molecules, options),
             ring_axis,
         })
     }
@@ -254,7 +255,7 @@ impl Scene {
             decisions: decisions.collect::<Result<_, _>>()?,
             labels: [LabelReport::default(), LabelReport::default()],
             attracted: Default::default(),
-            missing: Default::default(),
+            loose: Default::default(),
             ring_axis: None,
         })
     }
@@ -266,9 +267,9 @@ impl Scene {
 
     /// What poses are rescored with; `None` where there is nothing to ask.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
-        let asked = Asked::of(&self.decisions, &self.attracted, &self.missing, options);
+        let asked = Asked::of(&self.decisions, &self.attracted, &self.loose, options);
         let bodies = [&self.receptor, &self.ligand];
-        asked.rescorer(bodies, &self.attracted, &self.missing, options)
+        asked.rescorer(bodies, &self.attracted, &self.loose, options)
     }
 }
 
@@ -282,15 +283,6 @@ fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAx
     let copies = copies.map_err(|error| no_ring(error.to_string()))?;
     let axis = RingAxis::of(&copies).map_err(|error| no_ring(error.to_string()))?;
     Ok(Some(axis))
-}
-
-/// Residues that are missing from a molecule's file, where they cost anything.
-fn missing_residues(molecule: &Molecule, options: &DockOptions) -> MissingResidues {
-    if options.missing_weight > 0.0 {
-        molecule.missing_residues()
-    } else {
-        MissingResidues::default()
-    }
 }
 
 /// Points a sphere at which atoms are asked whether water reaches them.

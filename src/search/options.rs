@@ -73,6 +73,8 @@ pub struct DockOptions {
     pub peptidase_weight: f64,
     /// What an atom costs that lies where residues of the other side are missing from its file: score; 0: nothing is known of these.
     pub missing_weight: f64,
+    /// What an atom near an end of its chain costs that touches the other side: score; 0: ends are as good as any.
+    pub chain_end_weight: f64,
     /// What part of an antibody may touch.
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
@@ -224,6 +226,7 @@ impl Default for DockOptions {
             // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
             peptidase_weight: 500.0,
             missing_weight: 10.0,
+            chain_end_weight: 2.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
@@ -246,6 +249,7 @@ impl DockOptions {
     pub fn of_first_version() -> Self {
         Self {
             missing_weight: 0.0,
+            chain_end_weight: 0.0,
             fine_contact_weight: 0.0,
             atom_pair_weight: 0.0,
             relaxed_weight: 0.0,
@@ -295,6 +299,7 @@ impl DockOptions {
             ("attraction-weight", self.attraction_weight, 1e6),
             ("peptidase-weight", self.peptidase_weight, 1e6),
             ("missing-weight", self.missing_weight, 1e6),
+            ("chain-end-weight", self.chain_end_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {

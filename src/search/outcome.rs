@@ -42,9 +42,11 @@ pub struct RankedPose {
     pub attraction: Option<f64>,
     /// What atoms cost that lie where residues of the other side are missing; `None` where none are.
     pub missing: Option<f64>,
+    /// What atoms near ends of chains cost that touch; `None` where none are.
+    pub chain_ends: Option<f64>,
     /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
     pub other_copies: Option<f64>,
-    /// What rows are ranked by: `score`, where poses are rescored `fine_contact`, `atom_pair`, `relaxed`, `attraction` and `missing` besides, and `other_copies`.
+    /// What rows are ranked by: `score`, where poses are rescored `fine_contact`, `atom_pair`, `relaxed`, `attraction`, `missing` and `chain_ends` besides, and `other_copies`.
     pub rank_score: f64,
     /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,

@@ -3,6 +3,7 @@
 use super::attracted::{AssumedSite, Attracted};
 use super::effects::{Decision, LengthUnit, Scene};
 use super::error::SearchError;
+use super::loose::Loose;
 use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
 use super::peaks::Peak;
 use super::rescoring::Asked;
@@ -17,7 +18,7 @@ use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::{LabelReport, MissingResidues, Molecule};
+use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use std::sync::Arc;
@@ -77,8 +78,9 @@ pub struct DockPlan {
     pub(super) attracted: Attracted,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// Residues that are missing from the files of receptor and ligand.
-    pub missing_residues: [MissingResidues; 2],
+    /// Residues that are missing, and those near ends of chains, of receptor and ligand.
+    #[serde(flatten)]
+    pub loose: Loose,
     /// The rings that are sought, if any are.
     #[serde(skip)]
     pub(super) rings: Option<Rings>,
@@ -129,7 +131,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         labels,
         attracted,
-        missing,
+        loose,
         ring_axis,
     } = scene;
     let planned = |options: &DockOptions| {
@@ -258,7 +260,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         decisions,
         attracted,
         labels,
-        missing_residues: missing,
+        loose,
         rings,
         engine: Arc::new(engine),
         options: options.clone(),
@@ -371,12 +373,8 @@ impl DockPlan {
     /// What poses are rescored with; `None` where there is nothing to ask.
     pub(super) fn rescorer(&self) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
-        self.asked().rescorer(
-            bodies,
-            &self.attracted,
-            &self.missing_residues,
-            &self.options,
-        )
+        self.asked()
+            .rescorer(bodies, &self.attracted, &self.loose, &self.options)
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
@@ -386,12 +384,7 @@ impl DockPlan {
 
     /// What poses are asked beside their score.
     pub(crate) fn asked(&self) -> Asked {
-        Asked::of(
-            &self.decisions,
-            &self.attracted,
-            &self.missing_residues,
-            &self.options,
-        )
+        Asked::of(&self.decisions, &self.attracted, &self.loose, &self.options)
     }
 
     /// Whether an effect is on.

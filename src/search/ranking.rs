@@ -204,6 +204,7 @@ impl Candidate {
             relaxed: rescored.relaxed,
             attraction: rescored.attraction,
             missing: rescored.missing,
+            chain_ends: rescored.chain_ends,
             other_copies: others,
             rank_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
             z_score: None,

@@ -2,13 +2,13 @@
 
 use super::attracted::Attracted;
 use super::effects::Decision;
+use super::loose::Loose;
 use super::options::DockOptions;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::rescoring::{
-    AtomPairs, Attraction, FineContacts, MissingContacts, Relaxation, Rescorer,
+    AtomPairs, Attraction, ChainEndContacts, FineContacts, MissingContacts, Relaxation, Rescorer,
 };
 use knotdock_structures::Knots;
-use knotdock_structures::molecule::MissingResidues;
 
 /// Weights of the terms that poses are rescored by; 0 for those that are not asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +18,15 @@ pub(crate) struct Asked {
     relaxed: f64,
     attraction: f64,
     missing: f64,
+    chain_ends: f64,
 }
 
 impl Asked {
-    /// Potentials where the contact effect is on, what should be touched where there is something, and residues where some are missing.
+    /// Potentials where the contact effect is on, what should be touched where there is something, and what is loose where anything is.
     pub fn of(
         decisions: &[Decision],
         attracted: &Attracted,
-        missing: &[MissingResidues; 2],
+        loose: &Loose,
         options: &DockOptions,
     ) -> Self {
         let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
@@ -36,10 +37,8 @@ impl Asked {
             atom_pair: when(typed, options.atom_pair_weight),
             relaxed: when(typed, options.relaxed_weight),
             attraction: when(attracted.any(), attracted.weight),
-            missing: when(
-                missing.iter().any(|side| !side.centers.is_empty()),
-                options.missing_weight,
-            ),
+            missing: when(loose.any_missing(), options.missing_weight),
+            chain_ends: when(loose.any_ends(), options.chain_end_weight),
         }
     }
 
@@ -55,6 +54,7 @@ impl Asked {
             self.atom_pair,
             self.attraction,
             self.missing,
+            self.chain_ends,
         ];
         stands.into_iter().any(|weight| weight > 0.0) || self.relaxes()
     }
@@ -64,7 +64,7 @@ impl Asked {
         &self,
         [receptor, ligand]: [&Knots; 2],
         attracted: &Attracted,
-        missing: &[MissingResidues; 2],
+        loose: &Loose,
         options: &DockOptions,
     ) -> Option<Rescorer> {
         let asked = |weight: f64| (weight > 0.0).then_some(weight);
@@ -81,8 +81,14 @@ impl Asked {
             attraction: asked(self.attraction)
                 .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
             missing: asked(self.missing).map(|weight| {
-                let balls = missing.each_ref().map(|side| side.centers.clone());
+                let balls = loose.missing_residues.each_ref();
+                let balls = balls.map(|side| side.centers.clone());
                 MissingContacts::new(receptor, ligand, balls, weight)
+            }),
+            chain_ends: asked(self.chain_ends).map(|weight| {
+                let ends = loose.chain_ends.each_ref();
+                let ends = ends.map(|side| side.atoms.as_slice());
+                ChainEndContacts::new(receptor, ligand, ends, weight)
             }),
         })
     }

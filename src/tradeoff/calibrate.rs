@@ -157,7 +157,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         decisions: decisions.to_vec(),
         labels: [LabelReport::default(), LabelReport::default()],
         attracted: Default::default(),
-        missing: Default::default(),
+        loose: Default::default(),
         ring_axis: None,
     })
 }

@@ -5,7 +5,8 @@
 //! ranges over all pairs of the types of [`crate::effect::contact`], summed over the atoms themselves; it was learnt from interfaces. [`AtomPairs`] asks
 //! the same of every atom of every residue by itself, in finer steps; so much cannot be learnt from interfaces, and comes from the insides
 //! of proteins. [`Relaxation`] asks it once more, of the pose that the two bodies come to rest in when atoms must not overlap. [`Attraction`] counts
-//! the residues that touch of those that are thought to, [`MissingContacts`] the atoms that lie where residues are missing. [`Rescorer`] holds all of them.
+//! the residues that touch of those that are thought to, [`MissingContacts`] the atoms that lie where residues are missing, and
+//! [`ChainEndContacts`] those near ends of chains that touch. [`Rescorer`] holds all of them.
 //!
 //! As everywhere a higher score is better, lengths are in Å, and positions are taken relative to the middles of the two bodies.
 
@@ -13,6 +14,7 @@ mod atom_pairs;
 mod attraction;
 mod bodies;
 mod cells;
+mod chain_ends;
 mod contacts;
 mod energy_table;
 mod missing;
@@ -24,6 +26,7 @@ mod side;
 
 pub use atom_pairs::AtomPairs;
 pub use attraction::{Attraction, Residues};
+pub use chain_ends::ChainEndContacts;
 pub use contacts::FineContacts;
 pub use missing::MissingContacts;
 pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};

@@ -1,6 +1,8 @@
 //! All that poses are rescored with.
 
-use super::{AtomPairs, Attraction, FineContacts, MissingContacts, Relaxation, Workspace};
+use super::{
+    AtomPairs, Attraction, ChainEndContacts, FineContacts, MissingContacts, Relaxation, Workspace,
+};
 use crate::se3::Pose;
 
 /// Terms that are asked of a pose beside its score.
@@ -15,6 +17,8 @@ pub struct Rescorer {
     pub attraction: Option<Attraction>,
     /// Residues that are missing where the other side may not be.
     pub missing: Option<MissingContacts>,
+    /// Residues near ends of chains, which should not be in contact.
+    pub chain_ends: Option<ChainEndContacts>,
 }
 
 /// What they say of a pose, weighted; higher is better. `None` where the term is left out.
@@ -30,6 +34,8 @@ pub struct Rescored {
     pub attraction: Option<f64>,
     /// The atoms that lie where residues are missing.
     pub missing: Option<f64>,
+    /// The atoms near ends of chains that touch.
+    pub chain_ends: Option<f64>,
 }
 
 impl Rescorer {
@@ -44,6 +50,7 @@ impl Rescorer {
                 .map(|relaxation| relaxation.score(pose, workspace)),
             attraction: self.attraction.as_ref().map(|terms| terms.score(pose)),
             missing: self.missing.as_ref().map(|terms| terms.score(pose)),
+            chain_ends: self.chain_ends.as_ref().map(|terms| terms.score(pose)),
         }
     }
 }
@@ -56,5 +63,6 @@ impl Rescored {
             + self.relaxed.unwrap_or(0.0)
             + self.attraction.unwrap_or(0.0)
             + self.missing.unwrap_or(0.0)
+            + self.chain_ends.unwrap_or(0.0)
     }
 }
