@@ -8,9 +8,6 @@ use super::side::Side;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 
-/// Distance in Å within which two atoms of residues are in contact, as the field counts native contacts.
-const TOUCHING: f64 = 5.0;
-
 /// Residues of receptor and ligand, each as the places of its knots.
 pub type Residues = [Vec<Vec<usize>>; 2];
 
@@ -59,13 +56,9 @@ impl Attraction {
     }
 }
 
-/// How many of the other side's residues, carried by `pose` into this one's frame, have an atom within [`TOUCHING`] of one of its.
+/// How many of the other side's residues, carried by `pose` into this one's frame, have an atom that touches it.
 fn touched(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
-    let touches = |atom: &[f64; 3]| {
-        let mut near = false;
-        side.near(pose, *atom, TOUCHING, |_| near = true);
-        near
-    };
+    let touches = |atom: &[f64; 3]| side.touches(pose, *atom);
     let residues = residues.iter();
     residues.filter(|atoms| atoms.iter().any(touches)).count()
 }

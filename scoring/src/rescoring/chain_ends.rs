@@ -5,9 +5,6 @@ use super::side::Side;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 
-/// Distance in Å within which two atoms are in contact, as the field counts native contacts.
-const TOUCHING: f64 = 5.0;
-
 /// Atoms near ends of chains of both sides, and the atoms that should not touch them.
 pub struct ChainEndContacts {
     /// Positions of the atoms of receptor and ligand that are near ends, each in its own frame (Å).
@@ -45,11 +42,7 @@ impl ChainEndContacts {
 
 /// How many of the other side's atoms, carried by `pose` into this one's frame, touch it.
 fn touching(side: &Side, atoms: &[[f64; 3]], pose: &Pose) -> usize {
-    let touches = |atom: &&[f64; 3]| {
-        let mut near = false;
-        side.near(pose, **atom, TOUCHING, |_| near = true);
-        near
-    };
+    let touches = |atom: &&[f64; 3]| side.touches(pose, **atom);
     atoms.iter().filter(touches).count()
 }
 

@@ -6,6 +6,9 @@ use crate::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
+/// Distance in Å within which two atoms are in contact, as the field counts native contacts.
+const TOUCHING: f64 = 5.0;
+
 /// All atoms of one side, about its middle.
 pub(super) struct Side {
     atoms: Cells,
@@ -29,5 +32,12 @@ impl Side {
     pub fn near(&self, pose: &Pose, point: [f64; 3], reach: f64, mut visit: impl FnMut(usize)) {
         let x = Vector3::from(pose.apply(point)) - self.middle;
         self.atoms.near(x, reach, |atom, _| visit(atom.kind));
+    }
+
+    /// Whether any of the atoms is in contact with an atom of the other side, carried likewise.
+    pub fn touches(&self, pose: &Pose, atom: [f64; 3]) -> bool {
+        let mut near = false;
+        self.near(pose, atom, TOUCHING, |_| near = true);
+        near
     }
 }

@@ -1,26 +1,9 @@
 //! Which residues are near an end.
 
 use super::*;
+use crate::molecule::Format;
 use crate::molecule::groups::residue_runs;
-use crate::molecule::{Atom, Format, InputSpec, ReadOptions, read};
-
-fn example(side: &str) -> Molecule {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/");
-    let file = format!("{folder}1ppe_{side}_unbound.pdb");
-    read(&InputSpec::whole(file), &ReadOptions::default()).unwrap()
-}
-
-/// The molecule without some residues, by their place in it.
-fn without(molecule: &Molecule, left_out: std::ops::Range<usize>) -> Molecule {
-    let runs = residue_runs(&molecule.atoms);
-    let kept = runs
-        .iter()
-        .enumerate()
-        .filter(|(place, _)| !left_out.contains(place));
-    let atoms = kept.flat_map(|(_, run)| &run.atoms);
-    let atoms = atoms.map(|&index| molecule.atoms[index].clone()).collect();
-    Molecule::new(atoms, Format::Pdb)
-}
+use crate::test_support::{capped, example, without};
 
 /// The places of the residues near ends, all of whose atoms must be there.
 fn near(molecule: &Molecule) -> Vec<usize> {
@@ -48,7 +31,7 @@ fn a_short_chain_has_fewer() {
 
 #[test]
 fn both_sides_of_a_gap_count() {
-    let broken = near(&without(&example("receptor"), 100..110));
+    let broken = near(&without(&example("receptor"), 100..110).0);
     // Of 213 residues.
     let expected = (0..8).chain(92..108).chain(205..213);
     assert_eq!(broken, expected.collect::<Vec<_>>());
@@ -56,18 +39,7 @@ fn both_sides_of_a_gap_count() {
 
 #[test]
 fn an_end_that_something_is_bonded_to_is_none() {
-    let mut capped = example("receptor");
-    let last = capped.atoms.iter().rfind(|atom| atom.name == "C").unwrap();
-    let cap = Atom {
-        name: "N".to_owned(),
-        residue_name: "NH2".to_owned(),
-        residue_number: 900,
-        element: "N".to_owned(),
-        position: [last.position[0] + 1.3, last.position[1], last.position[2]],
-        hetero: true,
-        ..last.clone()
-    };
-    capped.atoms.push(cap);
+    let capped = capped(example("receptor"));
     assert_eq!(near(&capped), (0..8).collect::<Vec<_>>());
 }
 
@@ -75,6 +47,6 @@ fn an_end_that_something_is_bonded_to_is_none() {
 fn no_chains_have_no_ends() {
     let nothing = Molecule::new(Vec::new(), Format::Pdb);
     assert_eq!(nothing.chain_ends(), ChainEnds::default());
-    let peptide = without(&example("receptor"), 19..223);
+    let (peptide, _) = without(&example("receptor"), 19..223);
     assert_eq!(near(&peptide), [0usize; 0]);
 }

@@ -1,30 +1,12 @@
 //! What is found missing, and where balls stand for it.
 
 use super::*;
+use crate::molecule::Format;
 use crate::molecule::groups::residue_runs;
-use crate::molecule::{Atom, Format, InputSpec, ReadOptions, read};
+use crate::test_support::{capped, example, without};
 
 fn trypsin() -> Molecule {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/");
-    let file = format!("{folder}1ppe_receptor_unbound.pdb");
-    read(&InputSpec::whole(file), &ReadOptions::default()).unwrap()
-}
-
-/// The molecule without some residues, by their place in it.
-fn without(molecule: &Molecule, left_out: std::ops::Range<usize>) -> (Molecule, Vec<Atom>) {
-    let runs = residue_runs(&molecule.atoms);
-    let gone: Vec<usize> = runs[left_out]
-        .iter()
-        .flat_map(|run| run.atoms.iter().copied())
-        .collect();
-    let (taken, kept): (Vec<_>, Vec<_>) = molecule
-        .atoms
-        .iter()
-        .cloned()
-        .enumerate()
-        .partition(|(index, _)| gone.contains(index));
-    let atoms = |part: Vec<(usize, Atom)>| part.into_iter().map(|(_, atom)| atom).collect();
-    (Molecule::new(atoms(kept), Format::Pdb), atoms(taken))
+    example("receptor")
 }
 
 fn counts(missing: &MissingResidues) -> [usize; 4] {
@@ -90,18 +72,7 @@ fn balls_go_with_the_molecule() {
 fn peptides_and_capped_ends_have_nothing_past_them() {
     let (peptide, _) = without(&trypsin(), 19..223);
     assert_eq!(counts(&peptide.missing_residues()), [0; 4]);
-    let mut capped = trypsin();
-    let last = capped.atoms.iter().rfind(|atom| atom.name == "C").unwrap();
-    let cap = Atom {
-        name: "N".to_owned(),
-        residue_name: "NH2".to_owned(),
-        residue_number: 900,
-        element: "N".to_owned(),
-        position: [last.position[0] + 1.3, last.position[1], last.position[2]],
-        hetero: true,
-        ..last.clone()
-    };
-    capped.atoms.push(cap);
+    let capped = capped(trypsin());
     assert_eq!(counts(&capped.missing_residues()), [0, 0, 1, 2]);
 }
 
