@@ -314,3 +314,30 @@ fn a_report_that_cannot_be_written_is_a_failure() {
         assert!(told.contains("cannot write to standard output"), "{told}");
     }
 }
+
+/// A pipe can be read but once: what is recorded, listed and measured is of one reading.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pipe_is_recorded_as_what_came_through_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/structures/examples/1ppe_ligand_unbound.pdb"
+    );
+    let inspect = |input: &str, atoms: &str| -> Value {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .args(["inspect", input, "--atoms", atoms, "--json"])
+            .write_stdin(fs::read(file).unwrap())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let [whole, piped] = [(file, "whole.csv"), ("/dev/stdin", "piped.csv")]
+        .map(|(input, atoms)| inspect(input, atoms));
+    assert_eq!(whole["input"]["sha256"], piped["input"]["sha256"]);
+    assert_eq!(whole["labels"], piped["labels"]);
+    let table = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(table("whole.csv"), table("piped.csv"));
+}

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
-use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
+use knotdock_structures::molecule::{
+    InputSpec, Listed, Molecule, ReadOptions, file_bytes, read_bytes, read_bytes_listed,
+};
 
 use super::failure::Failure;
 use super::mesh_input::is_mesh;
@@ -40,10 +42,22 @@ impl Input {
 
     /// Reads what a specification names.
     pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
+        // Read once: what is recorded is what was read, of a pipe, too.
+        let bytes = file_bytes(&spec.path)?;
         Ok(Self {
-            molecule: read(spec, options)?,
-            record: InputRecord::new(spec)?,
+            record: InputRecord::new(spec, &bytes),
+            molecule: read_bytes(spec, bytes, options)?,
         })
+    }
+
+    /// As [`Input::read`], with every atom listed, kept or dropped.
+    pub fn read_listed(text: &str, options: &ReadOptions) -> Result<(Self, Vec<Listed>), Failure> {
+        let spec = InputSpec::parse(text)?;
+        refuse_mesh(&spec)?;
+        let bytes = file_bytes(&spec.path)?;
+        let record = InputRecord::new(&spec, &bytes);
+        let (molecule, listed) = read_bytes_listed(&spec, bytes, options)?;
+        Ok((Self { record, molecule }, listed))
     }
 
     /// The structure for run.json.

@@ -11,7 +11,6 @@ use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
     ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
-    read_listed,
 };
 use serde_json::json;
 
@@ -80,7 +79,12 @@ impl Inspect {
             }
             None => None,
         };
-        let input = Input::read(&self.file, &reading)?;
+        let (input, listed) = if self.atoms.is_some() {
+            let (input, listed) = Input::read_listed(&self.file, &reading)?;
+            (input, Some(listed))
+        } else {
+            (Input::read(&self.file, &reading)?, None)
+        };
         let molecule = &input.molecule;
         check_used(&reading, [molecule])?;
         if let (Some(file), Some(format)) = (&self.write, format) {
@@ -113,8 +117,7 @@ impl Inspect {
                 &active_sites
             )
         ));
-        if let Some(path) = &self.atoms {
-            let (_, listed) = read_listed(&InputSpec::parse(&self.file)?, &reading)?;
+        if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;
             console.say(format!("{} atoms in {}", listed.len(), path.display()));
         }

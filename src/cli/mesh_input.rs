@@ -41,10 +41,11 @@ impl MeshInput {
                 .at(&spec.path)
                 .remedy("leave out the colon and what follows it"));
         }
-        let (mesh, report) = mesh::read(&spec.path)?;
+        let bytes = mesh::file_bytes(&spec.path)?;
+        let (mesh, report) = mesh::read_bytes(&spec.path, &bytes)?;
         let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&spec.path))?;
         Ok(Self {
-            record: InputRecord::new(spec)?,
+            record: InputRecord::new(spec, &bytes),
             mesh,
             report,
             solid,

@@ -52,18 +52,15 @@ impl InputRecordError {
 }
 
 impl InputRecord {
-    /// Records a file.
-    ///
-    /// # Errors
-    /// [`InputRecordError::Read`].
-    pub fn new(input: &InputSpec) -> Result<Self, InputRecordError> {
+    /// Records a file that holds these bytes.
+    pub fn new(input: &InputSpec, bytes: &[u8]) -> Self {
         let path = std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone());
-        Ok(Self {
+        Self {
             // JSON holds no bytes that are not Unicode: such a path is recorded for people, not to be found again.
             path: PathBuf::from(path.to_string_lossy().into_owned()),
             chains: input.chains.clone(),
-            sha256: sha256(&input.path)?,
-        })
+            sha256: sha256(bytes),
+        }
     }
 
     /// Whether the other has the same content, and the same chains are read of it.
@@ -103,7 +100,11 @@ impl InputRecord {
 
     /// Checks that a file is the one recorded.
     fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
-        let found = sha256(path)?;
+        let bytes = fs::read(path).map_err(|source| InputRecordError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let found = sha256(&bytes);
         if found == self.sha256 {
             Ok(())
         } else {
@@ -116,16 +117,10 @@ impl InputRecord {
     }
 }
 
-/// SHA-256 of a file's bytes, in hexadecimal.
-fn sha256(path: &Path) -> Result<String, InputRecordError> {
-    let bytes = fs::read(path).map_err(|source| InputRecordError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(Sha256::digest(&bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect())
+/// SHA-256 in hexadecimal.
+fn sha256(bytes: &[u8]) -> String {
+    let digits = Sha256::digest(bytes);
+    digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The native complex that the poses were measured against.
@@ -162,7 +157,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("input.pdb");
         fs::write(&path, "abc").unwrap();
-        let record = InputRecord::new(&InputSpec::whole(&path)).unwrap();
+        let record = InputRecord::new(&InputSpec::whole(&path), b"abc");
         // FIPS 180-2, appendix B.1
         assert_eq!(
             record.sha256,

@@ -28,7 +28,7 @@ pub(crate) mod winding;
 
 pub use error::{MeshError, MeshErrorKind};
 pub use figure::Figure;
-pub use read::{MeshFormat, from_triangles, parse, read};
+pub use read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
 pub use report::MeshReport;
 pub use solid::{Frame, Solid};
 pub use surface::SurfaceSample;

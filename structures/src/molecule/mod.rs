@@ -69,9 +69,10 @@ pub use missing::MissingResidues;
 pub use peptidase::ActiveSite;
 pub use plain_names::{plain_atom_name, plain_residue_name};
 pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
-pub use read::{Listed, read, read_listed};
+pub use read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
 pub use residue_selection::{ResidueSelection, UnknownResidues};
+pub use source::file_bytes;
 pub use write::{
     ChainMap, ChainName, Partner, WriteError, complex_format, fits, write_complex, write_molecule,
     write_renamed,

@@ -26,7 +26,19 @@ pub struct Listed {
 /// # Errors
 /// [`ReadError`], with the file, the line where there is one, and a remedy.
 pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, ReadError> {
-    read_telling(spec, options, &mut |_, _| {})
+    read_bytes(spec, source::file_bytes(&spec.path)?, options)
+}
+
+/// As [`read`], of a file's bytes ([`file_bytes`](super::file_bytes)).
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(
+    spec: &InputSpec,
+    bytes: Vec<u8>,
+    options: &ReadOptions,
+) -> Result<Molecule, ReadError> {
+    read_telling(spec, bytes, options, &mut |_, _| {})
 }
 
 /// As [`read`], with every atom of the model listed in file order, kept or dropped.
@@ -37,8 +49,20 @@ pub fn read_listed(
     spec: &InputSpec,
     options: &ReadOptions,
 ) -> Result<(Molecule, Vec<Listed>), ReadError> {
+    read_bytes_listed(spec, source::file_bytes(&spec.path)?, options)
+}
+
+/// As [`read_listed`], of a file's bytes.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes_listed(
+    spec: &InputSpec,
+    bytes: Vec<u8>,
+    options: &ReadOptions,
+) -> Result<(Molecule, Vec<Listed>), ReadError> {
     let mut listed = Vec::new();
-    let molecule = read_telling(spec, options, &mut |atom, kind| {
+    let molecule = read_telling(spec, bytes, options, &mut |atom, kind| {
         listed.push(Listed {
             atom,
             dropped: Some(kind),
@@ -54,11 +78,12 @@ pub fn read_listed(
 
 fn read_telling(
     spec: &InputSpec,
+    bytes: Vec<u8>,
     options: &ReadOptions,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Molecule, ReadError> {
     let file = spec.path.as_path();
-    let source = source::open(file)?;
+    let source = source::unpack(file, bytes)?;
     let not_a_structure = || ReadError::NotAStructure {
         file: file.to_path_buf(),
     };

@@ -24,8 +24,11 @@ pub(super) struct Source {
     pub(super) compressed: bool,
 }
 
-/// Reads and, by its magic bytes whatever the name, unpacks a file.
-pub(super) fn open(path: &Path) -> Result<Source, ReadError> {
+/// The bytes of a structure's file as it stands, packed or not. What is read once can be a pipe.
+///
+/// # Errors
+/// [`ReadError::Missing`], [`ReadError::Directory`], [`ReadError::Unreadable`] and [`ReadError::TooLarge`].
+pub fn file_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     let file = || path.to_path_buf();
     let unreadable = |source: std::io::Error| match source.kind() {
         ErrorKind::NotFound => ReadError::Missing { file: file() },
@@ -41,6 +44,22 @@ pub(super) fn open(path: &Path) -> Result<Source, ReadError> {
     File::open(path)
         .and_then(|opened| opened.take(LIMIT + 1).read_to_end(&mut bytes))
         .map_err(unreadable)?;
+    within_limit(path, bytes)
+}
+
+/// Refuses what is too large.
+fn within_limit(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ReadError> {
+    if bytes.len() as u64 > LIMIT {
+        return Err(ReadError::TooLarge {
+            file: path.to_path_buf(),
+            limit: LIMIT,
+        });
+    }
+    Ok(bytes)
+}
+
+/// Unpacks the bytes of a file, by its magic bytes whatever the name; `path` is for errors.
+pub(super) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadError> {
     let compressed = bytes.starts_with(&GZIP_MAGIC);
     if compressed {
         let mut unpacked = Vec::with_capacity(bytes.len().saturating_mul(4));
@@ -48,16 +67,10 @@ pub(super) fn open(path: &Path) -> Result<Source, ReadError> {
             .take(LIMIT + 1)
             .read_to_end(&mut unpacked)
             .map_err(|source| ReadError::Gzip {
-                file: file(),
+                file: path.to_path_buf(),
                 source,
             })?;
-        bytes = unpacked;
-    }
-    if bytes.len() as u64 > LIMIT {
-        return Err(ReadError::TooLarge {
-            file: file(),
-            limit: LIMIT,
-        });
+        bytes = within_limit(path, unpacked)?;
     }
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,

@@ -90,6 +90,14 @@ impl Soup {
 /// [`MeshError`] when the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a
 /// coordinate that is not finite.
 pub fn read(path: &Path) -> Result<(Mesh, MeshReport), MeshError> {
+    read_bytes(path, &file_bytes(path)?)
+}
+
+/// The bytes of a mesh's file. What is read once can be a pipe.
+///
+/// # Errors
+/// [`MeshError`] when the file cannot be read or is too large.
+pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     let at = |kind| MeshError::at(path, kind);
     let metadata = fs::metadata(path).map_err(|error| {
         at(match error.kind() {
@@ -106,13 +114,21 @@ pub fn read(path: &Path) -> Result<(Mesh, MeshReport), MeshError> {
             metadata.len()
         ))));
     }
-    let bytes = fs::read(path).map_err(|error| at(MeshErrorKind::Unreadable(error)))?;
+    fs::read(path).map_err(|error| at(MeshErrorKind::Unreadable(error)))
+}
+
+/// As [`read`], of a file's bytes; the path's ending tells the format where they leave it open.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshError> {
+    let at = |kind| MeshError::at(path, kind);
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let format =
-        tell_format(&bytes, ending.as_deref()).ok_or_else(|| at(MeshErrorKind::UnknownFormat))?;
-    parse(&bytes, format).map_err(at)
+        tell_format(bytes, ending.as_deref()).ok_or_else(|| at(MeshErrorKind::UnknownFormat))?;
+    parse(bytes, format).map_err(at)
 }
 
 /// The format, by what the file begins with where that is sure, else by the ending.
