@@ -122,6 +122,23 @@ fn the_fast_inside_test_is_the_slow_one() {
     }
 }
 
+/// Both sides of every triangle, as programs for pictures write them, bound nothing; the surface twice has twice the volume.
+#[test]
+fn a_surface_that_is_there_twice_is_taken_once() {
+    let ball = sphere([0.0; 3], 1.0, 8);
+    let (once, plain) = ball.mesh();
+    assert_eq!(plain.times, 1);
+    for again in [ball.clone().inverted(), ball.clone()] {
+        let (mesh, report) = ball.clone().and(&again).mesh();
+        assert_eq!((report.times, report.triangles), (2, plain.triangles));
+        assert_eq!((report.parts, report.nonmanifold_edges), (1, 0));
+        assert_eq!(report.file_triangles, 2 * plain.file_triangles);
+        assert_eq!(mesh.volume(), once.volume());
+        assert!(report.is_closed() && !report.is_sound());
+        assert!(report.warnings()[0].contains("each triangle 2 times"));
+    }
+}
+
 #[test]
 fn triangles_and_parts_that_face_the_wrong_way_are_turned() {
     let ball = sphere([0.0; 3], 1.0, 8);

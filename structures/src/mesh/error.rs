@@ -43,7 +43,7 @@ pub enum MeshErrorKind {
     },
     /// A coordinate is NaN, infinite, or so large that its square overflows.
     #[error(
-        "{what} has coordinate {value}; coordinates must be finite and below 1e100 in magnitude"
+        "{what} has coordinate {value:e}; coordinates must be finite and below 1e100 in magnitude"
     )]
     Coordinate {
         /// 1-based line, in text formats.

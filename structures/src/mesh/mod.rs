@@ -10,13 +10,14 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to triangles) -> `weld` -> `topology` (open and non-manifold edges, parts, orientation) ->
+//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts, orientation) ->
 //! [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
 
 mod distance;
 mod error;
 mod figure;
 mod read;
+mod repeats;
 mod report;
 mod solid;
 mod surface;

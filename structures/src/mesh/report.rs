@@ -25,6 +25,8 @@ pub struct MeshReport {
     pub triangles: usize,
     /// Triangles dropped because two of their corners are one vertex, and kept ones without area.
     pub degenerate_triangles: usize,
+    /// How often the file holds each triangle, one way round or both; they are kept once. 1 but for surfaces that are there several times.
+    pub times: usize,
     /// Edges of one triangle only.
     pub open_edges: usize,
     /// Length of the open edges, in the file's unit.
@@ -52,13 +54,21 @@ pub struct MeshReport {
     pub high: [f64; 3],
 }
 
+/// What was dropped of a file's triangles.
+pub(super) struct Dropped {
+    /// Those with two corners in one place.
+    pub collapsed: usize,
+    /// How often each of the others was there.
+    pub times: usize,
+}
+
 impl MeshReport {
     pub(super) fn new(
         mesh: &Mesh,
         format: Option<MeshFormat>,
         file_vertices: usize,
         file_triangles: usize,
-        collapsed: usize,
+        dropped: Dropped,
         topology: &Topology,
     ) -> Self {
         let slivers = mesh
@@ -79,7 +89,8 @@ impl MeshReport {
             file_triangles,
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            degenerate_triangles: collapsed + slivers,
+            degenerate_triangles: dropped.collapsed + slivers,
+            times: dropped.times,
             open_edges: topology.open_edges,
             open_length: topology.open_length,
             nonmanifold_edges: topology.nonmanifold_edges,
@@ -105,14 +116,21 @@ impl MeshReport {
         self.unbalanced_edges == 0
     }
 
-    /// Whether the file's surface was closed and faced outward as it came, which is what `--strict` asks for.
+    /// Whether the file's surface was closed, faced outward and was there once as it came, which is what `--strict` asks for.
     pub fn is_sound(&self) -> bool {
-        self.is_closed() && self.turned_triangles == 0 && self.inverted_parts == 0
+        let turned = self.turned_triangles > 0 || self.inverted_parts > 0;
+        self.is_closed() && !turned && self.times == 1
     }
 
     /// What a user has to know before trusting what is made of the mesh, a sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
+        if self.times > 1 {
+            warnings.push(format!(
+                "the file holds each triangle {} times, one way round or both; it is taken once",
+                self.times
+            ));
+        }
         if !self.is_closed() {
             warnings.push(format!(
                 "the mesh is not closed: {} of its edges do not balance ({} open, {} long in all; {} of more than two triangles) and \

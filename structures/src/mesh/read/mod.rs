@@ -17,8 +17,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::error::{MeshError, MeshErrorKind};
-use super::report::MeshReport;
-use super::{Mesh, topology, weld};
+use super::report::{Dropped, MeshReport};
+use super::{Mesh, repeats, topology, weld};
 
 /// File format of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -205,9 +205,11 @@ fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport)
     let read_triangles = soup.triangles.len();
     let welded = weld::weld(soup.positions, soup.triangles)?;
     let collapsed = read_triangles - welded.triangles.len();
+    let mut triangles = welded.triangles;
+    let times = repeats::keep_first(&mut triangles);
     let mut mesh = Mesh {
         positions: welded.positions,
-        triangles: welded.triangles,
+        triangles,
         closed: false,
     };
     if mesh
@@ -229,7 +231,7 @@ fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport)
         format,
         read_vertices,
         read_triangles,
-        collapsed,
+        Dropped { collapsed, times },
         &topology,
     );
     Ok((mesh, report))
