@@ -12,6 +12,7 @@ mod stl;
 mod words;
 
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 
 use serde::Serialize;
@@ -108,13 +109,23 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     if metadata.is_dir() {
         return Err(at(MeshErrorKind::Directory));
     }
+    let too_large = |bytes: String| {
+        at(MeshErrorKind::TooLarge(format!(
+            "{bytes} bytes, where {LARGEST_FILE} are read"
+        )))
+    };
     if metadata.len() > LARGEST_FILE {
-        return Err(at(MeshErrorKind::TooLarge(format!(
-            "{} bytes, where {LARGEST_FILE} are read",
-            metadata.len()
-        ))));
+        return Err(too_large(metadata.len().to_string()));
     }
-    fs::read(path).map_err(|error| at(MeshErrorKind::Unreadable(error)))
+    // A pipe has no length beforehand.
+    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    fs::File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(|error| at(MeshErrorKind::Unreadable(error)))?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(too_large(format!("more than {LARGEST_FILE}")));
+    }
+    Ok(bytes)
 }
 
 /// As [`read`], of a file's bytes; the path's ending tells the format where they leave it open.
