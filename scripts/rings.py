@@ -104,6 +104,8 @@ def dock(options, ring, seed, with_symmetry):
     ends = [index for index, line in enumerate(lines) if line.startswith("ENDMDL")]
     first_model = lines[: ends[0]] if ends else lines
     atoms = [line for line in first_model if line.startswith(("ATOM  ", "HETATM")) and line[21] in docked]
+    if not atoms:
+        raise RuntimeError(f"{path} has no chain {', '.join(docked)}")
     molecule.write_text(turn("\n".join(atoms), path.name, seed))
     run = folder / ("ring" if with_symmetry else "pair")
     partner = ["--symmetry", symmetry_of(rings)] if with_symmetry else [str(molecule)]
