@@ -1,0 +1,104 @@
+//! What is not sure to be where a file shows it, or not shown: missing residues and ends of chains cost poses that meet them.
+
+use super::*;
+
+/// Atoms that lie past the ends of the other side's chain cost their weight each, of whatever effects; scores stay as they were.
+#[test]
+fn what_lies_where_residues_are_missing_costs() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let table = |weight: &str| {
+        let options = ["--rotations", "24", "--effects", "shape", "--no-cluster"];
+        let more = ["--refine", "0", "--missing-weight", weight];
+        let none = ["--chain-end-weight", "0"];
+        let all = [&options[..], &more, &none].concat();
+        let (object, table) = dock(folder.path(), &receptor, &ligand, &all);
+        let missing = object["run"]["plan"]["missing_residues"][0].clone();
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let rows = reader.deserialize().map(|row| row.unwrap());
+        let rows: Vec<std::collections::BTreeMap<String, String>> = rows.collect();
+        (rows, missing)
+    };
+    let (rows, told) = table("12.5");
+    assert_eq!((&told["ends"], &told["balls"]), (&2.into(), &4.into()));
+    let (plain, told) = table("0");
+    assert_eq!(told["balls"], 0);
+    assert!(plain.iter().all(|row| row["missing"].is_empty()));
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
+        row[name].parse().unwrap()
+    };
+    let mut met = 0;
+    for row in &rows {
+        let missing = number(row, "missing");
+        assert!(missing <= 0.0 && (missing / 12.5).fract() == 0.0);
+        assert_eq!(number(row, "rank_score"), number(row, "score") + missing);
+        met += usize::from(missing < 0.0);
+    }
+    assert!(met > 0 && met < rows.len(), "{met} of {}", rows.len());
+    let scores = |rows: &[std::collections::BTreeMap<String, String>]| {
+        let mut scores: Vec<String> = rows.iter().map(|row| row["score"].clone()).collect();
+        scores.sort();
+        scores
+    };
+    assert_eq!(scores(&rows), scores(&plain));
+}
+
+/// Atoms of the first and last residues of a chain that touch the other side cost their weight each: as many as all pairs of atoms tell.
+#[test]
+fn contacts_of_ends_of_chains_cost() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let options = "--rotations 24 --effects shape --no-cluster --refine 0 --missing-weight 0 --chain-end-weight 3";
+    let options: Vec<&str> = options.split(' ').collect();
+    let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
+    let plan = &object["run"]["plan"];
+    assert_eq!(plan["chain_ends"][0]["residues"], 16);
+    assert_eq!(plan["chain_ends"][1]["residues"], 2);
+    assert_eq!(plan["missing_residues"][0]["ends"], 0);
+    // Of 223 residues eight are near each end, of 29 one; no number of these two files comes twice.
+    let atoms = |file: &str, near: usize| -> Vec<([f64; 3], bool)> {
+        let text = std::fs::read_to_string(file).unwrap();
+        let lines: Vec<&str> = text
+            .lines()
+            .filter(|line| line.starts_with("ATOM"))
+            .collect();
+        let mut residues: Vec<&str> = lines.iter().map(|line| &line[22..27]).collect();
+        residues.dedup();
+        let ends = [&residues[..near], &residues[residues.len() - near..]].concat();
+        let coordinate = |line: &str, from: usize| line[from..from + 8].trim().parse().unwrap();
+        let atom = |line: &&str| {
+            let position = [30, 38, 46].map(|from| coordinate(line, from));
+            (position, ends.contains(&&line[22..27]))
+        };
+        lines.iter().map(atom).collect()
+    };
+    let (fixed, moving) = (atoms(&receptor, 8), atoms(&ligand, 1));
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let mut met = 0;
+    for row in reader.deserialize().take(30) {
+        let row: std::collections::BTreeMap<String, String> = row.unwrap();
+        let number = |name: &str| -> f64 { row[name].parse().unwrap() };
+        let quaternion = ["qw", "qx", "qy", "qz"].map(number);
+        let pose = Pose::from_parts(quaternion, ["tx", "ty", "tz"].map(number));
+        let placed: Vec<([f64; 3], bool)> = moving
+            .iter()
+            .map(|(position, end)| (pose.apply(*position), *end))
+            .collect();
+        let touches = |atom: &[f64; 3], others: &[([f64; 3], bool)]| {
+            others.iter().any(|(other, _)| {
+                let squares = (0..3).map(|axis| (atom[axis] - other[axis]).powi(2));
+                squares.sum::<f64>() < 25.0
+            })
+        };
+        let touching = |own: &[([f64; 3], bool)], others: &[([f64; 3], bool)]| {
+            own.iter()
+                .filter(|(atom, end)| *end && touches(atom, others))
+                .count()
+        };
+        let atoms = touching(&fixed, &placed) + touching(&placed, &fixed);
+        assert_eq!(number("chain_ends"), -3.0 * atoms as f64);
+        assert_eq!(number("rank_score"), number("score") + number("chain_ends"));
+        met += usize::from(atoms > 0);
+    }
+    assert!(met > 0, "no pose touches an end");
+}

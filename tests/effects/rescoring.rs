@@ -1,0 +1,86 @@
+//! Rescoring of what a search keeps.
+
+use super::*;
+
+/// Rescoring follows the contact effect and its own weight, ranks by the sum, and leaves every pose's score as it was.
+#[test]
+fn rescoring_orders_poses_and_changes_no_score() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let table = |options: &[&str]| {
+        let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
+        all.extend(["--peptidase-weight", "0", "--missing-weight", "0"]);
+        all.extend(["--chain-end-weight", "0"]);
+        all.extend(options);
+        let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        reader
+            .deserialize()
+            .map(|row| row.unwrap())
+            .collect::<Vec<std::collections::BTreeMap<String, String>>>()
+    };
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
+        row[name].parse().unwrap()
+    };
+    const TERMS: [(&str, &str); 3] = [
+        ("--fine-contact-weight", "fine_contact"),
+        ("--atom-pair-weight", "atom_pair"),
+        ("--relaxed-weight", "relaxed"),
+    ];
+    let weighed = |weights: [&str; 3]| {
+        let options = TERMS.iter().zip(weights);
+        let options = options.flat_map(|((option, _), weight)| [*option, weight]);
+        table(&options.collect::<Vec<_>>())
+    };
+    let (plain, once, twice) = (weighed(["0"; 3]), weighed(["1"; 3]), weighed(["2"; 3]));
+    for row in plain.iter().chain(&table(&["--effects", "shape"])) {
+        for (_, term) in TERMS {
+            assert_eq!(
+                (row[term].as_str(), &row["rank_score"]),
+                ("", &row["score"])
+            );
+        }
+    }
+    // By default all.
+    assert_eq!(table(&[]), weighed(["2", "1", "3"]));
+    // Each term by itself.
+    for (on, (_, only)) in TERMS.iter().enumerate() {
+        let weights = std::array::from_fn(|term| if term == on { "2" } else { "0" });
+        for row in weighed(weights) {
+            for (term, (_, name)) in TERMS.iter().enumerate() {
+                assert_eq!(row[*name].is_empty(), term != on);
+            }
+            assert_eq!(
+                number(&row, "rank_score"),
+                number(&row, "score") + number(&row, only)
+            );
+        }
+    }
+    let mut moved = 0;
+    for row in &twice {
+        let same = |other: &&std::collections::BTreeMap<String, String>| {
+            ["rotation", "tx", "ty", "tz"]
+                .iter()
+                .all(|name| other[*name] == row[*name])
+        };
+        let (before, half) = (
+            plain.iter().find(same).unwrap(),
+            once.iter().find(same).unwrap(),
+        );
+        assert_eq!(before["score"], row["score"]);
+        moved += usize::from(before["rank"] != row["rank"]);
+        let mut all = 0.0;
+        for (_, term) in TERMS {
+            let (one, two) = (number(half, term), number(row, term));
+            assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
+            all += two;
+        }
+        assert_eq!(number(row, "rank_score"), number(row, "score") + all);
+    }
+    assert!(moved > 0, "rescoring must matter");
+    assert!(
+        twice
+            .windows(2)
+            .all(|pair| number(&pair[0], "rank_score") >= number(&pair[1], "rank_score"))
+    );
+}
