@@ -129,6 +129,15 @@ mod tests {
     }
 
     #[test]
+    fn lines_end_in_lf_crlf_or_cr() {
+        let text = format!("solid\n{FACET}{FACET}endsolid\n");
+        for end in ["\n", "\r\n", "\r"] {
+            let soup = parse(text.replace('\n', end).as_bytes()).unwrap();
+            assert_eq!(soup.triangles.len(), 2, "{end:?}");
+        }
+    }
+
+    #[test]
     fn lines_are_those_of_the_file() {
         let broken = format!(
             "\n\n\nsolid\n{}",

@@ -59,11 +59,12 @@ fn shortened(word: &str) -> String {
     word.chars().take(40).collect()
 }
 
-/// The lines of a text that are not blank; what follows `#` is a comment where the format has them.
+/// The lines of a text that are not blank, ended by LF, CR LF, or the lone CR of old systems; what follows `#` is a comment where the format has them.
 ///
 /// Bytes that are no UTF-8 stand only in names and comments of real files, so they are replaced and not refused.
 pub fn lines(text: &str, comments: bool) -> impl Iterator<Item = Line<'_>> {
-    text.split('\n')
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    text.split(end)
         .enumerate()
         .filter_map(move |(index, text)| {
             let text = match text.find('#') {
