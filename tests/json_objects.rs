@@ -220,7 +220,7 @@ fn inspect_tells_what_was_read_and_assumed() {
             "accessible_area",
             "active_sites",
             "antibody",
-            "chain_ends",
+            "chain_end_residues",
             "input",
             "labels",
             "missing_residues",

@@ -142,7 +142,7 @@ pub fn chance_told(chance: f64) -> String {
 
 /// What is loose of each side and costs poses something: residues that its file does not show, and those near ends.
 pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
-    let of = loose.missing_residues.iter().zip(&loose.chain_ends);
+    let of = loose.missing_residues.iter().zip(&loose.chain_end_residues);
     let told = sides.iter().zip(of).map(|(side, (missing, near))| {
         let (mut parts, mut options) = (Vec::new(), Vec::new());
         if missing.gaps > 0 {

@@ -135,7 +135,7 @@ impl Inspect {
             "antibody": antibody.map(|antibody| antibody.domains),
             "active_sites": active_sites,
             "missing_residues": missing,
-            "chain_ends": ends,
+            "chain_end_residues": ends,
             "accessible_area": area,
             "volume": volume.value,
             "volume_error": volume.error,

@@ -128,7 +128,10 @@ impl Score {
                     "missing_residues",
                     serde_json::to_value(&scene.loose.missing_residues),
                 ),
-                ("chain_ends", serde_json::to_value(&scene.loose.chain_ends)),
+                (
+                    "chain_end_residues",
+                    serde_json::to_value(&scene.loose.chain_end_residues),
+                ),
             ] {
                 object.insert(name.to_owned(), loose.map_err(Failure::other)?);
             }

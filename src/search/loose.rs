@@ -10,7 +10,7 @@ pub struct Loose {
     /// Residues that are missing from their files.
     pub missing_residues: [MissingResidues; 2],
     /// Residues near ends of their chains.
-    pub chain_ends: [ChainEnds; 2],
+    pub chain_end_residues: [ChainEnds; 2],
 }
 
 impl Loose {
@@ -21,7 +21,7 @@ impl Loose {
             loose.missing_residues = molecules.map(Molecule::missing_residues);
         }
         if options.chain_end_weight > 0.0 {
-            loose.chain_ends = molecules.map(Molecule::chain_ends);
+            loose.chain_end_residues = molecules.map(Molecule::chain_ends);
         }
         loose
     }
@@ -35,6 +35,8 @@ impl Loose {
 
     /// Whether a pose can meet residues near ends of chains.
     pub(super) fn any_ends(&self) -> bool {
-        self.chain_ends.iter().any(|side| !side.atoms.is_empty())
+        self.chain_end_residues
+            .iter()
+            .any(|side| !side.atoms.is_empty())
     }
 }

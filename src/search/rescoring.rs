@@ -86,7 +86,7 @@ impl Asked {
                 MissingContacts::new(receptor, ligand, balls, weight)
             }),
             chain_ends: asked(self.chain_ends).map(|weight| {
-                let ends = loose.chain_ends.each_ref();
+                let ends = loose.chain_end_residues.each_ref();
                 let ends = ends.map(|side| side.atoms.as_slice());
                 ChainEndContacts::new(receptor, ligand, ends, weight)
             }),

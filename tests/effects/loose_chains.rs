@@ -52,8 +52,8 @@ fn contacts_of_ends_of_chains_cost() {
     let options: Vec<&str> = options.split(' ').collect();
     let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
     let plan = &object["run"]["plan"];
-    assert_eq!(plan["chain_ends"][0]["residues"], 16);
-    assert_eq!(plan["chain_ends"][1]["residues"], 2);
+    assert_eq!(plan["chain_end_residues"][0]["residues"], 16);
+    assert_eq!(plan["chain_end_residues"][1]["residues"], 2);
     assert_eq!(plan["missing_residues"][0]["ends"], 0);
     // Of 223 residues eight are near each end, of 29 one; no number of these two files comes twice.
     let atoms = |file: &str, near: usize| -> Vec<([f64; 3], bool)> {

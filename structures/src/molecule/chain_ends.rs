@@ -1,7 +1,9 @@
 //! Residues near the ends of chains and near gaps in them, which move more than the rest of a body: what is seen of them in a crystal is one place of
 //! many, and wrong poses lie against that place more often than right ones.
 
-use serde::{Serialize, Serializer};
+use std::ops::Range;
+
+use serde::Serialize;
 
 use super::Molecule;
 use super::groups::residues;
@@ -16,13 +18,8 @@ pub struct ChainEnds {
     /// How many residues.
     pub residues: usize,
     /// Their atoms, by their places in the molecule.
-    #[serde(serialize_with = "count")]
+    #[serde(serialize_with = "super::missing::length")]
     pub atoms: Vec<usize>,
-}
-
-/// A record says how many atoms there are, not which.
-fn count<S: Serializer>(atoms: &[usize], to: S) -> Result<S::Ok, S::Error> {
-    atoms.len().serialize(to)
 }
 
 impl Molecule {
@@ -38,20 +35,13 @@ impl Molecule {
         {
             let length = chain.residues.len();
             let near = NEAR.min(length / ONE_IN);
-            let starts = chain.gaps.iter().map(|gap| gap.after);
-            let starts: Vec<usize> = starts.chain(chain.ends[0].map(|_| 0)).collect();
-            let stops = chain.gaps.iter().map(|gap| gap.after);
-            let stops: Vec<usize> = stops.chain(chain.ends[1].map(|_| length)).collect();
-            let is_near = |place: usize| {
-                starts
-                    .iter()
-                    .any(|&start| (start..start + near).contains(&place))
-                    || stops
-                        .iter()
-                        .any(|&stop| place < stop && place + near >= stop)
-            };
+            let first = chain.ends[0].map(|_| 0..near);
+            let last = chain.ends[1].map(|_| length - near..length);
+            let gaps = chain.gaps.iter();
+            let gaps = gaps.map(|gap| gap.after.saturating_sub(near)..gap.after + near);
+            let loose: Vec<Range<usize>> = gaps.chain(first).chain(last).collect();
             for (place, residue) in chain.residues.iter().enumerate() {
-                if is_near(place) {
+                if loose.iter().any(|near| near.contains(&place)) {
                     found.residues += 1;
                     found.atoms.extend(&residue.atoms);
                 }

@@ -37,13 +37,13 @@ pub struct MissingResidues {
     /// Ends of chains, past which more may follow; of peptides and where something is bonded to an end none.
     pub ends: usize,
     /// Where balls of 3.2 Å stand for them, in the file's frame (Å).
-    #[serde(rename = "balls", serialize_with = "count")]
+    #[serde(rename = "balls", serialize_with = "length")]
     pub centers: Vec<[f64; 3]>,
 }
 
-/// A record says how many balls there are, not where.
-fn count<S: Serializer>(centers: &[[f64; 3]], to: S) -> Result<S::Ok, S::Error> {
-    centers.len().serialize(to)
+/// A record says how many there are of a list, not what.
+pub(super) fn length<T, S: Serializer>(list: &[T], to: S) -> Result<S::Ok, S::Error> {
+    list.len().serialize(to)
 }
 
 impl Molecule {
