@@ -152,7 +152,8 @@ pub struct KernelArguments {
     /// sequence, and this counts where the contact effect is on, no residue is attracted and the other is neither peptidase nor antibody; 0 for none.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().peptidase_weight, help_heading = SCORE)]
     peptidase_weight: f64,
-    /// What an atom costs that lies where residues of the other side are missing from its file, in gaps of a chain or past its ends: score; 0 for nothing.
+    /// What an atom costs that lies where residues missing from the other side's file are, in gaps of a chain or past its ends, times how likely they are there:
+    /// score; 0 for nothing.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().missing_weight, help_heading = SCORE)]
     missing_weight: f64,
     /// What an atom near an end of its chain, or near a gap in it, costs that touches the other side: score; 0 for nothing.

@@ -30,7 +30,7 @@ impl Loose {
     pub(super) fn any_missing(&self) -> bool {
         self.missing_residues
             .iter()
-            .any(|side| !side.centers.is_empty())
+            .any(|side| !side.stretches.is_empty())
     }
 
     /// Whether a pose can meet residues near ends of chains.

@@ -71,7 +71,7 @@ pub struct DockOptions {
     pub attraction_weight: f64,
     /// What a pose earns in which all catalytic residues of a peptidase touch: score; 0: peptidases are docked as any protein.
     pub peptidase_weight: f64,
-    /// What an atom costs that lies where residues of the other side are missing from its file: score; 0: nothing is known of these.
+    /// What an atom costs that lies where residues missing from the other side's file are, times how likely they are there: score; 0: nothing is known of these.
     pub missing_weight: f64,
     /// What an atom near an end of its chain costs that touches the other side: score; 0: ends are as good as any.
     pub chain_end_weight: f64,
@@ -225,7 +225,7 @@ impl Default for DockOptions {
             attraction_weight: 2000.0,
             // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
             peptidase_weight: 500.0,
-            missing_weight: 10.0,
+            missing_weight: 3.0,
             chain_end_weight: 2.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,

@@ -81,9 +81,9 @@ impl Asked {
             attraction: asked(self.attraction)
                 .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
             missing: asked(self.missing).map(|weight| {
-                let balls = loose.missing_residues.each_ref();
-                let balls = balls.map(|side| side.centers.clone());
-                MissingContacts::new(receptor, ligand, balls, weight)
+                let missing = loose.missing_residues.each_ref();
+                let stretches = missing.map(|side| side.stretches.as_slice());
+                MissingContacts::new(receptor, ligand, stretches, weight)
             }),
             chain_ends: asked(self.chain_ends).map(|weight| {
                 let ends = loose.chain_end_residues.each_ref();

@@ -8,9 +8,10 @@
 //!
 //! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes
 //! PDB and mmCIF files, with the feature `mesh` (default) it reads meshes and samples solids by balls; without them only
-//! [`Knots`] and the volumes of their balls remain.
+//! [`Knots`], the volumes of their balls and [`Conformers`] remain.
 
 pub mod ball_union;
+mod conformers;
 pub mod knots;
 #[cfg(feature = "mesh")]
 pub mod mesh;
@@ -24,4 +25,5 @@ pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]
 mod test_support;
 
+pub use conformers::Conformers;
 pub use knots::Knots;

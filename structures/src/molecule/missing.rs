@@ -1,31 +1,24 @@
-//! Residues that a chain has and its file does not show: where they may be, as balls of a residue's volume, 134 Å³ or a radius of 3.2 Å (the mean
-//! over proteins of the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123).
+//! Residues that a chain has and its file does not show, and where they may be.
 //!
-//! A loop that was not seen bridges a gap in the chain, and the ends of chains move or go on unseen; what is docked there meets them. So balls
-//! stand for them: in a gap as many as residues are missing, along a bow from end to end that leans away from the body, and two past each end of
-//! a chain, straight away from it. They are where such residues may be, not where they are.
+//! A loop that was not seen bridges a gap in the chain, and the ends of chains move or go on unseen; what is docked there meets them. Where they are
+//! is not known. So many courses are grown that each stretch may take from where the chain is seen last, past the body and past itself: what all of
+//! them fill is sure to be filled, and what a few of them cross is mostly free.
+
+mod growth;
 
 use serde::{Serialize, Serializer};
 
-use super::cells::Cells;
-use super::chains::Gap;
-use super::groups::residues;
-use super::{Molecule, squared_distance};
+use super::chains::{Chain, Gap};
+use super::groups::{Residue, residues};
+use super::{Atom, Molecule};
+use crate::Conformers;
+use growth::Growth;
 
-/// Distance in Å of the first ball past an end from its N or C, where the next CA would be, and of the second.
-const PAST_END: [f64; 2] = [2.5, 6.0];
+/// Residues past an end of a chain: as many as are seen of it and taken to be loose.
+const PAST_END: usize = 8;
 
-/// Length of chain in Å that a residue adds to a bow.
-const RISE: f64 = 3.4;
-
-/// Most balls in a bow, its share of the height that its length allows, and its greatest height in Å: longer loops fold back.
-const MOST_BALLS: i64 = 20;
-const BOWED: f64 = 0.6;
-const HIGHEST: f64 = 10.0;
-
-/// Distances in Å within which atoms tell where the body lies, of an end and of a gap's middle.
-const ABOUT_END: f64 = 12.0;
-const ABOUT_GAP: f64 = 15.0;
+/// Most residues of a loop: longer ones fold back.
+const LONGEST_LOOP: i64 = 20;
 
 /// Residues that a molecule's chains have and its file does not show.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -36,9 +29,9 @@ pub struct MissingResidues {
     pub gaps: usize,
     /// Ends of chains, past which more may follow; of peptides and where something is bonded to an end none.
     pub ends: usize,
-    /// Where balls of 3.2 Å stand for them, in the file's frame (Å).
-    #[serde(rename = "balls", serialize_with = "length")]
-    pub centers: Vec<[f64; 3]>,
+    /// Where residues of each gap and past each end may be, of those that the body leaves room for.
+    #[serde(rename = "conformers", serialize_with = "courses")]
+    pub stretches: Vec<Conformers>,
 }
 
 /// A record says how many there are of a list, not what.
@@ -46,87 +39,64 @@ pub(super) fn length<T, S: Serializer>(list: &[T], to: S) -> Result<S::Ok, S::Er
     list.len().serialize(to)
 }
 
+fn courses<S: Serializer>(stretches: &[Conformers], to: S) -> Result<S::Ok, S::Error> {
+    let courses = stretches.iter().map(|stretch| stretch.courses.len());
+    courses.sum::<usize>().serialize(to)
+}
+
 impl Molecule {
     /// Residues that the chains must have and the file does not show, as far as atoms and residue numbers tell.
     pub fn missing_residues(&self) -> MissingResidues {
         let groups = residues(&self.atoms);
         let chains = self.chains(&groups);
-        let body = Body::new(self);
+        let growth = Growth::new(self.atoms.iter().map(|atom| atom.position).collect());
         let mut found = MissingResidues::default();
-        for gap in chains.iter().flat_map(|chain| &chain.gaps) {
-            found.gaps += 1;
-            found.residues += gap.missing as usize;
-            found.centers.extend(body.bow(gap));
+        for chain in &chains {
+            for gap in &chain.gaps {
+                found.gaps += 1;
+                found.residues += gap.missing as usize;
+                found.stretches.extend(self.bridge(&growth, chain, gap));
+            }
         }
         for chain in chains.iter().filter(|chain| !chain.is_short()) {
-            for end in chain.ends.into_iter().flatten() {
+            let sides = [(chain.residues.first(), "N"), (chain.residues.last(), "C")];
+            for ((residue, name), end) in sides.into_iter().zip(chain.ends) {
+                let (Some(residue), Some(_)) = (residue, end) else {
+                    continue;
+                };
                 found.ends += 1;
-                found.centers.extend(body.past(end));
+                found.stretches.extend(self.past(&growth, residue, name));
             }
         }
         found
     }
-}
 
-/// All atoms of a molecule, by place.
-struct Body<'a> {
-    molecule: &'a Molecule,
-    cells: Cells,
-}
-
-impl<'a> Body<'a> {
-    fn new(molecule: &'a Molecule) -> Self {
-        let positions = molecule.atoms.iter().map(|atom| atom.position);
-        Self {
-            molecule,
-            cells: Cells::new(positions, ABOUT_GAP.max(ABOUT_END)),
-        }
+    /// Courses past the end of a chain.
+    fn past(&self, growth: &Growth, residue: &Residue<'_>, end: &str) -> Option<Conformers> {
+        let frame = self.frame(residue, end)?;
+        growth.courses(frame, &residue.atoms, None, PAST_END)
     }
 
-    /// The direction away from the middle of the atoms within `reach` of a point; zero where that is the point.
-    fn outward(&self, point: [f64; 3], reach: f64) -> [f64; 3] {
-        // Relative to the point, so that large coordinates cost no digits.
-        let (mut sum, mut count) = ([0.0; 3], 0.0);
-        for index in self.cells.around(point) {
-            let position = self.molecule.atoms[index].position;
-            if squared_distance(position, point) <= reach * reach {
-                count += 1.0;
-                for axis in 0..3 {
-                    sum[axis] += point[axis] - position[axis];
-                }
-            }
-        }
-        let length = squared_distance(sum, [0.0; 3]).sqrt();
-        if length > 1e-6 * count {
-            sum.map(|x| x / length)
-        } else {
-            [0.0; 3]
-        }
+    /// Courses across a gap.
+    fn bridge(&self, growth: &Growth, chain: &Chain<'_>, gap: &Gap) -> Option<Conformers> {
+        let (before, after) = (chain.residues[gap.after - 1], chain.residues[gap.after]);
+        let frame = self.frame(before, "C")?;
+        let anchors = [before.atoms.as_slice(), &after.atoms].concat();
+        let length = gap.missing.min(LONGEST_LOOP) as usize;
+        growth.courses(frame, &anchors, Some(gap.sides[1]), length)
     }
 
-    /// Balls past the end of a chain.
-    fn past(&self, end: [f64; 3]) -> [[f64; 3]; 2] {
-        let out = self.outward(end, ABOUT_END);
-        PAST_END.map(|distance| [0, 1, 2].map(|axis| end[axis] + distance * out[axis]))
-    }
-
-    /// Balls for the residues of a gap: half a wave of a sine on the straight line between its sides.
-    fn bow(&self, gap: &Gap) -> Vec<[f64; 3]> {
-        let [from, to] = gap.sides;
-        let middle = [0, 1, 2].map(|axis| 0.5 * (from[axis] + to[axis]));
-        let out = self.outward(middle, ABOUT_GAP);
-        let half = 0.5 * RISE * (gap.missing + 1) as f64;
-        let spare = half * half - 0.25 * squared_distance(from, to);
-        let height = (BOWED * spare.max(0.0).sqrt()).min(HIGHEST);
-        let balls = gap.missing.min(MOST_BALLS);
-        (1..=balls)
-            .map(|ball| {
-                let along = ball as f64 / (balls + 1) as f64;
-                let above = height * (std::f64::consts::PI * along).sin();
-                [0, 1, 2]
-                    .map(|axis| from[axis] + along * (to[axis] - from[axis]) + above * out[axis])
-            })
-            .collect()
+    /// The frame of a residue's main chain about its N or C, for courses to go with the body however it is turned.
+    fn frame(&self, residue: &Residue<'_>, about: &str) -> Option<Conformers> {
+        let other = if about == "N" { "C" } else { "N" };
+        let at = |name: &str| self.atom(residue, name).map(|atom: &Atom| atom.position);
+        let (origin, alpha, other) = (at(about)?, at("CA")?, at(other)?);
+        let axes = growth::axes(origin, alpha, other)?;
+        Some(Conformers {
+            origin,
+            axes,
+            courses: Vec::new(),
+        })
     }
 }
 
