@@ -156,22 +156,28 @@ pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
             let ends = counted(missing.ends, "end");
             parts.push(format!("{ends} of chains that may go on"));
         }
-        if !parts.is_empty() {
+        if !missing.stretches.is_empty() {
             options.push("--missing-weight 0");
+        } else if let Some(last) = parts.last_mut() {
+            last.push_str(", which the rest leaves no room");
         }
         if near.residues > 0 {
             let residues = counted(near.residues, "residue");
             parts.push(format!("{residues} near ends of chains or gaps"));
             options.push("--chain-end-weight 0");
         }
-        (!parts.is_empty()).then(|| {
-            let leave = if options.len() > 1 { "leave" } else { "leaves" };
-            format!(
-                "The {side}: {}; poses pay for atoms that lie or touch there, {} {leave} that out",
-                parts.join(", "),
+        let pay = match options.len() {
+            0 => String::new(),
+            1 => format!(
+                "; poses pay for atoms that lie or touch there, {} leaves that out",
+                options[0]
+            ),
+            _ => format!(
+                "; poses pay for atoms that lie or touch there, {} leave that out",
                 options.join(" and ")
-            )
-        })
+            ),
+        };
+        (!parts.is_empty()).then(|| format!("The {side}: {}{pay}", parts.join(", ")))
     });
     told.flatten().collect()
 }

@@ -29,14 +29,16 @@ struct Body {
     atoms: Vec<Vector3<f64>>,
 }
 
-/// Of every cell of 1 Å about a stretch the share of its courses that pass within reach of the cell's middle.
+/// Of every cell of 1 Å about a stretch how many of its courses pass within reach of the cell's middle.
 struct Occupancy {
     /// Its frame, without courses.
     frame: Conformers,
     /// Corner of the first cell in that frame, and how many cells there are along each axis.
     low: [f64; 3],
     counts: [usize; 3],
-    shares: Vec<f32>,
+    passing: Vec<u16>,
+    /// What one course is of all.
+    share: f64,
     /// Middle of all cells in the file's frame, and a radius about it within which are all that are passed (Å).
     middle: [f64; 3],
     radius: f64,
@@ -58,7 +60,8 @@ impl MissingContacts {
         }
     }
 
-    /// Minus the weight times the atoms of both sides that lie where the other has residues, each by how likely that is.
+    /// Minus the weight times the atoms of both sides that lie where the other has residues, each by the share of a stretch's courses that pass it;
+    /// shares of several stretches add up.
     pub fn score(&self, pose: &Pose) -> f64 {
         let [receptor, ligand] = &self.stretches;
         let inverse = pose.inverse();
@@ -88,7 +91,7 @@ fn inside(body: &Body, stretches: &[Occupancy], pose: &Pose, back: &Pose) -> f64
         let (turn, shift) = stretch.cells_from(pose, body.middle);
         body.side
             .near(back, stretch.middle, stretch.radius, |atom| {
-                atoms += f64::from(stretch.share(turn * body.atoms[atom] + shift));
+                atoms += stretch.share(turn * body.atoms[atom] + shift);
             });
     }
     atoms
@@ -118,7 +121,8 @@ impl Occupancy {
             },
             low,
             counts,
-            shares: vec![0.0; counts.iter().product()],
+            passing: vec![0; counts.iter().product()],
+            share: 1.0 / stretch.courses.len() as f64,
             middle: stretch.in_file(middle),
             // A cell that is passed may hold an atom that is not.
             radius: alphas().map(from_middle).fold(0.0, f64::max) + WITHIN + 1.0,
@@ -129,8 +133,7 @@ impl Occupancy {
 
     /// Counts for each cell the courses that pass it, each once.
     fn fill(&mut self, courses: &[Vec<[f64; 3]>]) {
-        let share = 1.0 / courses.len() as f32;
-        let mut passed = vec![0; self.shares.len()];
+        let mut passed = vec![0; self.passing.len()];
         for (course, alphas) in (1..).zip(courses) {
             for alpha in alphas {
                 let at: [f64; 3] = std::array::from_fn(|axis| alpha[axis] - self.low[axis]);
@@ -147,7 +150,7 @@ impl Occupancy {
                             let cell = (x * self.counts[1] + y) * self.counts[2] + z;
                             if beside + square(2, z) < WITHIN * WITHIN && passed[cell] != course {
                                 passed[cell] = course;
-                                self.shares[cell] += share;
+                                self.passing[cell] += 1;
                             }
                         }
                     }
@@ -165,7 +168,7 @@ impl Occupancy {
     }
 
     /// The share of courses that pass within reach of a point, which is given in cells.
-    fn share(&self, point: Vector3<f64>) -> f32 {
+    fn share(&self, point: Vector3<f64>) -> f64 {
         let mut cell = 0;
         for axis in 0..3 {
             // What is no number lies in no cell.
@@ -174,7 +177,7 @@ impl Occupancy {
             }
             cell = cell * self.counts[axis] + point[axis] as usize;
         }
-        self.shares[cell]
+        f64::from(self.passing[cell]) * self.share
     }
 }
 
@@ -222,8 +225,8 @@ mod tests {
             let [there, back] =
                 [shift, -shift].map(|y| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [0.0, y, 0.0]));
             let expected: f64 = places.map(|y| -6.0 * passing(y + shift)).iter().sum();
-            assert!((missing.score(&there) - expected).abs() < 1e-5);
-            assert!((swapped.score(&back) - expected).abs() < 1e-5);
+            assert!((missing.score(&there) - expected).abs() < 1e-12);
+            assert!((swapped.score(&back) - expected).abs() < 1e-12);
         }
         let far = Pose::from_parts([0.0, 0.0, 0.0, 1.0], [900.0, 0.0, 0.0]);
         assert!(missing.score(&far) == 0.0 && missing.score(&far).is_sign_positive());
@@ -252,7 +255,7 @@ mod tests {
                 .courses
                 .iter()
                 .filter(|course| course.iter().any(near));
-            passing.count() as f32 / 9.0
+            passing.count() as f64 / 9.0
         };
         for at in 0..9261 {
             let local = [at / 441, at / 21 % 21, at % 21].map(|x| 1.37 * f64::from(x) - 14.0);
@@ -260,7 +263,7 @@ mod tests {
             let told = occupancy.share(cell);
             let bounds = [share(local, WITHIN - half), share(local, WITHIN + half)];
             assert!(
-                bounds[0] - 1e-5 <= told && told <= bounds[1] + 1e-5,
+                bounds[0] - 1e-12 <= told && told <= bounds[1] + 1e-12,
                 "{local:?}"
             );
         }

@@ -28,6 +28,9 @@ const FEWEST: usize = 8;
 const TRIES: [usize; 2] = [12, 60];
 const BEGUN: usize = 5000;
 
+/// Courses begun after which a stretch is given up that has no first residue by then, and no whole course.
+const HOPELESS: [usize; 2] = [100, 1000];
+
 /// How far a residue takes a loop towards its other end (Å), of the 3.8 that it could at most: straight chains close no gap.
 const CLOSING: f64 = 3.6;
 const CLOSED: f64 = 2.9;
@@ -42,8 +45,8 @@ pub(super) struct Growth {
 struct Course<'a> {
     growth: &'a Growth,
     frame: &'a Conformers,
-    /// Whether an atom is one of those that the stretch begins and ends at.
-    beside: &'a [bool],
+    /// The atoms of the residues that the stretch begins and ends at.
+    anchors: &'a [usize],
     /// The N that it ends at, in its own frame.
     target: Option<[f64; 3]>,
     length: usize,
@@ -66,13 +69,9 @@ impl Growth {
         target: Option<[f64; 3]>,
         length: usize,
     ) -> Option<Conformers> {
-        let mut beside = vec![false; self.positions.len()];
-        for &atom in anchors {
-            beside[atom] = true;
-        }
         let course = Course {
             growth: self,
-            beside: &beside,
+            anchors,
             target: target.map(|point| frame.local(point)),
             frame: &frame,
             length,
@@ -80,11 +79,16 @@ impl Growth {
         // The same for each stretch, so that it depends on the body alone.
         let mut random = Pcg32::new(0, 0);
         let mut courses = Vec::with_capacity(COURSES);
-        for _ in 0..BEGUN {
-            courses.extend(course.grow(&mut random));
-            if courses.len() == COURSES {
+        let mut longest = 0;
+        for begun in 0..BEGUN {
+            let found = [longest, courses.len()];
+            let hopeless = |(limit, found)| begun >= limit && found == 0;
+            if courses.len() == COURSES || HOPELESS.into_iter().zip(found).any(hopeless) {
                 break;
             }
+            let grown = course.grow(&mut random);
+            longest = longest.max(grown.len());
+            courses.extend((grown.len() == length).then_some(grown));
         }
         frame.courses = courses;
         (frame.courses.len() >= FEWEST).then_some(frame)
@@ -92,26 +96,29 @@ impl Growth {
 }
 
 impl Course<'_> {
-    /// One more course, unless it runs into something.
-    fn grow(&self, random: &mut Pcg32) -> Option<Vec<[f64; 3]>> {
+    /// One more course, as far as it comes before it runs into something.
+    fn grow(&self, random: &mut Pcg32) -> Vec<[f64; 3]> {
         let mut course: Vec<[f64; 3]> = Vec::with_capacity(self.length);
         let mut direction = None;
         let tries = TRIES[usize::from(self.target.is_some())];
         while course.len() < self.length {
             let last = course.last().copied().unwrap_or([0.0; 3]);
             let step = if course.is_empty() { FIRST } else { NEXT };
-            let (next, along) = (0..tries).find_map(|_| {
+            let room = (0..tries).find_map(|_| {
                 let along = unit(random);
                 let next: [f64; 3] = std::array::from_fn(|axis| last[axis] + step * along[axis]);
                 let bends = direction.is_none_or(|before| turns(before, along));
                 (bends && self.closes(next, course.len()) && self.is_free(next, &course))
                     .then_some((next, along))
-            })?;
+            });
+            let Some((next, along)) = room else {
+                break;
+            };
             // The first step is no line between two CA atoms.
             direction = (!course.is_empty()).then_some(along);
             course.push(next);
         }
-        Some(course)
+        course
     }
 
     /// Whether what is left of a loop can still reach its end.
@@ -130,12 +137,9 @@ impl Course<'_> {
         let at = self.frame.in_file(alpha);
         let growth = self.growth;
         let free_of_body = growth.cells.around(at).all(|atom| {
-            let room = match self.beside[atom] {
-                true if bonded => return true,
-                true => ROOM_BESIDE,
-                false => ROOM,
-            };
-            squared_distance(growth.positions[atom], at) >= room * room
+            let squared = squared_distance(growth.positions[atom], at);
+            squared >= ROOM * ROOM
+                || self.anchors.contains(&atom) && (bonded || squared >= ROOM_BESIDE * ROOM_BESIDE)
         });
         let earlier = course.split_last().map_or(&[][..], |(_, earlier)| earlier);
         free_of_body

@@ -175,4 +175,15 @@ fn no_molecule_is_too_odd() {
         atom.position = [1.0, 2.0, 3.0];
     }
     assert_eq!(counts(&all_in_one.missing_residues()).1, [0; 0]);
+    // An end whose main chain is on one line has no frame.
+    let mut in_line = trypsin();
+    let last = in_line.atoms.last().unwrap().residue_number;
+    let mut of_last = in_line.atoms.iter_mut();
+    let mut main = |name: &str| {
+        let atom = of_last.find(|atom| atom.residue_number == last && atom.name == name);
+        &mut atom.unwrap().position
+    };
+    let (first, alpha, carbon) = (*main("N"), main("CA"), *main("C"));
+    *alpha = std::array::from_fn(|axis| 0.5 * (first[axis] + carbon[axis]));
+    assert_eq!(counts(&in_line.missing_residues()), ([0, 0, 2], vec![]));
 }
