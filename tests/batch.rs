@@ -238,6 +238,21 @@ fn a_known_complex_is_measured_against() {
     assert_eq!(results(folder.path())[0]["status"], "failed");
 }
 
+/// Columns may be spelled as options are, and files they name stand beside the table whichever way.
+#[test]
+fn columns_are_spelled_with_either_line() {
+    let folder = place();
+    let sides = ["helices_receptor.pdb", "helices_ligand.pdb"].join(",");
+    let table = format!("name,receptor,ligand,native-receptor,native-ligand\na,{sides},{sides}\n");
+    write_pairs(folder.path(), &table);
+    let words = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 24");
+    let output = batch(folder.path(), &words);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(results(folder.path())[0]["status"], "done");
+    let poses = fs::read_to_string(folder.path().join("out/a/poses.csv")).unwrap();
+    assert!(poses.lines().next().unwrap().contains("irmsd"));
+}
+
 #[test]
 fn a_table_that_is_none_is_refused_before_anything_runs() {
     let folder = place();

@@ -143,6 +143,59 @@ fn a_mesh_becomes_a_table_of_balls_with_measured_bounds() {
     assert_eq!(files, ["knots.csv", "balls.obj", "box.svg"]);
 }
 
+/// A step half-way up lies in the picture's slice, where points are neither inside nor outside.
+#[test]
+fn a_face_in_the_plane_of_the_picture_is_no_hindrance() {
+    let place = Place::new();
+    let mut step = String::new();
+    // The box's own three units up, and another on half of it: corners of each by the bits of their number.
+    for (low, high) in [([0, 0, 0], [4, 4, 1]), ([0, 0, 1], [2, 4, 2])] {
+        for i in 0..8 {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                if i >> axis & 1 == 0 {
+                    low[axis]
+                } else {
+                    high[axis]
+                }
+            });
+            step += &format!("v {x} {y} {z}\n");
+        }
+        for face in [
+            "1 5 7 3", "2 4 8 6", "1 2 6 5", "3 7 8 4", "1 3 4 2", "5 6 8 7",
+        ] {
+            let corners = face
+                .split(' ')
+                .map(|corner| corner.parse::<i32>().unwrap() - 9);
+            step += &corners.fold("f".to_owned(), |text, corner| text + &format!(" {corner}"));
+            step += "\n";
+        }
+    }
+    fs::write(place.path("step.obj"), step).unwrap();
+    place.sample(&["step.obj", "--grid", "2^12", "--picture", "step.svg"]);
+    assert!(
+        fs::read_to_string(place.path("step.svg"))
+            .unwrap()
+            .ends_with("</svg>\n")
+    );
+}
+
+/// Nodes of a plate's middle are inside, and all points of the finer grid beside them outside: its volume is that of the nodes.
+#[test]
+fn weights_of_a_plate_thinner_than_the_grid_are_numbers() {
+    let place = Place::new();
+    let plate = box_obj().replace(" 1\n", " 0.005\n");
+    fs::write(place.path("plate.obj"), plate).unwrap();
+    let object = place.sample(&["plate.obj", "--grid", "35937", "--weights", "fitted"]);
+    for name in ["volume_unit", "volume_fitted"] {
+        assert!(
+            object["weights"][name]
+                .as_f64()
+                .is_some_and(|share| share > 0.0),
+            "{object}"
+        );
+    }
+}
+
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let place = Place::new();

@@ -1,5 +1,7 @@
 //! Values of options, checked as they are read.
 
+use knotdock::search::meshes::MOST_PER_AXIS;
+
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
 
@@ -50,9 +52,6 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
-const MOST_NODES: usize = 512;
-
 /// Nodes an axis of a grid of M nodes, M given as 2^18 or 262144: the cube root, to the nearest whole number.
 ///
 /// # Errors
@@ -65,7 +64,7 @@ pub fn grid(text: &str) -> Result<usize, String> {
         },
         None => text.parse::<u64>().ok(),
     };
-    let most = (MOST_NODES as u64).pow(3);
+    let most = (MOST_PER_AXIS as u64).pow(3);
     match nodes.filter(|nodes| (8..=most).contains(nodes)) {
         Some(nodes) => Ok((nodes as f64).cbrt().round() as usize),
         None => Err(format!(

@@ -50,7 +50,8 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
     let folder = table.parent().unwrap_or(Path::new(""));
     let mut names: HashMap<String, u64> = HashMap::new();
     check_options(options)?;
-    let rows = read_pairs(table)?;
+    let symmetry = symmetry(options);
+    let rows = read_pairs(table, symmetry.is_some())?;
     let pairs = rows.into_iter().map(|row| {
             let wrong = |message: String, remedy: &str| {
                 Failure::input(message)
@@ -59,7 +60,7 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                     .remedy(remedy)
             };
             let name = match row.name.as_str() {
-                "" => format!("{}_{}", part(&row.receptor)?, partner(&row)?),
+                "" => format!("{}_{}", part(&row.receptor)?, partner(&row, symmetry)?),
                 name => name.to_owned(),
             };
             if !is_name(&name) {
@@ -191,11 +192,22 @@ fn part(file: &str) -> Result<String, Failure> {
 }
 
 /// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
-fn partner(row: &PairRow) -> Result<String, Failure> {
-    let ring = row.options.iter().find(|(name, _)| name == "symmetry");
-    match ring {
-        Some((_, symmetry)) if row.ligand.is_empty() => Ok(symmetry.clone()),
+fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Failure> {
+    let own = row.options.iter().find(|(name, _)| name == "symmetry");
+    match own.map(|(_, symmetry)| symmetry.as_str()).or(of_all) {
+        Some(symmetry) if row.ligand.is_empty() => Ok(symmetry.to_owned()),
         _ => part(&row.ligand),
+    }
+}
+
+/// The symmetry that all pairs are docked with.
+fn symmetry(options: &[String]) -> Option<&str> {
+    let at = options
+        .iter()
+        .position(|word| word.starts_with("--symmetry"))?;
+    match options[at].strip_prefix("--symmetry")? {
+        "" => options.get(at + 1).map(String::as_str),
+        value => value.strip_prefix('='),
     }
 }
 

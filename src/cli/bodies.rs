@@ -17,7 +17,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 use super::console::Console;
 use super::failure::Failure;
 use super::idle_options::refuse_of_meshes;
-use super::input::{Input, check_used, label};
+use super::input::{Input, check_used, folders_of, label};
 use super::mesh_input::{MeshInput, is_mesh};
 use super::reading_arguments::READING_OPTIONS;
 
@@ -60,7 +60,7 @@ impl Bodies {
         run: &Path,
         reading: &ReadOptions,
     ) -> Result<Self, Failure> {
-        let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
+        let folders = folders_of(run);
         let [receptor, ligand] = records;
         let specs = [
             receptor.locate(&folders)?.spec(),
@@ -73,7 +73,13 @@ impl Bodies {
         let [receptor, ligand] = &specs;
         match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
             [false, false] => {
-                let inputs = [Input::of(receptor, reading)?, Input::of(ligand, reading)?];
+                let first = Input::of(receptor, reading)?;
+                // Twice the same, as of a ring, may be a pipe, which can be read but once.
+                let second = match ligand == receptor {
+                    true => first.clone(),
+                    false => Input::of(ligand, reading)?,
+                };
+                let inputs = [first, second];
                 check_used(reading, inputs.iter().map(|input| &input.molecule))?;
                 Ok(Self::Molecules(Box::new(inputs)))
             }

@@ -1,6 +1,6 @@
 //! Structures named on the command line or in a run.json: read, recorded, described.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
@@ -11,7 +11,19 @@ use knotdock_structures::molecule::{
 use super::failure::Failure;
 use super::mesh_input::is_mesh;
 
+/// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were.
+pub fn folders_of(run: &Path) -> Vec<PathBuf> {
+    // A relative path may not name the one above.
+    let run = std::path::absolute(run).unwrap_or_else(|_| run.to_owned());
+    run.ancestors()
+        .skip(1)
+        .take(2)
+        .map(Path::to_owned)
+        .collect()
+}
+
 /// A structure as read.
+#[derive(Clone)]
 pub struct Input {
     /// File, chains and checksum.
     pub record: InputRecord,
@@ -34,8 +46,7 @@ impl Input {
         run: &Path,
         options: &ReadOptions,
     ) -> Result<Self, Failure> {
-        let folders: Vec<&Path> = run.ancestors().skip(1).take(2).collect();
-        let spec = record.locate(&folders)?.spec();
+        let spec = record.locate(&folders_of(run))?.spec();
         refuse_mesh(&spec)?;
         Self::of(&spec, options)
     }

@@ -61,8 +61,9 @@ impl Score {
     /// Scores.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
+        let dock = self.kernel.options()?;
         let options = ScoreOptions {
-            engine: self.kernel.options()?.engine(),
+            engine: dock.engine(),
             modes: self.modes,
             order: match self.order {
                 Order::LowFrequency => ModeOrder::LowFrequency,
@@ -80,7 +81,6 @@ impl Score {
         let receptor = read(&self.receptor, "Receptor")?;
         let ligand = read(&self.ligand, "Ligand")?;
         check_used(&reading, [&receptor, &ligand])?;
-        let dock = self.kernel.options()?;
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
@@ -107,7 +107,7 @@ impl Score {
                 .iter()
                 .filter_map(|(name, value)| Some(format!("{name} {:.3}", (*value)?)));
             console.say(format!(
-                "{}: `dock` ranks this pose by {rank_score:.3}",
+                "{}: `dock` ranks this pose of a pair by {rank_score:.3}",
                 told.collect::<Vec<_>>().join(", ")
             ));
         }

@@ -81,7 +81,7 @@ impl InputRecord {
     ///
     /// # Errors
     /// [`InputRecordError`] of the recorded path when no file with the recorded checksum is there or in the folders.
-    pub fn locate(&self, folders: &[&Path]) -> Result<Self, InputRecordError> {
+    pub fn locate(&self, folders: &[PathBuf]) -> Result<Self, InputRecordError> {
         let first = match self.verify(&self.path) {
             Ok(()) => return Ok(self.clone()),
             Err(error) => error,
@@ -168,16 +168,19 @@ mod tests {
         fs::create_dir(&moved).unwrap();
         fs::rename(&path, moved.join("input.pdb")).unwrap();
         assert!(matches!(
-            record.locate(&[root.path()]),
+            record.locate(&[root.path().to_owned()]),
             Err(InputRecordError::Read { .. })
         ));
         assert_eq!(
-            record.locate(&[root.path(), &moved]).unwrap().path,
+            record
+                .locate(&[root.path().to_owned(), moved.clone()])
+                .unwrap()
+                .path,
             moved.join("input.pdb")
         );
         fs::write(&path, "abd").unwrap();
         assert!(matches!(
-            record.locate(&[root.path()]),
+            record.locate(&[root.path().to_owned()]),
             Err(InputRecordError::Changed { .. })
         ));
     }

@@ -69,7 +69,7 @@ impl PairTableError {
 ///
 /// # Errors
 /// [`PairTableError`].
-pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
+pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableError> {
     let text = std::fs::read_to_string(path).map_err(|source| PairTableError::Open {
         path: path.to_owned(),
         source,
@@ -88,7 +88,9 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         .trim(csv::Trim::All)
         .comment(COMMENT)
         .from_reader(text.as_bytes());
-    let header = reader.headers().map_err(malformed)?.clone();
+    // Options are spelled with either line.
+    let header = reader.headers().map_err(malformed)?;
+    let header: StringRecord = header.iter().map(|name| name.replace('-', "_")).collect();
     let mut seen = HashSet::new();
     if let Some(column) = header.iter().find(|column| !seen.insert(*column)) {
         return Err(wrong(Some(1), format!("there are two columns `{column}`")));
@@ -102,7 +104,7 @@ pub fn read_pairs(path: &Path) -> Result<Vec<PairRow>, PairTableError> {
         let record = record.map_err(malformed)?;
         let line = record.position().map_or(0, line);
         let row = row(&header, &record, line);
-        let rings = row.options.iter().any(|(name, _)| name == "symmetry");
+        let rings = rings || row.options.iter().any(|(name, _)| name == "symmetry");
         for (column, field) in [("receptor", &row.receptor), ("ligand", &row.ligand)] {
             if field.is_empty() && !(rings && column == "ligand") {
                 return Err(wrong(Some(line), format!("the pair has no {column}")));
@@ -146,7 +148,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("pairs.csv");
         std::fs::write(&path, text).unwrap();
-        read_pairs(&path)
+        read_pairs(&path, false)
     }
 
     #[test]
@@ -187,7 +189,7 @@ mod tests {
             assert!(error.to_string().contains(said), "{error}");
         }
         assert!(matches!(
-            read_pairs(Path::new("nowhere.csv")),
+            read_pairs(Path::new("nowhere.csv"), false),
             Err(PairTableError::Open { .. })
         ));
     }

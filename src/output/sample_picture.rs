@@ -8,6 +8,7 @@ use std::path::Path;
 
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampler::Ball;
+use knotdock_structures::sampler::grid::ON_SURFACE;
 use knotdock_structures::sampler::skeletal_density::share;
 use rayon::prelude::*;
 
@@ -72,7 +73,10 @@ fn picture(solid: &Solid, balls: &[Ball]) -> String {
             let mut point = [0.0; 3];
             point[across] = -reach + step * ((pixel % PIXELS) as f64 + 0.5);
             point[up] = -reach + step * ((pixel / PIXELS) as f64 + 0.5);
-            let depth = solid.depth(point);
+            let depth = match solid.depth(point) {
+                depth if depth.abs() < ON_SURFACE => 0.0,
+                depth => depth,
+            };
             let density = if depth > 0.0 {
                 share(solid, point, depth)
             } else {

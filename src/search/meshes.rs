@@ -25,6 +25,7 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
+use knotdock_structures::sampler::hausdorff::Referee;
 use knotdock_structures::sampler::lattice::lattice;
 use knotdock_structures::sampler::weights::{self, FittedWeights};
 use knotdock_structures::sampler::{SampleError, knots};
@@ -44,6 +45,9 @@ const CELL: f64 = 0.5 * RESOLUTION;
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Nodes along each edge of a part's grid by default: m = 2^18.
 pub const PER_AXIS: usize = 64;
+
+/// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
+pub const MOST_PER_AXIS: usize = 512;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 
@@ -264,10 +268,15 @@ pub fn sample_pair(
         let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
         let radius = RADIUS * offset;
         let balls = lattice(field, per_cell, radius / frame.unit);
+        // Exact where the surface is closed; an open one has as much as its grid says.
+        let volume = || match solid.mesh().is_closed() {
+            true => solid.mesh().volume(),
+            false => Referee::new(solid, field).volume(),
+        };
         let fitted = options
             .weights
             .are_fitted()
-            .then(|| weights::fit(field, &balls, options.alpha, solid.mesh().volume()));
+            .then(|| weights::fit(field, &balls, options.alpha, volume()));
         // A ball without weight would only cost time.
         let (balls, weights): (Vec<_>, Vec<f64>) = balls
             .into_iter()

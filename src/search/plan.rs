@@ -144,10 +144,6 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         )
     };
     let engine = planned(options)?;
-    let threads = match options.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
-    };
     let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) = match options.precision
     {
         Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
@@ -170,37 +166,33 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         (fixed, per_rotation)
     };
     let (fixed, per_rotation) = needs(&engine);
-    let mut in_flight = threads.min(options.rotations);
-    if let Some(allowed) = options.memory {
-        let room = allowed.saturating_sub(fixed) / per_rotation.max(1);
-        if room == 0 {
-            let fits = least_coarse(|step| {
-                let coarser = coarser(options, step, angstrom);
-                let plan = planned(&coarser).ok()?;
-                let spacing = rounded_up(plan.spacing, angstrom);
-                let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
-                (fixed + per_rotation <= allowed).then_some(DockOptions {
-                    spacing: Some(spacing),
-                    ..coarser
-                })
-            });
-            return Err(SearchError::Memory {
-                needed: fixed + per_rotation,
-                allowed,
-                spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
-                shows_little: fits
-                    .as_ref()
-                    .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
-                resolution: fits
-                    .as_ref()
-                    .map(|coarser| coarser.resolution)
-                    .filter(|&resolution| resolution > options.resolution),
-                pass_length: fits
-                    .and_then(|coarser| coarser.pass_length)
-                    .filter(|&length| Some(length) > options.pass_length),
-            });
-        }
-        in_flight = in_flight.min(usize::try_from(room).unwrap_or(usize::MAX));
+    let in_flight = most_in_flight(options, fixed, per_rotation).min(options.rotations);
+    if let (0, Some(allowed)) = (in_flight, options.memory) {
+        let fits = least_coarse(|step| {
+            let coarser = coarser(options, step, angstrom);
+            let plan = planned(&coarser).ok()?;
+            let spacing = rounded_up(plan.spacing, angstrom);
+            let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
+            (fixed + per_rotation <= allowed).then_some(DockOptions {
+                spacing: Some(spacing),
+                ..coarser
+            })
+        });
+        return Err(SearchError::Memory {
+            needed: fixed + per_rotation,
+            allowed,
+            spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
+            shows_little: fits
+                .as_ref()
+                .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
+            resolution: fits
+                .as_ref()
+                .map(|coarser| coarser.resolution)
+                .filter(|&resolution| resolution > options.resolution),
+            pass_length: fits
+                .and_then(|coarser| coarser.pass_length)
+                .filter(|&length| Some(length) > options.pass_length),
+        });
     }
     let graphics_bytes = match options.engine {
         EngineChoice::Cpu => 0,
@@ -387,6 +379,11 @@ impl DockPlan {
         Asked::of(&self.decisions, &self.attracted, &self.loose, &self.options)
     }
 
+    /// Rotations that would be in flight if there were more than enough of them.
+    pub(crate) fn most_in_flight(&self) -> usize {
+        most_in_flight(&self.options, self.fixed_bytes, self.bytes_in_flight)
+    }
+
     /// Whether an effect is on.
     pub fn is_on(&self, effect: Effect) -> bool {
         self.decisions.iter().any(|d| d.effect == effect && d.on)
@@ -396,6 +393,18 @@ impl DockPlan {
     pub fn memory_bytes(&self) -> u64 {
         self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight + self.graphics_bytes
     }
+}
+
+/// Rotations in flight: as many as threads, where memory has room for them.
+fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u64) -> usize {
+    let threads = match options.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    };
+    let room = options.memory.map_or(u64::MAX, |allowed| {
+        allowed.saturating_sub(fixed) / per_rotation.max(1)
+    });
+    threads.min(usize::try_from(room).unwrap_or(usize::MAX))
 }
 
 impl std::fmt::Display for DockPlan {

@@ -33,13 +33,26 @@ impl Change {
             }
             Self::Rotations(value) => {
                 options.rotations = value;
-                // A finer set is finer.
-                options.fine_rotations = options.fine_rotations.filter(|finer| *finer >= value);
+                // A finer set is no coarser.
+                options.fine_rotations = options.fine_rotations.map(|finer| finer.max(value));
             }
             Self::FineRotations(value) => options.fine_rotations = Some(value),
             Self::PerRotation(value) => options.per_rotation = value,
             Self::Refine(value) => options.refine = Some(value),
             Self::SampleGrid(value) => options.sample_grid = Some(value),
+        }
+    }
+
+    /// What else is typed for `changed` options of a run with `default` ones to have the change: lengths of molecules and meshes that would follow from
+    /// it otherwise, and a finer set of rotations that it has made finer still.
+    pub fn companions(&self, default: &DockOptions, changed: &DockOptions) -> String {
+        match (self, changed.pass_length, changed.fine_rotations) {
+            (Self::Resolution(_), Some(length), _) => format!(" --pass-length {length}"),
+            (Self::Rotations(_), _, Some(finer)) if default.fine_rotations != Some(finer) => {
+                format!(" --fine-rotations {finer}")
+            }
+            (Self::SampleGrid(_), ..) => format!(" --offset {}", changed.offset),
+            _ => String::new(),
         }
     }
 

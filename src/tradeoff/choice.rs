@@ -106,7 +106,7 @@ pub fn choose(
         ..options.clone()
     })?;
     let work = Workload::of(&draft.plan);
-    let threads = options.threads;
+    let threads = draft.plan.most_in_flight();
     if let Some(budget) = wanted.budget {
         let most = options.fine_rotations.unwrap_or(MOST_ROTATIONS);
         let range = FEWEST_ROTATIONS..=most.clamp(FEWEST_ROTATIONS, MOST_ROTATIONS);

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::change::{Change, rounded_to_fours, three_digits};
 use crate::search::DockOptions;
+use crate::search::meshes::MOST_PER_AXIS;
 use crate::search::options::Precision;
 
 /// What a setting changes of the default.
@@ -89,7 +90,7 @@ pub struct Setting {
     pub name: String,
     /// What it changes.
     pub knob: Knob,
-    /// The options of `knotdock dock` that it changes, as they are typed; empty for the default.
+    /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the default.
     pub arguments: String,
     /// All options.
     pub options: DockOptions,
@@ -115,11 +116,16 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
         for change in changes {
             change.apply(&mut options);
         }
-        let arguments: Vec<String> = changes.iter().map(Change::argument).collect();
+        let typed: Vec<String> = changes.iter().map(Change::argument).collect();
+        let companions = |change: &Change| change.companions(default, &options);
+        let arguments = changes
+            .iter()
+            .zip(&typed)
+            .map(|(change, own)| own.clone() + &companions(change));
         let setting = Setting {
-            name: name.map_or_else(|| arguments.join(" ").replace("--", ""), str::to_owned),
+            name: name.map_or_else(|| typed.join(" ").replace("--", ""), str::to_owned),
             knob,
-            arguments: arguments.join(" "),
+            arguments: arguments.collect::<Vec<_>>().join(" "),
             options,
         };
         let known = settings
@@ -194,7 +200,8 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
                 // Molecules are balls as they come.
                 for factor in default.sample_grid.map_or(&[][..], |_| &[0.75, 1.5]) {
                     let nodes = default.sample_grid.unwrap_or(1) as f64 * factor;
-                    add(knob, None, &[Change::SampleGrid(nodes.round() as usize)]);
+                    let nodes = (nodes.round() as usize).min(MOST_PER_AXIS);
+                    add(knob, None, &[Change::SampleGrid(nodes)]);
                 }
             }
             Knob::Combination => {
@@ -245,6 +252,26 @@ mod tests {
         assert!(settings.iter().all(|s| s.knob != Knob::SampleGrid));
     }
 
+    /// What is typed for a setting is all that it changes.
+    #[test]
+    fn arguments_name_what_else_changes() {
+        let settings = swept(&DockOptions {
+            pass_length: Some(9.0),
+            fine_rotations: Some(7200),
+            ..DockOptions::default()
+        });
+        let typed = |name: &str| {
+            let mut all = settings.iter();
+            all.find(|s| s.name == name).unwrap().arguments.clone()
+        };
+        assert_eq!(typed("resolution 3.5"), "--resolution 3.5 --pass-length 7");
+        assert_eq!(
+            typed("reference"),
+            "--rotations 14400 --fine-rotations 14400"
+        );
+        assert_eq!(typed("rotations 7200"), "--rotations 7200");
+    }
+
     /// Precision moves to the one that the default does not have.
     #[test]
     fn precision_moves_either_way() {
@@ -272,7 +299,10 @@ mod tests {
             .iter()
             .find(|s| s.knob == Knob::Resolution)
             .unwrap();
-        assert_eq!(finer.arguments, "--resolution 3.5 --spacing 1.56");
+        assert_eq!(
+            finer.arguments,
+            "--resolution 3.5 --pass-length 7 --spacing 1.56"
+        );
         assert_eq!(finer.options.pass_length, Some(7.0));
         let grids = settings.iter().filter(|s| s.knob == Knob::SampleGrid);
         let grids: Vec<_> = grids.map(|s| s.options.sample_grid).collect();

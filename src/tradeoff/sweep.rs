@@ -62,8 +62,10 @@ pub fn sweep(
             }
         }
     }
+    // Nothing is searched with it, so it needs no memory for that.
     let exact = preparer.prepare(&DockOptions {
         tolerance: default.tolerance.min(Precision::Single.finest_tolerance()),
+        memory: None,
         ..default.clone()
     })?;
     let mut reference: Option<Reference> = None;

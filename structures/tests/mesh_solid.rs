@@ -5,7 +5,7 @@
 mod solids;
 
 use knotdock_structures::mesh::{Solid, from_triangles};
-use solids::{cuboid, scattered, sphere};
+use solids::{Surface, cuboid, scattered, sphere};
 
 /// Signed distance to a box centred at zero, above zero inside.
 fn box_depth(half: [f64; 3], p: [f64; 3]) -> f64 {
@@ -168,6 +168,102 @@ fn triangles_and_parts_that_face_the_wrong_way_are_turned() {
         assert!((mesh.volume() - volume * 0.875).abs() < 1e-12);
         let solid = Solid::new(&mesh).unwrap();
         assert!(!solid.is_inside([0.0; 3]) && solid.is_inside([0.0, 0.0, 0.375]));
+    }
+}
+
+/// A surface whose triangles have corners of their own, a little apart from their neighbours', as many programs write them.
+fn in_pieces(surface: &Surface) -> Surface {
+    let mut pieces = Surface {
+        positions: Vec::new(),
+        triangles: Vec::new(),
+    };
+    for corners in &surface.triangles {
+        let corners = corners.map(|corner| surface.positions[corner as usize]);
+        let first = pieces.positions.len() as u32;
+        pieces.triangles.push([first, first + 1, first + 2]);
+        for corner in corners {
+            pieces.positions.push(std::array::from_fn(|axis| {
+                let middle = corners.iter().map(|c| c[axis]).sum::<f64>() / 3.0;
+                corner[axis] + 1e-8 * (middle - corner[axis])
+            }));
+        }
+    }
+    pieces
+}
+
+/// A piece of a surface has no inside of its own: all face as the whole does, the wall of a cavity too.
+#[test]
+fn pieces_of_a_surface_are_turned_together() {
+    let outer = cuboid([-1.0; 3], [1.0; 3]);
+    let cavity = cuboid([-0.5, -0.4, -0.3], [0.5, 0.4, 0.3]).inverted();
+    let shell = outer.clone().and(&cavity);
+    // A cavity that runs through from side to side.
+    let tube = {
+        let mut tube = cuboid([-1.0; 3], [1.0; 3]);
+        let bore = cuboid([-0.5, -0.5, -1.0], [0.5, 0.5, 1.0]).inverted();
+        let ends = |z: f64| move |corner: &[f64; 3]| corner[2] == z;
+        for z in [-1.0, 1.0] {
+            let flat = |surface: &Surface, triangle: &[u32; 3]| {
+                triangle
+                    .iter()
+                    .all(|&c| ends(z)(&surface.positions[c as usize]))
+            };
+            let caps: Vec<[u32; 3]> = tube
+                .triangles
+                .iter()
+                .copied()
+                .filter(|t| flat(&tube, t))
+                .collect();
+            tube.triangles.retain(|t| !caps.contains(t));
+            // What is left of an end about the bore.
+            for (low, high) in [
+                ([-1.0, -1.0], [1.0, -0.5]),
+                ([-1.0, 0.5], [1.0, 1.0]),
+                ([-1.0, -0.5], [-0.5, 0.5]),
+                ([0.5, -0.5], [1.0, 0.5]),
+            ] {
+                let strip = cuboid([low[0], low[1], z.min(0.0)], [high[0], high[1], z.max(0.0)]);
+                let mut strip_end = strip.clone();
+                strip_end.triangles.retain(|t| flat(&strip, t));
+                tube = tube.and(&strip_end);
+            }
+        }
+        let mut walls = bore.clone();
+        walls.triangles.retain(|t| {
+            !t.iter().all(|&c| bore.positions[c as usize][2] == 1.0)
+                && !t.iter().all(|&c| bore.positions[c as usize][2] == -1.0)
+        });
+        tube.and(&walls)
+    };
+    for (surface, hollow, solid_at) in [
+        (outer, [3.0; 3], [0.1, 0.2, 0.0]),
+        (shell, [0.1, 0.2, 0.0], [0.8, 0.1, 0.2]),
+        (tube, [0.1, 0.2, 0.0], [0.8, 0.1, 0.2]),
+    ] {
+        for (surface, turns) in [(surface.clone(), false), (surface.inverted(), true)] {
+            let (mesh, report) = in_pieces(&surface).mesh();
+            assert_eq!(report.parts, surface.triangles.len());
+            assert_eq!(report.inverted_parts, if turns { report.parts } else { 0 });
+            let solid = Solid::new(&mesh).unwrap();
+            let inside = |point: [f64; 3]| solid.is_inside(solid.frame().inward(point));
+            assert!(!inside(hollow) && inside(solid_at), "{turns}");
+        }
+    }
+}
+
+/// Boxes that share an edge and both face inward, and boxes that overlap, of which one does, whichever of its corners comes first.
+#[test]
+fn touching_and_overlapping_parts_are_turned() {
+    let touching = cuboid([0.0; 3], [1.0; 3]).and(&cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
+    let (mesh, report) = touching.inverted().mesh();
+    assert_eq!(report.inverted_parts, 2);
+    assert!((mesh.volume() - 2.0).abs() < 1e-15 && !report.is_sound());
+    for first in 0..12 {
+        let mut inward = cuboid([1.0; 3], [3.0; 3]).inverted();
+        inward.triangles.rotate_left(first);
+        let (mesh, report) = cuboid([0.0; 3], [2.0; 3]).and(&inward).mesh();
+        assert_eq!(report.inverted_parts, 1, "{first}");
+        assert!((mesh.volume() - 16.0).abs() < 1e-12);
     }
 }
 

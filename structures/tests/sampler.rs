@@ -9,11 +9,28 @@ use std::f64::consts::PI;
 use knotdock_structures::mesh::{Solid, read};
 use knotdock_structures::sampler::ball_tree::BallTree;
 use knotdock_structures::sampler::decomposition::{DecompositionOptions, decompose};
+use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
 use knotdock_structures::sampler::hausdorff::Referee;
 use knotdock_structures::sampler::skeletal_density::{Priority, SHARE_WIDTH, share};
 use knotdock_structures::sampler::{Ball, Method, SetName, sample};
 use solids::{cuboid, scattered, sphere};
+
+/// Past a wall thinner than anything the surface is far, and still no ball fits into the wall.
+#[test]
+fn thin_shells_are_as_thick_as_they_are() {
+    for thickness in [0.003, 0.02] {
+        let inner = sphere([0.0; 3], 0.5 - thickness, 40).inverted();
+        let solid = sphere([0.0; 3], 0.5, 40).and(&inner).solid();
+        let field = DepthField::new(&solid, Grid::new(&solid, 64));
+        let found = feature_size(&solid, &field);
+        let expected = 0.5 * thickness / solid.frame().unit;
+        assert!(
+            (found - expected).abs() < 0.1 * expected,
+            "{found} for {expected}"
+        );
+    }
+}
 
 const BUNNY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/bunny.obj");
 

@@ -147,6 +147,10 @@ fn a_run_moved_with_its_inputs_still_finds_them() {
     }
     run(&moved, "complex run --rank 1 --quiet");
     assert!(moved.join("run/top/rank_0001.pdb").exists());
+    // From inside the run's own folder, too.
+    run(&moved.join("run"), "complex . --rank 1 --force --quiet");
+    run(&moved.join("run"), "dock --from run.json -o again --quiet");
+    assert!(moved.join("run/again/poses.csv").exists());
 }
 
 #[cfg(target_os = "linux")] // elsewhere such names cannot be made

@@ -103,7 +103,7 @@ impl Reader {
                 replace(&path, bytes);
                 // At least one: a table without a line end may be wrong in its first.
                 let lines = 1 + bytes.iter().filter(|&&byte| byte == b'\n').count() as u64;
-                match read_pairs(&path) {
+                match read_pairs(&path, false) {
                     Ok(rows) => {
                         assert!(!rows.is_empty());
                         for row in &rows {

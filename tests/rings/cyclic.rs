@@ -229,6 +229,15 @@ fn a_batch_holds_rings_too() {
     assert!(symmetry("C3").ring(&pose(&ring[0])).is_some());
     let pair = rows(&folder.path().join("runs/a_a"));
     assert!(symmetry("C3").ring(&pose(&pair[0])).is_none());
+
+    // All of them may be rings of one kind.
+    fs::write(folder.path().join("rings.csv"), "receptor,ligand\na.pdb,\n").unwrap();
+    succeed(
+        folder.path(),
+        "batch rings.csv -o rings --quiet -- --symmetry C3 --rotations 12 --effects shape"
+            .split(' '),
+    );
+    assert_eq!(rows(&folder.path().join("rings/a_C3")), ring);
 }
 
 #[test]

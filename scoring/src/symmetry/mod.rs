@@ -119,10 +119,9 @@ impl Symmetry {
         let t = pose.translation;
         let turn = pose.rotation.angle_to(&self.rotation(&axis));
         let slide = axis.dot(&t).abs();
-        if turn > OFF || slide > OFF * (1.0 + t.norm()) {
-            return None;
-        }
-        Some(self.images(pose).collect())
+        // What does not turn at all has no axis, and angles to it are no numbers.
+        let fits = turn <= OFF && slide <= OFF * (1.0 + t.norm());
+        fits.then(|| self.images(pose).collect())
     }
 
     /// Poses of all copies, as [`Self::ring`] has them, of a pose that is known to be a ring's.
@@ -291,6 +290,7 @@ mod tests {
         let mut slid = pose;
         slid.translation += 0.01 * *direction(&pose);
         assert_eq!(symmetry.ring(&slid), None);
+        assert_eq!(symmetry.ring(&Pose::identity()), None);
         assert!(apart(&symmetry.nearest(&slid), &pose) < 1e-12);
         assert_eq!(cyclic("C4").ring(&pose), None);
     }

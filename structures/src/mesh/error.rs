@@ -43,7 +43,7 @@ pub enum MeshErrorKind {
     },
     /// A coordinate is NaN, infinite, or so large that its square overflows.
     #[error(
-        "{what} has coordinate {value:e}; coordinates must be finite and below 1e100 in magnitude"
+        "{what} has coordinate {value:e}; coordinates must be finite and below 1e70 in magnitude"
     )]
     Coordinate {
         /// 1-based line, in text formats.
@@ -76,7 +76,7 @@ pub enum MeshErrorKind {
     #[error("the mesh is flat: all its vertices lie in one plane, so it bounds no solid")]
     Flat,
     /// The mesh is smaller than numbers can tell apart.
-    #[error("the mesh is {extent:e} across; lengths below 1e-100 are not distinguished from zero")]
+    #[error("the mesh is {extent:e} across; lengths below 1e-60 are not distinguished from zero")]
     Tiny {
         /// Longest edge of the bounding box, in the file's unit.
         extent: f64,

@@ -15,6 +15,7 @@
 
 mod distance;
 mod error;
+mod facing;
 mod figure;
 mod read;
 mod repeats;

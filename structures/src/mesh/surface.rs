@@ -117,6 +117,11 @@ pub(crate) fn surface_pieces(
                 }
                 let [a, b, c] = turned_to_longest(corners);
                 let halved = scale(add(a, b), 0.5);
+                // Doubles are no finer, whatever was asked for.
+                if halved == a || halved == b {
+                    visit(middle, area);
+                    continue;
+                }
                 stack.push(([a, halved, c], 0.5 * area));
                 stack.push(([halved, b, c], 0.5 * area));
             }

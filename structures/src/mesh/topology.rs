@@ -5,8 +5,8 @@
 //! else is wrong with it.
 
 use super::Mesh;
-use super::vector::{add, cross, dot, norm, scale, subtract};
-use super::winding::solid_angle;
+use super::facing::turn_outward;
+use super::vector::{norm, subtract};
 
 /// What [`orient`] found and did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,19 +57,19 @@ fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
 
 /// Turns triangles to agree with their neighbours and parts to face outward, and counts what is amiss.
 ///
-/// In each part the majority decides. A part that faces inward is turned unless it lies inside another, where facing
-/// inward makes it the wall of a cavity; if the part about it was turned, so is it.
+/// In each part the majority decides. Then whole surfaces are turned that face inward: [`turn_outward`].
 pub fn orient(mesh: &mut Mesh) -> Topology {
     let mut edges = half_edges(&mesh.triangles);
     let mut topology = Topology::default();
     // Neighbour across each side of each triangle, and whether both run the side the same way, which is amiss.
     let mut neighbours: Vec<[Option<(u32, bool)>; 3]> = vec![[None; 3]; mesh.triangles.len()];
     let mut degree = vec![0u8; mesh.triangles.len()];
-    let mut at_nonmanifold = vec![false; mesh.triangles.len()];
+    let mut at_border = vec![false; mesh.triangles.len()];
     for group in edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
         match group {
             [one] => {
                 topology.open_edges += 1;
+                at_border[one.triangle as usize] = true;
                 let along = subtract(
                     mesh.positions[one.high as usize],
                     mesh.positions[one.low as usize],
@@ -87,21 +87,14 @@ pub fn orient(mesh: &mut Mesh) -> Topology {
             several => {
                 topology.nonmanifold_edges += 1;
                 for edge in several {
-                    at_nonmanifold[edge.triangle as usize] = true;
+                    at_border[edge.triangle as usize] = true;
                 }
             }
         }
     }
     let parts = agree(mesh, &neighbours, &mut topology);
     topology.parts = parts.len();
-    let free: Vec<bool> = parts
-        .iter()
-        .map(|part| {
-            part.iter()
-                .all(|&triangle| !at_nonmanifold[triangle as usize])
-        })
-        .collect();
-    turn_outward(mesh, &parts, &free, &mut topology);
+    topology.inverted_parts = turn_outward(mesh, &parts, &at_border);
     if topology.turned_triangles + topology.inverted_parts > 0 {
         edges = half_edges(&mesh.triangles);
     }
@@ -153,96 +146,4 @@ fn agree(
         parts.push(part);
     }
     parts
-}
-
-/// Six times the volume of a part about the middle of its bounding box, and that box.
-fn volume(mesh: &Mesh, part: &[u32]) -> (f64, [f64; 3], [f64; 3]) {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    let corners = || {
-        part.iter()
-            .map(|&triangle| mesh.corners(mesh.triangles[triangle as usize]))
-    };
-    for point in corners().flatten() {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-    }
-    let middle = scale(add(low, high), 0.5);
-    let volume = corners()
-        .map(|corners| {
-            let [a, b, c] = corners.map(|corner| subtract(corner, middle));
-            dot(a, cross(b, c))
-        })
-        .sum();
-    (volume, low, high)
-}
-
-/// Turns parts that face inward; see [`orient`]. Parts at non-manifold edges (`free` is false) stay as they are: they are
-/// pieces of a surface, not surfaces.
-fn turn_outward(mesh: &mut Mesh, parts: &[Vec<u32>], free: &[bool], topology: &mut Topology) {
-    let measured: Vec<_> = parts.iter().map(|part| volume(mesh, part)).collect();
-    let inward: Vec<bool> = measured
-        .iter()
-        .zip(free)
-        .map(|((v, ..), free)| *free && *v < 0.0)
-        .collect();
-    if !inward.contains(&true) {
-        return;
-    }
-    // The parts about each inward one; the outermost decides.
-    let mut turn = vec![false; parts.len()];
-    let mut within: Vec<Vec<usize>> = vec![Vec::new(); parts.len()];
-    for (index, part) in parts.iter().enumerate().filter(|(index, _)| inward[*index]) {
-        let point = mesh.corners(mesh.triangles[part[0] as usize])[0];
-        for (other, (_, low, high)) in measured.iter().enumerate() {
-            let inside_box = (0..3).all(|axis| low[axis] < point[axis] && point[axis] < high[axis]);
-            if other == index || !free[other] || !inside_box {
-                continue;
-            }
-            let angle: f64 = parts[other]
-                .iter()
-                .map(|&t| solid_angle(mesh.corners(mesh.triangles[t as usize]), point))
-                .sum();
-            if angle.abs() > 2.0 * std::f64::consts::PI {
-                within[index].push(other);
-            }
-        }
-        turn[index] = within[index].is_empty();
-    }
-    for index in 0..parts.len() {
-        if inward[index] && !turn[index] {
-            // A cavity of a part that is turned is turned with it, or it would count as solid.
-            turn[index] = within[index]
-                .iter()
-                .any(|&outer| inward[outer] && within[outer].is_empty());
-        }
-    }
-    // A part that faces outward inside one that is turned was the wall of a cavity in an inverted file.
-    let turned_whole: Vec<usize> = (0..parts.len())
-        .filter(|&i| turn[i] && within[i].is_empty())
-        .collect();
-    for (index, part) in parts.iter().enumerate() {
-        if inward[index] || !free[index] {
-            continue;
-        }
-        let point = mesh.corners(mesh.triangles[part[0] as usize])[0];
-        turn[index] = turned_whole.iter().any(|&outer| {
-            let (_, low, high) = measured[outer];
-            (0..3).all(|axis| low[axis] < point[axis] && point[axis] < high[axis])
-                && parts[outer]
-                    .iter()
-                    .map(|&t| solid_angle(mesh.corners(mesh.triangles[t as usize]), point))
-                    .sum::<f64>()
-                    .abs()
-                    > 2.0 * std::f64::consts::PI
-        });
-    }
-    for (part, _) in parts.iter().zip(&turn).filter(|(_, turn)| **turn) {
-        topology.inverted_parts += 1;
-        for &triangle in part {
-            mesh.triangles[triangle as usize].swap(1, 2);
-        }
-    }
 }

@@ -16,6 +16,9 @@ pub struct Welded {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// Lengths below which squared areas are lost.
+const SMALLEST_EXTENT: f64 = 1e-60;
+
 /// Merges vertices within [`WELD_TOLERANCE`] and drops triangles that lose a corner by it.
 ///
 /// A vertex joins the earliest one within reach, so the outcome does not depend on anything but the order of the file.
@@ -37,7 +40,7 @@ pub fn weld(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Welded
             triangles: triangles.len(),
         });
     }
-    if extent < 1e-100 {
+    if extent < SMALLEST_EXTENT {
         return Err(MeshErrorKind::Tiny { extent });
     }
     let reach = extent * WELD_TOLERANCE;
@@ -47,7 +50,8 @@ pub fn weld(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Welded
     let mut places: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(positions.len() / 2);
     let mut names: Vec<Option<u32>> = vec![None; positions.len()];
     let mut kept: Vec<[f64; 3]> = Vec::new();
-    let mut welded = Vec::with_capacity(triangles.len());
+    let count = triangles.len();
+    let mut welded = Vec::with_capacity(count);
     for triangle in triangles {
         let corners = triangle.map(|corner| {
             let slot = &mut names[corner as usize];
@@ -67,9 +71,7 @@ pub fn weld(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Welded
         }
     }
     if welded.is_empty() {
-        return Err(MeshErrorKind::Degenerate {
-            triangles: names.len() / 3,
-        });
+        return Err(MeshErrorKind::Degenerate { triangles: count });
     }
     Ok(Welded {
         positions: kept,

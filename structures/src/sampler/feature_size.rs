@@ -49,7 +49,8 @@ fn touching_radius(solid: &Solid, inside: [f64; 3], most: f64) -> f64 {
     }
     let fits = |radius: f64| {
         let center = [0, 1, 2].map(|axis| foot[axis] + radius / depth * step[axis]);
-        solid.distance(center) >= TOUCHING * radius
+        // Past a thin wall the surface is far, too.
+        solid.distance(center) >= TOUCHING * radius && solid.is_inside(center)
     };
     // The ball about `inside` itself fits, and of balls that touch at one point each holds all smaller ones.
     let (mut low, mut high) = (depth, most.max(depth));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::mesh::Solid;
 
 /// Nearer to the surface than this, in the solid's unit, a node counts as on it: the distance is rounding.
-const ON_SURFACE: f64 = 1e-12;
+pub const ON_SURFACE: f64 = 1e-12;
 
 /// The nodes of a cube. Index (z n + y) n + x.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -126,14 +126,17 @@ impl<'a> Referee<'a> {
         }
     }
 
-    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed.
+    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one has no point inside, as of a thin plate.
     pub fn volume(&self) -> f64 {
         let count: u64 = self
             .inside
             .iter()
             .map(|word| u64::from(word.count_ones()))
             .sum();
-        count as f64 * self.fine.step.powi(3)
+        match count {
+            0 => self.field.inside().len() as f64 * self.field.grid.spacing().powi(3),
+            _ => count as f64 * self.fine.step.powi(3),
+        }
     }
 
     /// Measures a set of balls. What of them reaches more than a spacing out of the grid's cube has no part in the volumes.

@@ -39,7 +39,7 @@ pub enum MeshFormat {
 const LARGEST_FILE: u64 = 2 << 30;
 
 /// Largest magnitude of a coordinate: squares and cubes of lengths stay finite.
-const LARGEST_COORDINATE: f64 = 1e100;
+const LARGEST_COORDINATE: f64 = 1e70;
 
 /// Polygons as a file lists them, cut into triangles.
 #[derive(Debug, Default)]

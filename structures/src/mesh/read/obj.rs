@@ -1,24 +1,40 @@
 //! Wavefront OBJ: `v` and `f` lines; all else (normals, textures, groups, materials, lines, points) bounds no solid.
 
+use std::borrow::Cow;
+
 use super::super::error::MeshErrorKind;
 use super::Soup;
-use super::words::lines;
+use super::words::{lines, text_of};
+
+/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines counted.
+fn joined(text: Cow<'_, str>) -> Cow<'_, str> {
+    if !text.contains('\\') {
+        return text;
+    }
+    let mut joined = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let continued = match line.contains('#') {
+            true => None,
+            false => line.trim_end_matches(['\r', '\n']).strip_suffix('\\'),
+        };
+        match continued {
+            Some(begun) if line.ends_with('\n') => {
+                joined.push_str(begun);
+                joined.push_str(" \u{b}");
+            }
+            _ => joined.push_str(line),
+        }
+    }
+    Cow::Owned(joined)
+}
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
-    let text = String::from_utf8_lossy(bytes);
-    // A backslash at the end of a line continues it; the blank keeps lines counted.
-    let joined;
-    let text: &str = if text.contains('\\') {
-        joined = text.replace("\\\r\n", "  \u{b}").replace("\\\n", " \u{b}");
-        &joined
-    } else {
-        &text
-    };
+    let text = joined(text_of(bytes));
     let mut soup = Soup::default();
     let mut corners = Vec::new();
     let mut continued = 0;
-    for mut line in lines(text, true) {
+    for mut line in lines(&text, true) {
         line.number += continued;
         continued += line.text.matches('\u{b}').count();
         let mut words = line

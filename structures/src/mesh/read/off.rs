@@ -3,11 +3,11 @@
 
 use super::super::error::MeshErrorKind;
 use super::Soup;
-use super::words::{Line, lines};
+use super::words::{Line, lines, text_of};
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = text_of(bytes);
     let mut lines = lines(&text, true).peekable();
     let end = |what: &str| MeshErrorKind::Syntax {
         line: None,

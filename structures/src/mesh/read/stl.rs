@@ -5,7 +5,7 @@
 
 use super::super::error::MeshErrorKind;
 use super::Soup;
-use super::words::{Line, lines};
+use super::words::{Line, lines, text_of};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
@@ -23,13 +23,12 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
-    let text = String::from_utf8_lossy(bytes);
-    let text = text.trim_start_matches('\u{feff}');
-    let is_solid = |word: &str| word.eq_ignore_ascii_case("solid");
-    if !is_binary(bytes) && text.trim_start().get(..5).is_some_and(is_solid) {
-        // A binary file cut short may begin with `solid` too; then it has zero bytes, which text never has.
-        if !bytes.contains(&0) {
-            return parse_text(text);
+    // A binary file cut short may begin with `solid` too; then it has zero bytes, which text never has.
+    if !is_binary(bytes) && !bytes.contains(&0) {
+        let text = text_of(bytes);
+        let first = text.trim_start().get(..5);
+        if first.is_some_and(|word| word.eq_ignore_ascii_case("solid")) {
+            return parse_text(&text);
         }
     }
     parse_binary(bytes)

@@ -1,6 +1,13 @@
 //! Lines of words of a text format, with their numbers, and numbers of words.
 
+use std::borrow::Cow;
+
 use super::super::error::MeshErrorKind;
+
+/// A file's text, without the byte order mark that some begin with.
+pub fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    String::from_utf8_lossy(bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes))
+}
 
 /// A line that has words: its 1-based number, and its text up to a comment.
 #[derive(Clone, Copy, Debug)]
