@@ -36,17 +36,24 @@ def main():
         runs = {name: read(folders) for name, folders in getattr(options, split)}
         if runs:
             points += settings(split, runs)
-    points += megadock(options.eval[0][1][0] / "poses.csv")
+            pairs = shared_pairs(split, runs)
+    points += megadock(options.eval[0][1], pairs)
     write(options.picture, picture(points))
     write(options.page, page(points, options))
     print(table(points))
 
 
-def settings(split, runs):
-    """Each setting of a set as a point."""
+def shared_pairs(split, runs):
+    """The pairs that all settings of a set hold."""
     shared = sorted(set.intersection(*({pair for pair, _ in rows} for rows in runs.values())))
     if not shared:
         raise SystemExit(f"no pair is in every run of {split}")
+    return shared
+
+
+def settings(split, runs):
+    """Each setting of a set as a point."""
+    shared = shared_pairs(split, runs)
     points = []
     for name, rows in runs.items():
         by_pair = [[row for (pair, _), row in rows.items() if pair == wanted] for wanted in shared]
@@ -59,10 +66,12 @@ def settings(split, runs):
     return points
 
 
-def megadock(path):
-    """MEGADOCK's point, of the figures that came with the benchmark."""
-    with open(path, newline="") as file:
-        rows = {row["id"]: row for row in csv.DictReader(file) if row["megadock_cpu_s"]}
+def megadock(folders, pairs):
+    """MEGADOCK's point, of the figures for some pairs that came with the benchmark."""
+    rows = {}
+    for folder in folders:
+        with open(folder / "poses.csv", newline="") as file:
+            rows |= {row["id"]: row for row in csv.DictReader(file) if row["id"] in pairs and row.get("megadock_cpu_s")}
     if not rows:
         return []
     ranks = [float(row["megadock_first_acceptable_rank"] or math.inf) for row in rows.values()]

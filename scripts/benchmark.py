@@ -136,6 +136,9 @@ def parse_arguments():
             parser.error(f"{owned} is this script's own to set")
     options.dock_options = dock_options
     options.knotdock = find_program(parser, options.knotdock)
+    # By content: a table that was written anew under its name makes old results stale, too.
+    tables = (path for path in map(Path, dock_options) if path.is_file())
+    options.tables = {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in tables}
     return options
 
 
@@ -181,6 +184,8 @@ def run_one(options, program, pair, seed):
     folder = options.out / pair["id"] / f"seed_{seed}"
     record = folder / "result.json"
     settings = {"program": program, "options": options.dock_options, "seed": seed}
+    if options.tables:
+        settings["tables"] = options.tables
     if options.attract:
         settings["attract"] = options.attract
     try:
@@ -188,8 +193,10 @@ def run_one(options, program, pair, seed):
         settings["inputs"] = {part: hashlib.sha256(path.read_bytes()).hexdigest() for part, path in files.items()}
         if record.exists():
             old = json.loads(record.read_text())
-            if old.get("settings") == settings and "error" not in old:
+            if old.get("settings") == settings and "error" not in old and (folder / "run/run.json").exists():
                 return old
+            # The run goes next, and a record of it must not outlive it.
+            record.unlink()
         folder.mkdir(parents=True, exist_ok=True)
         result = dock_and_measure(options, folder, files, pair["id"], seed)
     except Exception as error:  # whatever it is, it is this pair's alone

@@ -277,6 +277,9 @@ def main():
                     for line in lines[: options.show]:
                         print(f"    {line}")
     print(f"{len(paths)} files, {atoms} atoms: " + ", ".join(f"{count} {what}" for what, count in sorted(counts.items())))
+    if counts["the same"] < least / 2:
+        print("too few files have atoms to compare", file=sys.stderr)
+        return 2
     return 1 if failed else 0
 
 

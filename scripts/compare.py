@@ -4,7 +4,7 @@
     python3 scripts/compare.py shape=runs/shape all=runs/fold0,runs/fold1 ... [--ranking poses] [--resamples 10000] [--output FILE]
 
 Each folder (or several, with commas between them, which hold a setting's pairs together) is the --out of a `scripts/benchmark.py` run; pairs and seeds that all of them hold are compared. Success among the first N
-is the number of pairs, as the mean over seeds. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
+is the number of pairs, as the mean over seeds; a folder with a run that failed is refused. Intervals are the middle 95% over pairs drawn anew with replacement (bootstrap);
 a gain's interval is of the difference on the same draws, so that a pair that is easy for all counts for none. A second table has
 the mean logarithm of the first rank, which a rank that is merely better moves, too: over turns, then over pairs; with its difference from
 the first setting's and the standard error of that over pairs. What was not found counts as rank 3,000. Below it
@@ -18,6 +18,7 @@ import csv
 import math
 import random
 import statistics
+import sys
 from pathlib import Path
 
 from whole_file import write
@@ -30,10 +31,14 @@ NOT_FOUND = 3000
 def main():
     options = parse_arguments()
     runs = {name: read(folders, options.ranking) for name, folders in options.runs}
+    if len(runs) < len(options.runs):
+        raise SystemExit("two settings have one name")
     shared = set.intersection(*(set(rows) for rows in runs.values()))
     pairs = sorted({pair for pair, _ in shared})
     seeds = sorted({seed for _, seed in shared})
     complete = [pair for pair in pairs if all((pair, seed) in shared for seed in seeds)]
+    for pair in set(pairs) - set(complete):
+        print(f"{pair} is left out: not every run has all of its seeds", file=sys.stderr)
     if not complete:
         raise SystemExit("no pair with all its seeds is in every run")
     draws = draw_pairs(len(complete), options.resamples)
@@ -94,6 +99,8 @@ def read(folders, ranking="poses"):
             raise SystemExit(f"{folder} holds no {ranking}.csv; name the --out folder of a scripts/benchmark.py run")
         with open(table, newline="") as file:
             for row in csv.DictReader(file):
+                if row["error"]:
+                    raise SystemExit(f"{table}: {row['id']}, seed {row['seed']} failed; run scripts/benchmark.py again, which repeats what failed: {row['error']}")
                 ranks = {column: float(row[column] or math.inf) for _, column in CRITERIA}
                 rows[row["id"], row["seed"]] = {**ranks, "cpu_seconds": float(row["cpu_seconds"] or "nan")}
     return rows

@@ -107,13 +107,15 @@ def pair_arguments(parser):
     """The options that say which pairs the statistics are of, for `select`."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
     parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
-    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N`, for cross-validation")
+    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N` of the same split, without --ids there, for cross-validation")
     parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
 
 
 def fold(text):
     """K/N as two numbers."""
     part, count = map(int, text.split("/"))
+    if not 0 <= part < count:
+        raise argparse.ArgumentTypeError(f"{text} is not K/N with 0 <= K < N")
     return part, count
 
 
@@ -123,6 +125,9 @@ def select(options):
     if options.split == "fit":
         rows = [row for row in rows if not row["near_eval"].strip()]
     pairs = sorted(row["id"] for row in rows)
+    unknown = set(options.exclude) - set(pairs)
+    if unknown:
+        raise SystemExit(f"not in split {options.split} of the manifest: {', '.join(sorted(unknown))}")
     if options.without_fold:
         part, count = options.without_fold
         options.exclude = options.exclude + pairs[part::count]

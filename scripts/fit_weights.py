@@ -42,12 +42,14 @@ TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
 def main():
     options = parse_arguments()
-    pooled, weights = {}, []
+    pooled, weights, computed = {}, [], []
     for runs in options.runs:
+        computed.append(set())
         for record in sorted(runs.glob("*/seed_*/result.json")):
             pair, seed = record.parent.parent.name, record.parent.name
             if (record.parent / "run/run.json").exists():
-                rows, own = load(options, record.parent, pair)
+                rows, own, terms = load(options, record.parent, pair)
+                computed[-1] |= terms
                 pooled.setdefault((pair, seed), []).append(rows)
                 weights.append(own)
     decoys = {key: np.concatenate(parts) for key, parts in pooled.items() if len(parts) == len(options.runs)}
@@ -57,7 +59,7 @@ def main():
     if options.clusters:
         compare_temperatures(decoys)
     else:
-        compare_weights(options, decoys, weights[0])
+        compare_weights(options, decoys, weights[0], set(TERMS).intersection(*computed))
 
 
 def parse_arguments():
@@ -74,23 +76,27 @@ def parse_arguments():
     parser.add_argument("--relaxed", type=numbers, default=[0.0, 2.0, 3.0, 4.0])
     parser.add_argument("--folds", type=int, default=5)
     parser.add_argument("--clusters", action="store_true", help="compare temperatures of clusters")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.clusters and len(options.runs) > 1:
+        parser.error("--clusters takes one RUNS: each run numbers its clusters from 1")
+    return options
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), rank score, cluster; and the weights of the run."""
+    """Rows of slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), rank score, cluster; the weights of the run; and the terms it has."""
     table = folder / "run/poses.csv"
     found = qualities(options, folder, pair, table)
     recorded = json.loads((folder / "run/run.json").read_text())["options"]
-    rows = []
+    rows, computed = [], set()
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
+            computed.update(name for name in TERMS if row.get(name))
             terms = [float(row.get(name) or 0) / (recorded.get(f"{name}_weight") or 1.0) for name in TERMS]
             terms += [float(row.get(name) or 0) for name in HELD]
             score = float(row.get("rank_score") or row["score"])
             rows.append([*(float(row[name]) for name in FEATURES), *terms, *found[row["rank"]], score, float(row["cluster"])])
     weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
-    return np.array(rows, dtype=float), weights
+    return np.array(rows, dtype=float), weights, computed
 
 
 def qualities(options, folder, pair, table):
@@ -142,8 +148,14 @@ def against(ranks, reference):
     return f"{gains.mean():+.3f} ({error:.3f})"
 
 
-def compare_weights(options, decoys, own):
-    grid = list(itertools.product(options.lambdas, options.electrostatics, options.contact, options.fine, options.pairs, options.relaxed))
+def compare_weights(options, decoys, own, computed):
+    choices = dict(zip(TERMS, (options.electrostatics, options.contact, options.fine, options.pairs, options.relaxed)))
+    for name in TERMS:
+        if name not in computed:
+            print(f"{name}: not every RUNS has it, so no weight of it is tried")
+            choices[name] = [0.0]
+    own = (own[0], *(weight if name in computed else 0.0 for name, weight in zip(TERMS, own[1:])))
+    grid = list(itertools.product(options.lambdas, *choices.values()))
     if own not in grid:
         grid.append(own)
     acceptable, near_native = {}, {}

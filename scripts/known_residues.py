@@ -11,19 +11,30 @@ def attraction(texts, name, seed, count):
     """Options of `knotdock dock` that attract `count` residues of each side, drawn from its known interface by name and seed alone.
 
     `texts` holds the PDB text of receptor_bound, ligand_bound, receptor_unbound and ligand_unbound; residues are matched by number, and those that the
-    unbound file lacks are not drawn. With fewer than `count` in the interface all are taken.
+    unbound file lacks are not drawn. With fewer than `count` in the interface all are taken. A number that a file has in several
+    chains is an error.
     """
     bound = {side: list(atoms(texts[f"{side}_bound"])) for side in ("receptor", "ligand")}
     source = random.Random(f"{name} {seed} attraction")
     options = []
     for side, other in (("receptor", "ligand"), ("ligand", "receptor")):
         touching = residues_within(bound[side], bound[other])
-        unbound = {number: chain for chain, number, _ in atoms(texts[f"{side}_unbound"])}
+        chains_by_number(bound[side], f"{side}_bound of {name}")
+        unbound = chains_by_number(atoms(texts[f"{side}_unbound"]), f"{side}_unbound of {name}")
         known = [number for number in sorted(touching, key=order) if number in unbound]
         drawn = sorted(source.sample(known, min(count, len(known))), key=order)
         if drawn:
             options += [f"--attract-{side}", ",".join(f"{unbound[number]}:{number}" for number in drawn)]
     return options
+
+
+def chains_by_number(rows, what):
+    """The chain of each residue number; numbers that tell no residue by themselves are refused."""
+    chains = {}
+    for chain, number, _ in rows:
+        if chains.setdefault(number, chain) != chain:
+            raise ValueError(f"{what} has residue {number} in chains {chains[number]} and {chain}: residues are matched by number alone")
+    return chains
 
 
 def order(number):

@@ -30,7 +30,7 @@ def main():
     sites = {}
     for folder in sorted(folder for runs in options.runs for folder in runs.glob("*/seed_*") if (folder / "run/run.json").exists()):
         pair = folder.parent.name
-        rows, _ = load(options, folder, pair)
+        rows, _, _ = load(options, folder, pair)
         earned = rows[:, ACCEPTABLE - len(HELD) + HELD.index("attraction")]
         scores = rows[:, SCORE] - earned
         for name, column in (("acceptable", ACCEPTABLE), ("near-native", NEAR_NATIVE)):
@@ -50,7 +50,7 @@ def main():
         drawn = np.random.default_rng(0).integers(len(likelihood), size=(RESAMPLED, len(likelihood)))
         low, high = np.quantile([most_likely(likelihood[pairs]) for pairs in drawn], [0.025, 0.975])
         print(f"{name}: a unit of log-odds is worth {most_likely(likelihood):.0f} [{low:.0f}, {high:.0f}], {len(likelihood)} pairs")
-    means = {pair: np.mean(turns, axis=0) for pair, turns in sorted(sites.items())}
+    means = {pair: mean_over_turns(turns) for pair, turns in sorted(sites.items())}
     for pair, (every, best, acceptable) in means.items():
         print(f"{pair}: of its active site all poses touch {every:.2f}, the best 100 {best:.2f}, the acceptable ones {acceptable:.2f}")
     if means:
@@ -65,6 +65,11 @@ def parse_arguments():
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="output folder of benchmark.py")
     parser.add_argument("--knotdock", default="knotdock", help="the program (default: the one on the path)")
     return parser.parse_args()
+
+
+def mean_over_turns(turns):
+    """Means of a pair's shares, of acceptable poses over the turns that have any."""
+    return [np.mean([share for share in shares if not np.isnan(share)] or np.nan) for shares in zip(*turns)]
 
 
 def log_probability(scores, right):
