@@ -24,6 +24,7 @@ Needs Python 3.9 or later and NumPy.
 
 import argparse
 import csv
+import hashlib
 import json
 import math
 import sys
@@ -150,7 +151,7 @@ def read_runs(folders, manifest, split, seen):
         if here != split:
             raise SystemExit(f"{record} is of split {here}, not {split}")
         if split == "fit":
-            refuse_leak(pair, result["settings"]["options"])
+            refuse_leak(pair, result["settings"])
         run = json.loads((record.parent / "run/run.json").read_text())
         for option, value in run["options"].items():
             if option not in FREE and seen.setdefault(option, value) != value:
@@ -170,10 +171,13 @@ def read_runs(folders, manifest, split, seen):
         yield pair, features, (result["clusters"]["acceptable"] or math.inf) <= DEPTH
 
 
-def refuse_leak(pair, given):
-    """Ends where a potential was derived from the pair itself."""
+def refuse_leak(pair, settings):
+    """Ends where a potential was derived from the pair itself, or cannot be read as it was."""
+    given, tables = settings["options"], settings.get("tables", {})
     for option, carried in CARRIED.items():
         path = Path(given[given.index(option) + 1]) if option in given else Path(__file__).parent.parent / carried
+        if option in given and tables.get(str(path)) != hashlib.sha256(path.read_bytes()).hexdigest():
+            raise SystemExit(f"{path} is no longer the table with which {pair} was docked")
         with open(path) as file:
             if any(pair in line.split() for line in file if line.startswith("#")):
                 raise SystemExit(f"{path}, with which {pair} was docked, was derived from {pair}, too")
