@@ -24,6 +24,9 @@ pub(super) struct ChainPair {
 
 /// What is left of a chain after a match may be matched again if it has this many residues: fewer pair by chance.
 const LEAST_REMAINDER: usize = 20;
+/// And if what it pairs is at least this share of what it did while both chains were whole: else most of the other chain is a copy of what was
+/// matched already, and the rest a loop that one copy lacks.
+const LEAST_OF_WHOLE: f64 = 0.5;
 /// Chains are one another's when at least this share of the shorter is equal.
 const LEAST_IDENTITY: f64 = 0.5;
 /// How much more the same name counts: it decides between identical chains, not between different ones.
@@ -95,6 +98,10 @@ pub(super) fn pair_chains(user: &Residues, native: &Residues, all: &[ChainPair])
             let same = user.segments[pair.user].name == native.segments[pair.native].name;
             pair.pairs.len() as f64 * if same { SAME_NAME } else { 1.0 }
         };
+        let whole = |pair: &ChainPair| {
+            let place = pair.user * native.segments.len() + pair.native;
+            all[place].pairs.len() as f64
+        };
         let acceptable = |pair: &&ChainPair| {
             let (ours, theirs) = pair.lengths;
             let enough = |left: usize, whole: usize| left == whole || left >= LEAST_REMAINDER;
@@ -102,6 +109,7 @@ pub(super) fn pair_chains(user: &Residues, native: &Residues, all: &[ChainPair])
                 && enough(ours, user.segments[pair.user].members.len())
                 && enough(theirs, native.segments[pair.native].members.len())
                 && pair.pairs.len() as f64 >= LEAST_IDENTITY * ours.min(theirs) as f64
+                && pair.pairs.len() as f64 >= LEAST_OF_WHOLE * whole(pair)
         };
         let mut best: Option<&ChainPair> = None;
         for pair in candidates.iter().filter(acceptable) {
@@ -198,6 +206,22 @@ mod tests {
         let user = residues(&[("A", &one, 1)]);
         let native = residues(&[("A", &other, 1), ("B", &one, 1)]);
         assert_eq!(matched(&user, &native), expected(&[("A", "B", 40)]));
+    }
+
+    /// A loop that one copy lacks has no partner in another copy.
+    #[test]
+    fn what_is_left_of_a_copy_is_not_matched_with_another() {
+        let one = random_sequence(9, 300);
+        let without = |from: usize, to: usize| one[..from].to_owned() + &one[to..];
+        let user = residues(&[("R", &one, 1)]);
+        let native = residues(&[("A", &without(40, 65), 1), ("C", &without(100, 130), 1)]);
+        assert_eq!(matched(&user, &native), expected(&[("R", "A", 275)]));
+        // Of two copies either way, loops of the first are not matched with the second.
+        let user = residues(&[("A", &one, 1), ("B", &without(40, 65), 1)]);
+        assert_eq!(
+            matched(&user, &native),
+            expected(&[("A", "A", 275), ("B", "C", 245)])
+        );
     }
 
     #[test]

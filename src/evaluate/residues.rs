@@ -27,6 +27,8 @@ const LEAST_PIECE: usize = 20;
 /// What a residue is called in its file: number and insertion code.
 pub(super) type Number = (i64, Option<char>);
 
+/// How many of the [`BACKBONE_ATOMS`] are of proteins.
+const OF_PROTEINS: usize = 4;
 /// Places of P and O3' among the [`BACKBONE_ATOMS`].
 const PHOSPHORUS: usize = 4;
 const LINKING_OXYGEN: usize = 8;
@@ -265,6 +267,11 @@ impl Residue {
                 .find(|atom| plain_atom_name(&atom.name) == name)?;
             Some(Point3::from(atom.position))
         });
+        // The phosphate of a phosphoserine, say, is no backbone.
+        let mut backbone = backbone;
+        if backbone[..3].iter().all(Option::is_some) {
+            backbone[OF_PROTEINS..].fill(None);
+        }
         let heavy: Vec<_> = atoms
             .iter()
             .map(|atom| Point3::from(atom.position))

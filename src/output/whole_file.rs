@@ -71,10 +71,12 @@ impl FileError {
 /// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the process under such a name, which may be
 /// a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
-    ["/dev", "/proc"]
-        .iter()
-        .any(|folder| path.starts_with(folder))
-        || fs::metadata(path).is_ok_and(|found| !found.is_file())
+    let is_own = path.starts_with("/proc")
+        || path.starts_with("/dev/fd")
+        || ["/dev/stdin", "/dev/stdout", "/dev/stderr"]
+            .iter()
+            .any(|name| path == Path::new(name));
+    is_own || fs::metadata(path).is_ok_and(|found| !found.is_file())
 }
 
 /// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file

@@ -32,16 +32,23 @@ fn rotation(index: usize, count: usize) -> UnitQuaternion<f64> {
 /// images are relaxed as charges that push each other apart, which evens out the domain's edges and leaves every rotation a nearer neighbour on
 /// average than the spiral itself does.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
-    let mut base = domain(count.div_ceil(4));
-    if count <= MOST_RELAXED {
-        relax(&mut base);
+    if count > MOST_RELAXED {
+        return spiral_set(count);
     }
+    let mut base = domain(count.div_ceil(4));
+    base.truncate(count.div_ceil(4));
+    relax(&mut base);
     with_images(&base, count)
 }
 
 /// A set as [`rotation_set`] makes it, but never relaxed: quickly made, and less even at the edges of the domain.
 pub(super) fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
-    with_images(&domain(count.div_ceil(4)), count)
+    let (points, wanted) = (domain(count.div_ceil(4)), count.div_ceil(4));
+    // Evenly fewer: its last ones leave a hole.
+    let kept: Vec<Point> = (0..wanted)
+        .map(|index| points[index * points.len() / wanted])
+        .collect();
+    with_images(&kept, count)
 }
 
 /// Each rotation followed by its half-turns, `count` in all.
@@ -75,17 +82,16 @@ pub(super) fn set_name(count: usize) -> &'static str {
 /// (w, x, y, z).
 type Point = [f64; 4];
 
-/// `count` rotations of a spiral whose w is the largest part.
+/// `count` rotations of a spiral whose w is the largest part, or a few more.
 fn domain(count: usize) -> Vec<Point> {
     let mut size = 4 * count;
     loop {
-        let mut points: Vec<Point> = (0..size)
+        let points: Vec<Point> = (0..size)
             .map(|index| rotation(index, size))
             .map(|q| [q.w, q.i, q.j, q.k])
             .filter(|q| q[1..].iter().all(|part| part.abs() < q[0].abs()))
             .collect();
         if points.len() >= count {
-            points.truncate(count);
             return points;
         }
         size += count.max(16) / 16;
@@ -268,6 +274,34 @@ mod tests {
                 assert!((q.norm() - 1.0).abs() < 1e-12);
             }
         }
+    }
+
+    /// Of a spiral's points too many go evenly, so that none that goes leaves a hole.
+    #[test]
+    fn spirals_have_no_hole() {
+        let mut with_too_many = 0;
+        for wanted in (4000..4040).chain([25_003, 25_100]) {
+            let points = domain(wanted);
+            with_too_many += usize::from(points.len() > wanted);
+            let kept: Vec<Point> = spiral_set(4 * wanted)
+                .iter()
+                .step_by(4)
+                .map(|q| [q.w, q.i, q.j, q.k])
+                .collect();
+            let spacing = (2.0 * PI * PI / (8.0 * wanted as f64)).cbrt();
+            let last = points.iter().rev().take(points.len() - wanted);
+            for point in last {
+                let nearest = kept.iter().map(|other| {
+                    let apart = |i: usize| (point[i] - other[i]).powi(2);
+                    (0..4).map(apart).sum::<f64>()
+                });
+                assert!(
+                    nearest.fold(9.0, f64::min).sqrt() < 2.0 * spacing,
+                    "{wanted}"
+                );
+            }
+        }
+        assert!(with_too_many > 3);
     }
 
     /// What the relaxation is for: against the plain spiral, a random rotation has its nearest neighbour no farther off, on

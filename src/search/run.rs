@@ -193,7 +193,9 @@ fn dock_in<T: Real>(
         2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
-    let scores = ranking.poses.iter().map(|row| row.score);
+    // Rows stand for clusters by their rank scores; the best score may be another pose's.
+    let at_start = at_start.iter().map(|exact| exact.score);
+    let scores = ranking.poses.iter().map(|row| row.score).chain(at_start);
     let best = error_scale(scores, 0.0);
     let error = MeasuredError::over(&peaks, &at_grid, best);
     clock.lap("score");

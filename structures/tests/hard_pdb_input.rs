@@ -103,6 +103,12 @@ fn residue_numbers_and_insertion_codes_are_the_files() {
             insertion: 'A',
             ..ATOM
         },
+        // Long loops of antibodies go on in small letters.
+        Line {
+            number: 100,
+            insertion: 'a',
+            ..ATOM
+        },
         // pdbtbx adds 10,000 to every residue after this pair, other chains included.
         Line {
             number: 9999,
@@ -130,6 +136,7 @@ fn residue_numbers_and_insertion_codes_are_the_files() {
         ("A", -5, None),
         ("A", 100, None),
         ("A", 100, Some('A')),
+        ("A", 100, Some('a')),
         ("A", 9999, None),
         ("A", 0, None),
         ("B", 1, None),

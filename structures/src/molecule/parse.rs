@@ -6,10 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::Path;
 use std::sync::Once;
 
-use pdbtbx::{
-    ContainsAtomConformer, ContainsAtomConformerResidue, Context, PDB, PDBError, ReadOptions,
-    StrictnessLevel,
-};
+use pdbtbx::{ContainsAtomConformer, Context, PDB, PDBError, ReadOptions, StrictnessLevel};
 
 use super::Format;
 use super::error::ReadError;
@@ -19,7 +16,6 @@ use super::sieve::{Carried, Exact, Sieved};
 #[derive(Clone)]
 pub(super) struct Parsed {
     pub(super) name: String,
-    pub(super) insertion_code: Option<char>,
     pub(super) hetero: bool,
     pub(super) exact: Exact,
     pub(super) carried: Carried,
@@ -43,10 +39,6 @@ pub(super) fn parse(file: &Path, format: Format, sieved: Sieved) -> Result<Vec<P
         if let Some(place) = facts.get_mut(atom.serial_number()) {
             *place = Some(Facts {
                 name: atom.name().to_string(),
-                insertion_code: placed
-                    .residue()
-                    .insertion_code()
-                    .and_then(|code| code.chars().next()),
                 hetero: atom.hetero(),
                 exact: Exact {
                     position: [x, y, z],
@@ -61,7 +53,6 @@ pub(super) fn parse(file: &Path, format: Format, sieved: Sieved) -> Result<Vec<P
         .map(|(carried, facts)| match facts {
             Some(facts) => Ok(Parsed {
                 name: facts.name,
-                insertion_code: facts.insertion_code,
                 hetero: facts.hetero,
                 exact: carried.exact.unwrap_or(facts.exact),
                 carried,
@@ -78,7 +69,6 @@ pub(super) fn parse(file: &Path, format: Format, sieved: Sieved) -> Result<Vec<P
 /// What is taken from pdbtbx.
 struct Facts {
     name: String,
-    insertion_code: Option<char>,
     hetero: bool,
     exact: Exact,
 }

@@ -110,7 +110,7 @@ pub(super) fn atom(record: Parsed, element: &str) -> Atom {
         residue_name: carried.residue_name,
         chain: carried.chain,
         residue_number: carried.residue_number,
-        insertion_code: record.insertion_code,
+        insertion_code: carried.insertion_code,
         alternate_location: carried.alternate_location,
         element: element.to_string(),
         position: record.exact.position,
@@ -130,7 +130,7 @@ fn residue_key(record: &Parsed) -> ResidueKey {
     (
         carried.chain.clone(),
         carried.residue_number,
-        record.insertion_code,
+        record.carried.insertion_code,
         carried.residue_name.clone(),
     )
 }

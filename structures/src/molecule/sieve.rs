@@ -53,6 +53,8 @@ pub(super) struct Carried {
     pub(super) archive_chain: Option<String>,
     pub(super) residue_name: String,
     pub(super) residue_number: i64,
+    /// pdbtbx makes capitals of small letters.
+    pub(super) insertion_code: Option<char>,
     pub(super) alternate_location: Option<char>,
     /// Element column, trimmed; may be empty or nonsense.
     pub(super) element: String,

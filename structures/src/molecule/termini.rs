@@ -74,7 +74,7 @@ impl Molecule {
         let apart = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number, ..) = before.key;
         let (next_chain, next_number, ..) = after.key;
-        apart && (chain != next_chain || next_number <= number + 1)
+        apart && (chain != next_chain || next_number <= number.saturating_add(1))
     }
 
     /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that

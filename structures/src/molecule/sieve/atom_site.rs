@@ -273,6 +273,7 @@ impl<'a> Row<'_, 'a> {
                 .map(str::to_string),
             residue_name: residue_name.to_string(),
             residue_number,
+            insertion_code: insertion,
             alternate_location: alternate,
             element: columns
                 .element

@@ -220,6 +220,7 @@ fn atom(
         archive_chain: None,
         residue_name: residue_name.to_string(),
         residue_number,
+        insertion_code: Some(insertion).filter(|code| *code != ' '),
         alternate_location: alternate,
         element: slice(76, 78).trim().to_string(),
         name_column: if name.starts_with(' ') {

