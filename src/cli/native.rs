@@ -129,9 +129,19 @@ pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
 /// What was matched, in a line for each side.
 pub fn match_text(evaluator: &Evaluator) -> String {
     let report = evaluator.report();
+    let chains = |side: &knotdock::evaluate::SideMatch| {
+        let mut names: Vec<&str> = Vec::new();
+        for chain in &side.chains {
+            if !names.contains(&chain.native_chain.as_str()) {
+                names.push(&chain.native_chain);
+            }
+        }
+        names.join(", ")
+    };
     let side = |name: &str, side: &knotdock::evaluate::SideMatch| {
         let mut text = format!(
-            "  {name}: {} of the native's {} residues, {} of {} at the interface; the docked backbone lies {:.2} Å RMSD from it",
+            "  {name}, as the native's {}: {} of {} residues, {} of {} at the interface; the docked backbone lies {:.2} Å RMSD from it",
+            chains(side),
             side.matched,
             side.native_residues,
             side.interface_matched,
@@ -148,10 +158,17 @@ pub fn match_text(evaluator: &Evaluator) -> String {
         }
         text
     };
-    format!(
+    let mut text = format!(
         "Matched with the native ({:.0}% of its interface):\n{}\n{}",
         100.0 * report.interface_share,
         side("receptor", &report.receptor),
         side("ligand", &report.ligand)
-    )
+    );
+    if !report.unused_native_chains.is_empty() {
+        text += &format!(
+            "\n  left aside of the native: {}; if another copy is meant, name its chains, as in --native FILE:A,B",
+            report.unused_native_chains.join(", ")
+        );
+    }
+    text
 }
