@@ -10,7 +10,7 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts, orientation) ->
+//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> `facing` (which way surfaces face) ->
 //! [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
 
 mod distance;
