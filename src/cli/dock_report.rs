@@ -166,16 +166,10 @@ pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
             parts.push(format!("{residues} near ends of chains or gaps"));
             options.push("--chain-end-weight 0");
         }
-        let pay = match options.len() {
-            0 => String::new(),
-            1 => format!(
-                "; poses pay for atoms that lie or touch there, {} leaves that out",
-                options[0]
-            ),
-            _ => format!(
-                "; poses pay for atoms that lie or touch there, {} leave that out",
-                options.join(" and ")
-            ),
+        let leave = if options.len() > 1 { "leave" } else { "leaves" };
+        let pay = match options.join(" and ") {
+            none if none.is_empty() => none,
+            all => format!("; poses pay for atoms that lie or touch there, {all} {leave} that out"),
         };
         (!parts.is_empty()).then(|| format!("The {side}: {}{pay}", parts.join(", ")))
     });

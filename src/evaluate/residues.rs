@@ -328,6 +328,23 @@ mod tests {
         assert_eq!(residues.segments[1].name, "A/2");
     }
 
+    /// A phosphoserine's phosphate is no backbone; a nucleotide's is.
+    #[test]
+    fn phosphates_are_backbone_of_nucleotides_alone() {
+        let residue = |number, kind, names: &[&str]| {
+            let atoms = names.iter().enumerate();
+            atoms
+                .map(|(place, name)| atom("A", number, kind, name, [place as f64, 0.0, 0.0]))
+                .collect::<Vec<_>>()
+        };
+        let serine = ["N", "CA", "C", "O", "CB", "OG", "P", "O1P", "O2P"];
+        let nucleotide = ["P", "OP1", "OP2", "C1'", "C3'", "O3'"];
+        let atoms = [residue(1, "SEP", &serine), residue(2, "DA", &nucleotide)].concat();
+        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
+        let backbone = |place: usize| residues.residues[place].backbone.iter().flatten().count();
+        assert_eq!([backbone(0), backbone(1)], [4, 6]);
+    }
+
     #[test]
     fn leaping_number_begins_a_segment() {
         let sizes = |numbers: Vec<i64>| -> Vec<usize> {

@@ -65,7 +65,8 @@ impl PairTableError {
     }
 }
 
-/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at least one row.
+/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at least one row. A row needs no
+/// ligand if it is docked into a ring: by a column `symmetry`, or because all are (`rings`).
 ///
 /// # Errors
 /// [`PairTableError`].

@@ -151,6 +151,23 @@ mod tests {
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
     }
 
+    /// Found by a review: a run into `/dev/shm`, whose files are files, was lost.
+    #[cfg(unix)]
+    #[test]
+    fn streams_are_devices_pipes_and_the_process_own_handles() {
+        for (name, expected) in [
+            ("/dev/null", true),
+            ("/dev/stdout", true),
+            ("/dev/fd/3", true),
+            ("/proc/self/fd/1", true),
+            ("/dev/shm/knotdock-none/poses.csv", false),
+            ("/dev/none", false),
+            ("poses.csv", false),
+        ] {
+            assert_eq!(is_stream(Path::new(name)), expected, "{name}");
+        }
+    }
+
     /// Found by a review: a link was replaced by the file, even where it was `/dev/stdout`.
     #[cfg(unix)]
     #[test]

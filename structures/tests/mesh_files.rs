@@ -25,6 +25,27 @@ fn all_formats(surface: &Surface) -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
     ]
 }
 
+/// A byte order mark before the first vertex, or a comment that ends with a backslash before another, takes neither away; lines that go on go on.
+#[test]
+fn marks_and_comments_take_no_vertex_away() {
+    let cube = unit_cube();
+    let (expected, _) = parse(cube.obj().as_bytes(), MeshFormat::Obj).unwrap();
+    let obj = cube.obj();
+    let after_comment = obj.replacen("v ", "# from C:\\models\\\nv ", 1);
+    let continued = obj.replacen("\nf ", "\nf \\\n", 3);
+    assert!(after_comment != obj && continued != obj);
+    for (text, format) in [
+        (format!("\u{feff}{obj}"), MeshFormat::Obj),
+        (after_comment, MeshFormat::Obj),
+        (continued, MeshFormat::Obj),
+        (format!("\u{feff}{}", cube.off()), MeshFormat::Off),
+    ] {
+        let (mesh, report) = parse(text.as_bytes(), format).unwrap();
+        assert_eq!((report.vertices, report.triangles), (8, 12));
+        assert_eq!(mesh.volume(), expected.volume());
+    }
+}
+
 #[test]
 fn every_format_gives_the_same_mesh() {
     let folder = tempfile::tempdir().unwrap();
