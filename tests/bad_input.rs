@@ -408,3 +408,40 @@ fn a_mesh_too_thin_for_its_grid() {
         "{error}"
     );
 }
+
+/// clap suggests what is spelled alike: `--restraint-weight` for `--restraints`, `--poses` for `--cores`, nothing for `rmsd`.
+#[test]
+fn words_of_other_programs_are_answered_by_what_does_that_here() {
+    for (words, expected, wrong) in [
+        (
+            "dock a.pdb b.pdb --restraints x.tbl",
+            "--attract-receptor",
+            "--restraint-weight",
+        ),
+        ("dock a.pdb b.pdb --cores 4", "--threads N", "--poses"),
+        ("dock a.pdb b.pdb --seed=3", "nothing is random", "similar"),
+        ("rmsd run", "knotdock evaluate", "similar"),
+    ] {
+        let ended = cargo_bin_cmd!("knotdock")
+            .args(words.split(' '))
+            .assert()
+            .code(2);
+        let said = String::from_utf8_lossy(&ended.get_output().stderr).into_owned();
+        assert!(said.contains(expected) && !said.contains(wrong), "{said}");
+        let ended = cargo_bin_cmd!("knotdock")
+            .arg("--json")
+            .args(words.split(' '))
+            .assert()
+            .code(2);
+        let object: serde_json::Value = serde_json::from_slice(&ended.get_output().stdout).unwrap();
+        let remedy = object["error"]["remedy"].as_str().unwrap().to_owned();
+        assert!(remedy.contains(expected), "{remedy}");
+    }
+    // Where no word is known, what is spelled alike is still suggested.
+    let ended = cargo_bin_cmd!("knotdock")
+        .args(["dock", "a", "b", "--rotatons", "9"])
+        .assert()
+        .code(2);
+    let said = String::from_utf8_lossy(&ended.get_output().stderr).into_owned();
+    assert!(said.contains("'--rotations'"), "{said}");
+}

@@ -386,3 +386,55 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
         );
     }
 }
+
+/// Found by a user: two batches into one folder each wrote results.csv without the other's rows, and the last one stood.
+#[test]
+fn two_batches_into_one_directory_lose_no_row() {
+    let folder = place();
+    let table = |rows: &str| write_pairs(folder.path(), &format!("name;Receptor;Ligand\n{rows}"));
+    let call = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 12");
+    table("first;helices_receptor.pdb;helices_ligand.pdb\n");
+    let lock = folder.path().join("out/results.csv.lock");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    let held = fs::File::create(&lock).unwrap();
+    held.lock().unwrap();
+    let refused = batch(folder.path(), &call);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(said.contains("another batch is being written"), "{said}");
+    drop(held);
+    assert!(batch(folder.path(), &call).status.success());
+    assert!(!lock.exists());
+    let first = results(folder.path());
+
+    table("second;charged_helices_receptor.pdb;charged_helices_ligand.pdb\n");
+    let second = batch(folder.path(), &call);
+    assert!(second.status.success());
+    let said = String::from_utf8_lossy(&second.stdout);
+    assert!(said.contains("with 1 row of earlier batches"), "{said}");
+    let rows = results(folder.path());
+    let names: Vec<&str> = rows.iter().map(|row| row["name"].as_str()).collect();
+    assert_eq!(names, ["second", "first"]);
+    assert_eq!(rows[1], first[0]);
+}
+
+/// A column of another program's word was refused with a list of nothing.
+#[test]
+fn words_of_the_field_are_explained_in_columns_and_options() {
+    let folder = place();
+    write_pairs(
+        folder.path(),
+        "receptor,ligand,ncores\nhelices_receptor.pdb,helices_ligand.pdb,2\n",
+    );
+    let refused = batch(folder.path(), "batch in/pairs.csv -o out");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        said.contains("line 2") && said.contains("--threads N"),
+        "{said}"
+    );
+    let refused = batch(folder.path(), "batch in/pairs.csv -o out -- --restraints=x");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said.contains("--attract-receptor"), "{said}");
+}

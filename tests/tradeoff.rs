@@ -373,6 +373,47 @@ fn a_docking_within_an_accuracy_and_a_time() {
     }
 }
 
+/// A budget is a deadline: where the machine is slower than the cost model has it, the search stops, and what it searched is
+/// recorded, so that the run repeats to the byte. It once went on to its last rotation, at four times the time allowed.
+#[test]
+fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
+    fs::create_dir(folder.path().join("knotdock")).unwrap();
+    // No machine is as fast: all 56,250 rotations are expected to fit into a twentieth of a second.
+    let fast = SLOW.replace("1e-7", "1e-15");
+    fs::write(folder.path().join("knotdock/cost_model.json"), fast).unwrap();
+    let pair = [receptor.as_str(), &ligand, "--poses", "50"];
+    let budget = ["--budget", "0.05s", "--threads", "2", "-o", "one"];
+    let output = dock(folder.path(), &[&pair[..], &budget].concat());
+    assert!(output.status.success(), "{output:?}");
+    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let run = &object["run"];
+    assert_eq!(run["options"]["rotations"], 56_250);
+    let searched = run["results"]["rotations"].as_u64().unwrap();
+    assert!((1..56_250).contains(&searched), "{searched}");
+    assert_eq!(run["options"]["stopped"]["rotations"], searched);
+    assert!(run["results"]["chance_acceptable_in_10"].is_null());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains(&format!("searched {searched} of 56250 rotations")),
+        "{said}"
+    );
+    assert_eq!(
+        searched < 600,
+        said.contains("the budget left time for"),
+        "{said}"
+    );
+
+    let again = ["--from", "one/run.json", "--threads", "1", "-o", "two"];
+    assert!(dock(folder.path(), &again).status.success());
+    let file = |run: &str, name: &str| fs::read(folder.path().join(run).join(name)).unwrap();
+    assert_eq!(file("one", "poses.csv"), file("two", "poses.csv"));
+    let record = |run: &str| -> Value { serde_json::from_slice(&file(run, "run.json")).unwrap() };
+    assert_eq!(record("one")["options"], record("two")["options"]);
+    assert_eq!(record("one")["results"], record("two")["results"]);
+}
+
 /// Calibration writes a model that a docking then uses.
 #[test]
 fn calibration_is_used() {

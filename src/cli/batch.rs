@@ -1,15 +1,18 @@
 //! `knotdock batch`: many pairs in one call, and one table of what came of them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use knotdock::output::batch_results::{PairResult, RESULTS, RunSummary, is_ours, write_results};
+use knotdock::output::batch_results::{
+    PairResult, RESULTS, RunSummary, is_ours, rows_of_others, write_results,
+};
+use knotdock::output::exclusive::ExclusiveLock;
 use knotdock::output::report::counted;
 use knotdock::output::whole_file::FileError;
 use serde_json::{Value, json};
 
-use super::batch_pairs::pairs;
+use super::batch_pairs::{Pair, pairs};
 use super::console::Console;
 use super::dock::Dock;
 use super::failure::Failure;
@@ -32,6 +35,9 @@ pub struct Batch {
     options: Vec<String>,
 }
 
+/// The file in the directory that a batch locks for as long as it goes on.
+const LOCK: &str = "results.csv.lock";
+
 /// Options of the whole program, which no pair has for itself.
 const OF_BATCH: [&str; 2] = ["--json", "--quiet"];
 
@@ -52,15 +58,38 @@ impl Batch {
         }
         let pairs = pairs(&self.pairs, &directory, &self.options)?;
         let results = directory.join(RESULTS);
-        if !is_ours(&results) {
-            return Err(Failure::input("this is no table of a batch's results")
-                .at(&results)
-                .remedy("choose another directory with -o"));
-        }
-        std::fs::create_dir_all(&directory).map_err(|source| FileError::Unwritable {
+        let unwritable = |source| FileError::Unwritable {
             path: directory.clone(),
             source,
-        })?;
+        };
+        std::fs::create_dir_all(&directory).map_err(unwritable)?;
+        // Two batches would each write the table without the other's rows.
+        let lock = ExclusiveLock::take(&directory.join(LOCK)).map_err(unwritable)?;
+        let Some(lock) = lock else {
+            return Err(
+                Failure::input("another batch is being written to the directory")
+                    .at(&directory)
+                    .remedy("wait for it to end, or choose another directory with -o"),
+            );
+        };
+        let code = self.run_locked(pairs, &directory, &results, console);
+        lock.remove();
+        code
+    }
+
+    /// Docks the pairs into a directory that no other batch writes to.
+    fn run_locked(
+        &self,
+        pairs: Vec<Pair>,
+        directory: &Path,
+        results: &Path,
+        console: Console,
+    ) -> Result<u8, Failure> {
+        if !is_ours(results) {
+            return Err(Failure::input("this is no table of a batch's results")
+                .at(results)
+                .remedy("choose another directory with -o"));
+        }
         let count = pairs.len();
         console.say(format!(
             "{} of {} {} to {}",
@@ -80,6 +109,11 @@ impl Batch {
                 outcome: None,
             });
         }
+        let others = rows_of_others(results, &table).map_err(|error| {
+            Failure::input(format!("the table of earlier results cannot be read: {error}"))
+                .at(results)
+                .remedy("move the file away: pairs that are done are not docked again, and get their rows anew")
+        })?;
         let mut code = 0;
         for (index, dock) in waiting.into_iter().enumerate() {
             let clock = Instant::now();
@@ -115,15 +149,19 @@ impl Batch {
                 },
             );
             told.push(entry);
-            write_results(&results, &table)?;
+            write_results(results, &table, &others)?;
         }
         let done = table
             .iter()
             .filter(|pair| matches!(pair.outcome, Some(Ok(_))));
         console.say(format!(
-            "{} of {count} done, results in {}",
+            "{} of {count} done, results in {}{}",
             done.count(),
-            results.display()
+            results.display(),
+            match others.len() {
+                0 => String::new(),
+                earlier => format!(", with {} of earlier batches", counted(earlier, "row")),
+            }
         ));
         console.result(&json!({
             "directory": directory.display().to_string(),

@@ -12,7 +12,7 @@ use knotdock_structures::molecule::InputSpec;
 use super::dock::Dock;
 use super::failure::Failure;
 use super::input::label;
-use super::{judging_numbers, message};
+use super::{judging_numbers, message, suggestions};
 
 /// Columns that name files.
 const FILES: [&str; 6] = [
@@ -77,11 +77,13 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                 ));
             }
             let dock = command(&row, &directory.join(&name), folder, options);
-            let dock = dock.map_err(|message| {
-                wrong(
-                    message,
-                    "name columns as the options that `knotdock dock --help` lists, and give each option once: in a column or after --",
-                )
+            let dock = dock.map_err(|(message, suggested)| {
+                const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
+                                       in a column or after --";
+                match suggested {
+                    Some(text) => wrong(message, &format!("{text}; {COLUMNS}")),
+                    None => wrong(message, COLUMNS),
+                }
             })?;
             Ok(Pair { name, row, dock })
         });
@@ -146,6 +148,9 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                     | ErrorKind::TooFewValues
             ) =>
         {
+            let suggested = suggestions::suggested(&error);
+            let remedy =
+                suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
             Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
         }
         // What is missing or in conflict here may be otherwise beside a row's own options.
@@ -153,12 +158,17 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// The command line of a pair.
-fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Result<Dock, String> {
+/// The command line of a pair; an error comes with what to do about it, where the field's word for something is at fault.
+fn command(
+    row: &PairRow,
+    run: &Path,
+    folder: &Path,
+    options: &[String],
+) -> Result<Dock, (String, Option<String>)> {
     let mut words = vec!["knotdock dock".to_owned()];
     for (column, value) in &row.options {
         if OWN.contains(&column.as_str()) {
-            return Err(format!("a column cannot be `{column}`"));
+            return Err((format!("a column cannot be `{column}`"), None));
         }
         let value = if FILES.contains(&column.as_str()) {
             at(folder, value)
@@ -176,8 +186,8 @@ fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Resu
             .filter(|file| !file.is_empty())
             .map(|file| at(folder, file)),
     );
-    let command = parse(words).map_err(|error| message(&error))?;
-    Ok(command.dock)
+    let wrong = |error: clap::Error| (message(&error), suggestions::suggested(&error));
+    Ok(parse(words).map_err(wrong)?.dock)
 }
 
 /// A file of the table as seen from here, its chains behind it.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use knotdock::output::report::counted;
 use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect, Loose};
+use knotdock::tradeoff::choice::FEWEST_ROTATIONS;
 use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.
@@ -46,6 +47,14 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         "All together: rank {}, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error
     ));
+    if let Some(stopped) = outcome.stopped {
+        lines.push(format!(
+            "Stopped for the deadline: searched {} of {} rotations, evenly spread over all orientations, and kept the best {}",
+            stopped.rotations,
+            plan.rotations,
+            counted(stopped.poses, "pose")
+        ));
+    }
     if let Some(fine) = outcome.fine {
         lines.push(format!(
             "Searched {} finer rotations, those nearest to the best {} rotations",
@@ -112,6 +121,18 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
             "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of {tolerance:e}: what is reported is exact, but \
              other poses may have been missed; use a lower --tolerance or a finer --spacing than {:.4}",
             plan.spacing
+        )
+    })
+}
+
+/// That a deadline left time for too few rotations.
+pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
+    let few = has_deadline && outcome.searched < FEWEST_ROTATIONS;
+    few.then(|| {
+        format!(
+            "the budget left time for {} only, and fewer than {FEWEST_ROTATIONS} find little: allow more time, or leave \
+             more of the machine to the run",
+            counted(outcome.searched, "rotation")
         )
     })
 }

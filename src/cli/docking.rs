@@ -1,7 +1,7 @@
 //! A docking run: prepared, told, carried out and written.
 
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use knotdock::evaluate::Evaluator;
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
@@ -11,14 +11,17 @@ use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
 use knotdock::search::options::Precision;
-use knotdock::search::{self, DockOutcome};
-use knotdock::tradeoff::choice::{Chosen, Wanted, choose};
+use knotdock::search::{self, Deadline, DockOutcome};
+use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
+use knotdock::tradeoff::cost_model::CostModel;
 use knotdock::tradeoff::pair::{Prepared, Preparer};
 use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{assumed, chance_told, error_warning, loose_told, told};
+use super::dock_report::{
+    assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
+};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
@@ -34,6 +37,8 @@ pub struct Docking {
     evaluator: Option<Evaluator>,
     prepared: Prepared,
     chosen: Option<Chosen>,
+    /// Where the run has a budget.
+    deadline: Option<Deadline>,
     clock: Clock,
 }
 
@@ -52,11 +57,17 @@ impl Docking {
         if let Some(evaluator) = &evaluator {
             console.say(match_text(evaluator));
         }
-        let (prepared, chosen) = if wanted == Wanted::default() {
-            (request.plan(console)?, None)
+        let (prepared, chosen, deadline) = if wanted == Wanted::default() {
+            (request.plan(console)?, None, None)
         } else {
-            let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
-            (prepared, Some(chosen))
+            let (model, source) = cost_model(console);
+            let (prepared, chosen) = plan_within(wanted, (&model, &source), &mut request, console)?;
+            let end = wanted
+                .budget
+                .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
+                .and_then(|budget| clock.monotonic.checked_add(budget));
+            let deadline = end.map(|end| deadline(&model, &prepared.plan, end));
+            (prepared, Some(chosen), deadline)
         };
         let plan = &prepared.plan;
         console.say(format!("\n{plan}"));
@@ -87,6 +98,7 @@ impl Docking {
             evaluator,
             prepared,
             chosen,
+            deadline,
             clock,
         })
     }
@@ -103,21 +115,27 @@ impl Docking {
             return false;
         };
         let native = self.request.native.as_ref().map(NativeFiles::record);
+        let mut options = self.request.options.clone();
+        if self.deadline.is_some() {
+            // Where that run stopped is what this one's time would say.
+            options.dock.stopped = run.options.dock.stopped;
+        }
         let inputs = self.request.bodies.records();
         self.directory.join("poses.csv").is_file()
             && run.is_of_this_program()
-            && run.asks(inputs, native.as_ref(), &self.request.options)
+            && run.asks(inputs, native.as_ref(), &options)
     }
 
     /// Docks, and writes the run; its JSON object.
     pub fn run(self, console: Console) -> Result<Value, Failure> {
         let Self {
-            request,
+            mut request,
             directory,
             force,
             evaluator,
             prepared,
             chosen,
+            deadline,
             clock,
         } = self;
         let Prepared {
@@ -128,9 +146,11 @@ impl Docking {
         } = prepared;
         let staging = Staging::open(&directory, force)?;
         let progress = console.progress();
-        let outcome = search::dock(&plan, &points, &progress)
+        let outcome = search::dock_until(&plan, &points, deadline.as_ref(), &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
+        // The record says where the search stopped, so that it can be repeated.
+        request.options.dock.stopped = outcome.stopped;
 
         let mut table = PoseTable::new(&outcome.poses);
         let quality = match &evaluator {
@@ -158,6 +178,7 @@ impl Docking {
                 poses: outcome.poses_kept,
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
+                rotations: outcome.searched,
                 chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
@@ -177,6 +198,9 @@ impl Docking {
         if let Some(warning) = error_warning(&plan, &outcome) {
             console.warn(warning);
         }
+        if let Some(warning) = few_rotations_warning(&outcome, deadline.is_some()) {
+            console.warn(warning);
+        }
         if let Some(chosen) = &chosen {
             let stages = outcome.timing.iter();
             console.say(format!(
@@ -184,6 +208,12 @@ impl Docking {
                 chosen.predicted_seconds,
                 stages.map(|stage| stage.wall_seconds).sum::<f64>()
             ));
+            if let Some(budget) = chosen.budget_seconds {
+                console.say(format!(
+                    "The whole run took {:.1} s of {budget} s",
+                    clock.monotonic.elapsed().as_secs_f64()
+                ));
+            }
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
         if let Some(chance) = outcome.chance {
@@ -211,10 +241,10 @@ impl Docking {
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
 fn plan_within(
     wanted: Wanted,
+    (model, source): (&CostModel, &str),
     request: &mut Request,
     console: Console,
 ) -> Result<(Prepared, Chosen), Failure> {
-    let (model, source) = cost_model(console);
     let rotations = request.options.dock.rotations;
     // A first plan fills in the lengths of meshes; its rotations are not used.
     request.options.dock.rotations = 4;
@@ -222,7 +252,7 @@ fn plan_within(
     request.options.dock.rotations = rotations;
     let options = &mut request.options.dock;
     let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
-    let chosen = choose(wanted, (&model, &source), options, &mut preparer)
+    let chosen = choose(wanted, (model, source), options, &mut preparer)
         .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
     let prepared = preparer
         .prepare(options)

@@ -28,6 +28,7 @@ mod request;
 mod sample;
 mod score;
 mod search_arguments;
+mod suggestions;
 mod tradeoff;
 
 use std::ffi::OsString;
@@ -79,7 +80,8 @@ pub fn main() -> ExitCode {
     let parsed = Cli::command()
         .mut_subcommands(judging_numbers)
         .try_get_matches_from(&arguments)
-        .and_then(|matches| Cli::from_arg_matches(&matches));
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+        .map_err(suggestions::explained);
     let cli = match parsed {
         Ok(cli) => cli,
         Err(error) => return refuse(&error, &arguments),
@@ -131,8 +133,9 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
         .take_while(|argument| *argument != "--")
         .any(|argument| argument == "--json");
     if json && !asked {
-        let failure = Failure::input(message(error))
-            .remedy("see `knotdock --help` and `knotdock COMMAND --help`");
+        let remedy = suggestions::suggested(error)
+            .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
+        let failure = Failure::input(message(error)).remedy(remedy);
         let console = Console { json, quiet: false };
         console.fail(&failure);
     } else {

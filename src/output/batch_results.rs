@@ -1,9 +1,11 @@
 //! The results of a batch: one row a pair, with the best row of each pair's own table.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use csv::StringRecord;
 use serde_json::Value;
 
 use super::poses::{PoseTable, number};
@@ -105,11 +107,35 @@ pub fn is_ours(path: &Path) -> bool {
     BufReader::new(file).read_line(&mut line).is_ok() && line.trim_end() == header().join(",")
 }
 
-/// Writes the table whole, in the order of the pairs.
+/// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they stand.
+///
+/// # Errors
+/// What is wrong with the table, where one is there and cannot be read.
+pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRecord>, csv::Error> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    // Letters of either case are one where file systems think so.
+    let own: HashSet<String> = pairs.iter().map(|pair| pair.name.to_lowercase()).collect();
+    let mut rows: Vec<StringRecord> = csv::Reader::from_path(path)?
+        .into_records()
+        .collect::<Result<_, _>>()?;
+    rows.retain(|row| {
+        let name = row.get(0).unwrap_or_default();
+        !own.contains(&name.to_lowercase())
+    });
+    Ok(rows)
+}
+
+/// Writes the table whole, in the order of the pairs, then the rows of `others`.
 ///
 /// # Errors
 /// As [`write_whole`].
-pub fn write_results(path: &Path, results: &[PairResult]) -> Result<(), FileError> {
+pub fn write_results(
+    path: &Path,
+    results: &[PairResult],
+    others: &[StringRecord],
+) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut table = csv::WriterBuilder::new().from_writer(file);
         table.write_record(header())?;
@@ -131,6 +157,9 @@ pub fn write_results(path: &Path, results: &[PairResult]) -> Result<(), FileErro
             row.extend(run.counts.map(count));
             row.extend(BEST.map(|name| run.best(name)));
             row.push(count(run.first_acceptable));
+            table.write_record(row)?;
+        }
+        for row in others {
             table.write_record(row)?;
         }
         table.flush()
@@ -182,10 +211,19 @@ mod tests {
             ligand: "b.pdb".to_owned(),
             outcome: Some(Err("no \"atoms\"\nat all".to_owned())),
         };
-        write_results(&path, &[failed]).unwrap();
+        write_results(&path, std::slice::from_ref(&failed), &[]).unwrap();
         assert!(is_ours(&path));
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.contains("\na,\"a.pdb:A,B\",b.pdb,failed,\"no \"\"atoms\"\"\nat all\",,"));
+        // A second batch keeps the rows of the first, but for pairs that are its own, too.
+        let mut other = failed.clone();
+        other.name = "b".to_owned();
+        let others = rows_of_others(&path, std::slice::from_ref(&other)).unwrap();
+        write_results(&path, &[other], &others).unwrap();
+        let rows = csv::Reader::from_path(&path).unwrap().into_records();
+        let names: Vec<String> = rows.map(|row| row.unwrap()[0].to_owned()).collect();
+        assert_eq!(names, ["b", "a"]);
+        assert_eq!(rows_of_others(&path, &[failed]).unwrap().len(), 1);
         fs::write(&path, "name,value\n").unwrap();
         assert!(!is_ours(&path));
     }

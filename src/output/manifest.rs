@@ -59,6 +59,8 @@ pub struct Results {
     pub clusters: usize,
     /// Poses that were kept.
     pub poses: usize,
+    /// Rotations that were searched.
+    pub rotations: usize,
     /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated.
     pub chance_acceptable_in_10: Option<f64>,
 }

@@ -18,6 +18,7 @@ pub mod batch_results;
 pub mod complexes;
 pub mod cost_model_file;
 mod csv_lines;
+pub mod exclusive;
 pub mod input_record;
 pub mod manifest;
 pub mod molecule_file;

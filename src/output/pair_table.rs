@@ -65,13 +65,17 @@ impl PairTableError {
     }
 }
 
-/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at least one row. A row needs no
-/// ligand if it is docked into a ring: by a column `symmetry`, or because all are (`rings`).
+/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at
+/// least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all are (`rings`).
+///
+/// Spreadsheets save what they call CSV in several ways: columns are separated by whichever of comma, semicolon and tab the
+/// header has most of, or by the one that a first line `sep=;` names; a byte order mark is passed over; column names may have
+/// capital letters, and blanks or `-` for `_`.
 ///
 /// # Errors
 /// [`PairTableError`].
 pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableError> {
-    let text = std::fs::read_to_string(path).map_err(|source| PairTableError::Open {
+    let bytes = std::fs::read(path).map_err(|source| PairTableError::Open {
         path: path.to_owned(),
         source,
     })?;
@@ -80,6 +84,7 @@ pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableErr
         line,
         message,
     };
+    let (text, delimiter) = plain(bytes).map_err(|message| wrong(None, message))?;
     let line = |position: &csv::Position| line_of(text.as_bytes(), position, COMMENT);
     let malformed = |error: csv::Error| {
         let line = error.position().map(line);
@@ -88,17 +93,26 @@ pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableErr
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(COMMENT)
+        .delimiter(delimiter)
         .from_reader(text.as_bytes());
-    // Options are spelled with either line.
     let header = reader.headers().map_err(malformed)?;
-    let header: StringRecord = header.iter().map(|name| name.replace('-', "_")).collect();
+    let first = header.position().map(line).or(Some(1));
+    let header: StringRecord = header.iter().map(column_name).collect();
     let mut seen = HashSet::new();
     if let Some(column) = header.iter().find(|column| !seen.insert(*column)) {
-        return Err(wrong(Some(1), format!("there are two columns `{column}`")));
+        return Err(wrong(first, format!("there are two columns `{column}`")));
     }
     for column in ["receptor", "ligand"] {
         if !seen.contains(column) {
-            return Err(wrong(Some(1), format!("there is no column `{column}`")));
+            let there: Vec<String> = header.iter().map(|name| format!("`{name}`")).collect();
+            let message = match there.as_slice() {
+                [] => format!("there is no column `{column}`: the file is empty"),
+                there => format!(
+                    "there is no column `{column}`; the first line has {}",
+                    there.join(", ")
+                ),
+            };
+            return Err(wrong(first, message));
         }
     }
     let rows = reader.records().map(|record| {
@@ -118,6 +132,39 @@ pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableErr
         return Err(wrong(None, "there is no pair in it".to_owned()));
     }
     Ok(rows)
+}
+
+/// The text without a byte order mark, and the byte that separates its columns.
+fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
+    let text = String::from_utf8(bytes)
+        .map_err(|_| "it is not text in UTF-8, as which spreadsheets can save it".to_owned())?;
+    let mut text = match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    };
+    let first = text.lines().next().unwrap_or_default().trim_end();
+    if let Some([delimiter]) = first.strip_prefix("sep=").map(str::as_bytes) {
+        let delimiter = *delimiter;
+        // A comment, so that lines keep their numbers.
+        text.replace_range(..1, "#");
+        return Ok((text, delimiter));
+    }
+    let header = text
+        .lines()
+        .find(|line| !line.is_empty() && !line.starts_with('#'))
+        .unwrap_or_default();
+    let count = |byte: &u8| header.bytes().filter(|other| other == byte).count();
+    // The last of equals is taken.
+    let delimiter = *b"\t;,"
+        .iter()
+        .max_by_key(|&byte| count(byte))
+        .unwrap_or(&b',');
+    Ok((text, delimiter))
+}
+
+/// A column's name as options of the command line are spelled, but for `_` in place of `-`.
+fn column_name(name: &str) -> String {
+    name.to_lowercase().replace(['-', ' '], "_")
 }
 
 fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
@@ -173,11 +220,36 @@ mod tests {
         assert_eq!(rows[1].options, expected);
     }
 
+    /// Found with tables that spreadsheets had saved: `no column receptor` was all that was said.
+    #[test]
+    fn tables_of_spreadsheets_are_read() {
+        let plain = read("receptor,ligand,attract_ligand\n\"a.pdb:H,L\",b.pdb,A:5\n").unwrap();
+        for text in [
+            "receptor;ligand;attract_ligand\na.pdb:H,L;b.pdb;A:5\n",
+            "receptor\tligand\tattract_ligand\r\na.pdb:H,L\tb.pdb\tA:5\r\n",
+            "\u{feff}Receptor,LIGAND,Attract ligand\n\"a.pdb:H,L\",b.pdb,A:5\n",
+            "\u{feff}\"Receptor\";\"Ligand\";\"attract-ligand\"\n\"a.pdb:H,L\";b.pdb;A:5\n",
+        ] {
+            assert_eq!(read(text).unwrap(), plain, "{text:?}");
+        }
+        let named = read("sep=|\r\nreceptor|ligand\r\na.pdb:H,L|b.pdb\r\n").unwrap();
+        assert_eq!(
+            (named[0].receptor.as_str(), named[0].line),
+            ("a.pdb:H,L", 3)
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("utf16.csv");
+        std::fs::write(&path, b"\xff\xfer\0e\0c\0").unwrap();
+        let error = read_pairs(&path, false).unwrap_err();
+        assert!(error.to_string().contains("UTF-8"), "{error}");
+    }
+
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
         for (text, line, said) in [
             ("", Some(1), "no column `receptor`"),
             ("receptor,name\na.pdb,x\n", Some(1), "no column `ligand`"),
+            ("# pairs\na;b\n", Some(2), "the first line has `a`, `b`"),
             ("receptor,ligand,ligand\na,b,c\n", Some(1), "two columns"),
             ("receptor,ligand\n", None, "no pair"),
             ("receptor,ligand\na.pdb,b.pdb\nc.pdb\n", Some(3), "fields"),

@@ -5,10 +5,11 @@
 //! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A run that goes on holds a
 //! lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no other run takes its files for a killed one's.
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::exclusive::ExclusiveLock;
 use super::whole_file::{FileError, PARTIAL};
 
 /// What a command puts into its directory.
@@ -123,7 +124,7 @@ pub struct Staging {
     made_directory: bool,
     state: State,
     /// Locked for as long as the run goes on.
-    lock: Option<File>,
+    lock: Option<ExclusiveLock>,
 }
 
 /// The file in the staging folder that a run locks.
@@ -177,7 +178,7 @@ impl Staging {
         let unwritable = |source| FileError::unwritable(directory, source);
         let made_directory = !directory.exists();
         fs::create_dir_all(&folder).map_err(unwritable)?;
-        let lock = lock(&folder).map_err(unwritable)?;
+        let lock = ExclusiveLock::take(&folder.join(LOCK)).map_err(unwritable)?;
         let Some(lock) = lock else {
             return Err(StagingError::Busy(directory.to_owned()));
         };
@@ -250,21 +251,6 @@ impl Drop for Staging {
         if self.made_directory && self.state == State::Open {
             let _ = fs::remove_dir(&self.directory);
         }
-    }
-}
-
-/// Locks a staging folder; `None` where another run holds the lock. Where the file system knows no locks the file is there all the same.
-fn lock(folder: &Path) -> io::Result<Option<File>> {
-    let path = folder.join(LOCK);
-    // Network file systems lock only what may be written to.
-    let mut options = File::options();
-    let options = options.read(true).write(true).create(true).truncate(false);
-    let lock = options.open(&path)?;
-    match lock.try_lock() {
-        Err(TryLockError::WouldBlock) => Ok(None),
-        // A run that has just ended took the folder with it.
-        Ok(()) if !path.exists() => Ok(None),
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(lock)),
     }
 }
 

@@ -65,7 +65,7 @@ pub(super) fn search_finer<T: Real>(
         .filter(|quartet| quartet.wanted.contains(&true))
         .collect();
     progress.stage("fine", rotations as u64);
-    let fine = scan(plan, engine, &quartets, usize::MAX, progress)?;
+    let fine = scan(plan, engine, &quartets, usize::MAX, None, progress)?.peaks;
 
     let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(plan.set.len()) {
         Some(index) => cell_of[index],

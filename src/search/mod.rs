@@ -25,6 +25,8 @@ mod ring;
 pub mod rotations;
 pub mod run;
 mod scan;
+mod schedule;
+mod time_left;
 
 pub use attracted::AssumedSite;
 pub use effect_choice::EffectChoice;
@@ -36,4 +38,5 @@ pub use options::DockOptions;
 pub use outcome::{Adapter, DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
 pub use plan::{DockPlan, plan, plan_scene};
 pub use restraints::AntibodySurface;
-pub use run::{Progress, dock, molecule_points};
+pub use run::{Progress, dock, dock_until, molecule_points};
+pub use schedule::Deadline;

@@ -21,6 +21,8 @@ pub struct DockOptions {
     pub fine_rotations: Option<usize>,
     /// Share of the finer set that is searched.
     pub fine_share: f64,
+    /// Where a run within a time stopped, which one that repeats it does, too; `None`: nowhere.
+    pub stopped: Option<Stopped>,
     /// Resolution: the ranking kernel's low-pass stops at 1 / resolution.
     pub resolution: f64,
     /// Length whose inverse is the pass frequency; `None`: `PASS_RATIO` times the resolution.
@@ -101,6 +103,16 @@ pub struct DockOptions {
     pub threads: usize,
     /// Bytes that the run may take; `None`: no limit.
     pub memory: Option<u64>,
+}
+
+/// Where a run within a time stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stopped {
+    /// Rotations that were searched, evenly spread over the set.
+    pub rotations: usize,
+    /// Poses that were kept of the search, the best ones.
+    pub poses: usize,
 }
 
 /// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision whatever it is.
@@ -198,6 +210,7 @@ impl Default for DockOptions {
             rotations: 3600,
             fine_rotations: None,
             fine_share: 0.05,
+            stopped: None,
             resolution: 4.5,
             pass_length: None,
             spacing: None,
@@ -329,6 +342,15 @@ impl DockOptions {
                     bound: format!("between 1 and {most}"),
                 });
             }
+        }
+        if let Some(Stopped { rotations, poses }) = self.stopped
+            && !((1..=self.rotations).contains(&rotations) && (1..=self.poses).contains(&poses))
+        {
+            return Err(SearchError::Option {
+                name: "stopped",
+                value: format!("{rotations} rotations and {poses} poses"),
+                bound: "at least one of each, and no more than rotations and poses".to_owned(),
+            });
         }
         if let Some(finer) = self.fine_rotations
             && !(self.rotations..=10_000_000).contains(&finer)

@@ -1,6 +1,7 @@
 //! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use super::coarse_to_fine::FineSearched;
+use super::options::Stopped;
 use super::peaks::Peak;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
@@ -160,6 +161,10 @@ pub struct DockOutcome {
     pub poses_kept: usize,
     /// Number of clusters.
     pub clusters: usize,
+    /// Rotations of the set that were searched.
+    pub searched: usize,
+    /// Where the run stopped for a deadline, or one that it repeats did; `None` where it went to its end.
+    pub stopped: Option<Stopped>,
     /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated, [`super::chance::chance`].
     pub chance: Option<f64>,
     /// The fast path's error as measured.

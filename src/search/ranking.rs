@@ -10,8 +10,12 @@
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
 //! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
+//!
+//! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same score,
+//! so that such a cluster has many good poses; where a joint fits there is one place.
 
 use super::candidates::Candidate;
+use super::effects::LengthUnit;
 use super::outcome::RankedPose;
 use super::ring::other_copies;
 use super::run::Progress;
@@ -33,6 +37,8 @@ pub(super) struct Judge<'a> {
     pub on: [bool; Effect::ALL.len()],
     /// The symmetry of rings, where they are sought.
     pub symmetry: Option<Symmetry>,
+    /// T of the clusters' scores, as a share of the run's best score.
+    pub cluster_temperature: f64,
 }
 
 /// What is reported of the ranking.
@@ -42,8 +48,13 @@ pub(super) struct Ranking {
     pub clusters: usize,
 }
 
-/// T as a share of the run's best score.
-const CLUSTER_TEMPERATURE: f64 = 0.1;
+/// T as a share of the run's best score, by what is docked.
+pub(super) fn cluster_temperature(unit: LengthUnit) -> f64 {
+    match unit {
+        LengthUnit::Angstrom => 0.1,
+        LengthUnit::File => 0.0,
+    }
+}
 
 /// Most rows that a thread takes at once: refined ones take longer and come first.
 const ROWS_TOGETHER: usize = 8;
@@ -65,7 +76,7 @@ pub(super) fn report(
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
     let best = candidates.first().map_or(0.0, |best| best.score.abs());
-    let temperature = (CLUSTER_TEMPERATURE * best).max(f64::MIN_POSITIVE);
+    let temperature = (judge.cluster_temperature * best).max(f64::MIN_POSITIVE);
     let background = Background::of(candidates);
     let mut founders = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
@@ -168,6 +179,7 @@ impl Candidate {
             rescorer,
             on,
             symmetry,
+            cluster_temperature: _,
         } = judge;
         let others = |pose: &Pose| {
             let others = symmetry.map(|symmetry| other_copies(symmetry, scorer, pose));
@@ -301,6 +313,7 @@ mod tests {
                 rescorer: None,
                 on: [true, false, false, false],
                 symmetry: None,
+                cluster_temperature: 0.1,
             };
             let ranking = report(judge, &candidates, (&[0], &[true]), true, 0.0, &Silent);
             ranking.poses[0].clone()
@@ -311,5 +324,57 @@ mod tests {
         let stands = climbed(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
+    }
+
+    /// Found by a user: a flat face slides on another at nearly the same score, and that cluster came before the joint that
+    /// fits, whose one pose had by 19% the best score of the run.
+    #[test]
+    fn company_counts_among_molecules_and_not_among_meshes() {
+        let scorer = scorer();
+        let score = |x: f64| scorer.score_only(&at(x));
+        // The best distance of the two atoms, and five farther apart that score nearly as much.
+        let tenths = (30..60).map(|tenths| f64::from(tenths) / 10.0);
+        let best = tenths
+            .max_by(|a, b| score(*a).total_cmp(&score(*b)))
+            .unwrap();
+        let all: Vec<f64> = (0..1000)
+            .map(|step| best + 1e-3 * f64::from(step))
+            .collect();
+        let near = all
+            .iter()
+            .find(|x| score(**x) < 0.97 * score(best))
+            .unwrap();
+        let poses: Vec<f64> = [best]
+            .into_iter()
+            .chain((0..5).map(|step| near + 1e-4 * f64::from(step)))
+            .collect();
+        assert!(poses.iter().all(|x| score(*x) > 0.9 * score(best)));
+        let peak = |x: &f64| Peak {
+            score: score(*x),
+            rotation: 0,
+            voxel: 0,
+        };
+        let peaks: Vec<Peak> = poses.iter().map(peak).collect();
+        let placed = |x: &f64| Placed::best_of((at(*x), score(*x)), None);
+        let placed: Vec<Placed> = poses.iter().map(placed).collect();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let first = |unit| {
+            let judge = Judge {
+                scorer: &scorer,
+                rescorer: None,
+                on: [true, false, false, false],
+                symmetry: None,
+                cluster_temperature: cluster_temperature(unit),
+            };
+            let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
+            let ranking = report(judge, &candidates, clusters, false, 0.0, &Silent);
+            let first = &ranking.poses[0];
+            (
+                first.cluster_size,
+                first.cluster_score == Some(first.rank_score),
+            )
+        };
+        assert_eq!(first(LengthUnit::Angstrom), (Some(5), false));
+        assert_eq!(first(LengthUnit::File), (Some(1), true));
     }
 }

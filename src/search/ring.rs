@@ -214,7 +214,9 @@ mod tests {
         let rings = plan.rings.unwrap();
         let folded = Folded::<f32>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
         let engine = Correlator::new(&plan, choose_rank(&plan, &folded).engine).unwrap();
-        let peaks = scan(&plan, &engine, &all_rotations(&plan), 20, &Silent).unwrap();
+        let peaks = scan(&plan, &engine, &all_rotations(&plan), 20, None, &Silent)
+            .unwrap()
+            .peaks;
         assert_eq!(peaks.len(), 20);
         let center = plan.engine.ligand_center;
         let starts: Vec<Pose> = peaks

@@ -7,13 +7,15 @@ use super::coarse_to_fine::search_finer;
 use super::correlator::Correlator;
 use super::costs::costs;
 use super::error::SearchError;
-use super::options::Precision;
+use super::options::{Precision, Stopped};
 use super::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
 use super::peaks::Peak;
 use super::plan::DockPlan;
-use super::ranking::{Judge, report};
+use super::ranking::{Judge, cluster_temperature, report};
 use super::refine::{ClimbLimits, climb, freely};
-use super::scan::{Chosen, all_rotations, choose_rank, scan};
+use super::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use super::schedule::{Deadline, schedule};
+use super::time_left::poses_in_time;
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Folded;
@@ -79,28 +81,38 @@ pub fn dock(
     points: &[[f64; 3]],
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
+    dock_until(plan, points, None, progress)
+}
+
+/// Docks as planned, with as many of the rotations as a deadline leaves time for, if there is one.
+/// [`DockOutcome::stopped`] says how many those were: planned with it as [`DockOptions::stopped`] and docked without a
+/// deadline, the outcome is the same. Graphics processors search all.
+///
+/// [`DockOptions::stopped`]: super::options::DockOptions::stopped
+///
+/// # Errors
+/// As [`dock`].
+pub fn dock_until(
+    plan: &DockPlan,
+    points: &[[f64; 3]],
+    deadline: Option<&Deadline>,
+    progress: &dyn Progress,
+) -> Result<DockOutcome, SearchError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(plan.in_flight)
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| dock_in_pool(plan, points, progress))
-}
-
-fn dock_in_pool(
-    plan: &DockPlan,
-    points: &[[f64; 3]],
-    progress: &dyn Progress,
-) -> Result<DockOutcome, SearchError> {
-    match plan.options.precision {
-        Precision::Single => dock_in::<f32>(plan, points, progress),
-        Precision::Double => dock_in::<f64>(plan, points, progress),
-    }
+    pool.install(|| match plan.options.precision {
+        Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
+        Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
+    })
 }
 
 /// The run with the fast path in a floating-point type.
 fn dock_in<T: Real>(
     plan: &DockPlan,
     points: &[[f64; 3]],
+    deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let options = &plan.options;
@@ -117,9 +129,13 @@ fn dock_in<T: Real>(
     progress.advance(1);
     clock.lap("prepare");
 
-    progress.stage("search", plan.rotations as u64);
-    let rotations = all_rotations(plan);
-    let mut peaks = scan(plan, &engine, &rotations, options.poses, progress)?;
+    let quartets = schedule(plan, deadline);
+    let wanted: usize = quartets.iter().map(Quartet::count).sum();
+    progress.stage("search", wanted as u64);
+    let Scanned {
+        mut peaks,
+        rotations: searched,
+    } = scan(plan, &engine, &quartets, options.poses, deadline, progress)?;
     clock.lap("search");
     if peaks.is_empty() {
         return Err(SearchError::NoPose);
@@ -130,7 +146,7 @@ fn dock_in<T: Real>(
         (peaks, fine) = (finer, Some(searched));
         clock.lap("fine");
     }
-    let grid_poses: Vec<Pose> = peaks
+    let mut grid_poses: Vec<Pose> = peaks
         .iter()
         .map(|peak| {
             let (rotation, half_turn) = plan.rotation(peak.rotation as usize);
@@ -144,19 +160,36 @@ fn dock_in<T: Real>(
         Some(rings) => RigidBody::new(points).in_ring(rings.axis.as_ref()),
         None => RigidBody::new(points),
     };
-    let placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
+    let mut placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
     drop(folded);
     clock.lap("refine");
 
-    let grid_poses: Vec<Pose> = grid_poses.iter().map(printed).collect();
-    let at_grid: Vec<ExactScore> = grid_poses[..ERROR_POSES.min(grid_poses.len())]
+    grid_poses.truncate(ERROR_POSES);
+    let checking = Instant::now();
+    let at_grid: Vec<ExactScore> = grid_poses
         .par_iter()
-        .map(|pose| scorer.score(pose))
+        .map(|pose| scorer.score(&printed(pose)))
         .collect();
+    let checked = checking.elapsed().as_secs_f64() / at_grid.len() as f64;
     clock.lap("check");
 
     let on = Effect::ALL.map(|effect| plan.is_on(effect));
     let rescorer = plan.rescorer();
+    let found = peaks.len();
+    let kept = match (deadline, options.stopped) {
+        (_, Some(stopped)) => stopped.poses.min(found),
+        (Some(deadline), None) => {
+            let poses = (&peaks[..], &placed[..]);
+            poses_in_time(deadline, poses, rescorer.as_ref(), checked, &body, options)
+        }
+        (None, None) => found,
+    };
+    let stopped = (searched < plan.rotations || kept < found).then_some(Stopped {
+        rotations: searched,
+        poses: kept,
+    });
+    peaks.truncate(kept);
+    placed.truncate(kept);
     if rescorer.is_some() {
         progress.stage("rescore", 1);
     }
@@ -184,6 +217,7 @@ fn dock_in<T: Real>(
         rescorer: rescorer.as_ref(),
         on,
         symmetry: options.symmetry,
+        cluster_temperature: cluster_temperature(plan.unit),
     };
     let ranking = report(
         judge,
@@ -204,7 +238,9 @@ fn dock_in<T: Real>(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
-        chance: chance(options, on, ranking.clusters),
+        chance: chance(options, on, ranking.clusters).filter(|_| stopped.is_none()),
+        searched,
+        stopped,
         error,
         rank_error,
         rank: engine.cpu.rank(),

@@ -6,6 +6,7 @@ use super::error::SearchError;
 use super::peaks::{Peak, find_peaks};
 use super::plan::DockPlan;
 use super::run::Progress;
+use super::schedule::Deadline;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::engine::Folded;
 #[cfg(feature = "gpu")]
@@ -14,6 +15,7 @@ use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 /// The values that a rank is judged by: the best of a few probe rotations at full rank.
 pub(super) struct Probes<T> {
@@ -114,6 +116,21 @@ pub(super) struct Quartet {
     pub wanted: [bool; 4],
 }
 
+impl Quartet {
+    /// How many of the four are searched.
+    pub fn count(&self) -> usize {
+        self.wanted.iter().filter(|wanted| **wanted).count()
+    }
+}
+
+/// What a scan found.
+pub(super) struct Scanned {
+    /// The best peaks, best first.
+    pub peaks: Vec<Peak>,
+    /// Rotations that were searched.
+    pub rotations: usize,
+}
+
 /// The coarse set, in fours; axes of rings one by one, for half-turns make no rings of rings.
 pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
     let count = plan.set.len();
@@ -128,7 +145,7 @@ pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
     (0..count).step_by(4).map(quartet).collect()
 }
 
-/// The best `most` peaks over the rotations given, best first.
+/// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
 ///
 /// # Errors
 /// [`SearchError::Graphics`] where the graphics processor fails.
@@ -137,21 +154,23 @@ pub(super) fn scan<T: Real>(
     engine: &Correlator<T>,
     quartets: &[Quartet],
     most: usize,
+    deadline: Option<&Deadline>,
     progress: &dyn Progress,
-) -> Result<Vec<Peak>, SearchError> {
+) -> Result<Scanned, SearchError> {
     // No list grows beyond all peaks that there are.
     let most = most.min(4 * quartets.len() * plan.options.per_rotation);
     #[cfg(feature = "gpu")]
-    let mut peaks = match &engine.gpu {
+    let mut scanned = match &engine.gpu {
         Some(gpu) => scan_on_card(plan, gpu, quartets, most, progress)?,
-        None => scan_on_cores(plan, &engine.cpu, quartets, most, progress),
+        None => scan_on_cores(plan, &engine.cpu, quartets, most, deadline, progress),
     };
     #[cfg(not(feature = "gpu"))]
-    let mut peaks = scan_on_cores(plan, &engine.cpu, quartets, most, progress);
+    let mut scanned = scan_on_cores(plan, &engine.cpu, quartets, most, deadline, progress);
+    let peaks = &mut scanned.peaks;
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
     peaks.truncate(most);
-    Ok(peaks)
+    Ok(scanned)
 }
 
 /// Peaks of the graphics processor, the best `most` among them.
@@ -162,7 +181,7 @@ fn scan_on_card(
     quartets: &[Quartet],
     most: usize,
     progress: &dyn Progress,
-) -> Result<Vec<Peak>, SearchError> {
+) -> Result<Scanned, SearchError> {
     // Peaks that come back together.
     const TOGETHER: usize = 1 << 20;
     let part = (TOGETHER / (4 * plan.options.per_rotation)).max(1);
@@ -182,27 +201,41 @@ fn scan_on_card(
         peaks.sort_unstable_by(Peak::order);
         peaks.truncate(most);
     }
-    Ok(peaks)
+    Ok(Scanned {
+        peaks,
+        rotations: quartets.iter().map(Quartet::count).sum(),
+    })
 }
 
-/// Peaks of the CPU's cores, the best `most` of each thread among them.
+/// Peaks of the CPU's cores, the best `most` of each thread among them. The quartets that are searched are the first ones, at
+/// least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
     plan: &DockPlan,
     engine: &CpuEngine<T>,
     quartets: &[Quartet],
     most: usize,
+    deadline: Option<&Deadline>,
     progress: &dyn Progress,
-) -> Vec<Peak> {
+) -> Scanned {
     let options = &plan.options;
     let rings = plan.rings.map(|rings| RingVoxels::new(engine, rings.axis));
-    let next = AtomicUsize::new(0);
-    (0..plan.in_flight)
+    let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let begun = Instant::now();
+    let take = || {
+        let done = searched.load(Ordering::Relaxed);
+        let is_late = |deadline: &Deadline| deadline.is_reached(begun, done);
+        if next.load(Ordering::Relaxed) > 0 && deadline.is_some_and(is_late) {
+            return None;
+        }
+        quartets.get(next.fetch_add(1, Ordering::Relaxed))
+    };
+    let peaks = (0..plan.in_flight)
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace();
             let mut found = Vec::with_capacity(2 * most + options.per_rotation);
-            while let Some(quartet) = quartets.get(next.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(quartet) = take() {
                 let (rotation, _) = plan.rotation(quartet.first);
                 engine.turn(&rotation, &mut work);
                 for (image, half_turn) in HalfTurn::ALL.into_iter().enumerate() {
@@ -227,9 +260,14 @@ fn scan_on_cores<T: Real>(
                     }
                     progress.advance(1);
                 }
+                searched.fetch_add(quartet.count(), Ordering::Relaxed);
             }
             found
         })
         .flatten()
-        .collect()
+        .collect();
+    Scanned {
+        peaks,
+        rotations: searched.into_inner(),
+    }
 }

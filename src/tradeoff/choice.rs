@@ -1,10 +1,12 @@
 //! The setting for an accuracy that is wanted or a time that may be spent.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
 use super::cost_model::{CostModel, LADDER, Rung, Workload};
 use super::pair::{PairError, Preparer};
-use crate::search::DockOptions;
+use crate::search::{Deadline, DockOptions, DockPlan};
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
 pub const FEWEST_ROTATIONS: usize = 600;
@@ -76,6 +78,16 @@ impl ChoiceError {
             }
         }
     }
+}
+
+/// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
+pub fn deadline(model: &CostModel, plan: &DockPlan, end: Instant) -> Deadline {
+    let (model, work) = (*model, Workload::of(plan));
+    let threads = plan.in_flight;
+    let rotation = model.rotation_seconds(&work) / threads as f64;
+    Deadline::new(end, rotation, move |rotations| {
+        model.seconds_after_search(&work, rotations, threads)
+    })
 }
 
 /// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`.

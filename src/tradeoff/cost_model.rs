@@ -109,12 +109,21 @@ impl CostModel {
         let alone = work.precision * self.prepare * work.modes * work.effects
             + self.covering
             + self.rotation * count / threads as f64;
-        let exact = self.pair * work.pairs * (CHECKED + work.reported(count));
-        let rescored = self.rescore * work.ligand * work.rescored;
-        let refined = self.climb * work.ligand * work.refined;
-        let searched = count + FINE * work.fine;
-        let shared = searched * self.rotation_seconds(work) + exact + rescored + refined;
-        alone + shared / threads as f64
+        let searched = count * self.rotation_seconds(work) / threads as f64;
+        alone + searched + self.seconds_after_search(work, rotations, threads)
+    }
+
+    /// Of these, the seconds that follow a search of so many rotations: finer rotations, rescoring, refining, exact sums.
+    pub fn seconds_after_search(&self, work: &Workload, rotations: usize, threads: usize) -> f64 {
+        // Few rotations have fewer peaks than poses are kept.
+        let count = rotations as f64;
+        let kept = (work.per_rotation * count / work.poses).min(1.0);
+        let exact =
+            self.pair * work.pairs * (CHECKED.min(kept * work.poses) + kept * work.reported(count));
+        let rescored = self.rescore * work.ligand * kept * work.rescored;
+        let refined = self.climb * work.ligand * work.refined.min(kept * work.poses);
+        let finer = FINE * work.fine * self.rotation_seconds(work);
+        (finer + exact + rescored + refined) / threads as f64
     }
 
     /// The most rotations, in fours, from `range` that fit into so many seconds; where none do, the fewest seconds that any of them take.
@@ -162,6 +171,8 @@ pub struct Workload {
     pub ligand: f64,
     /// Poses kept of all rotations.
     pub poses: f64,
+    /// Peaks kept of each rotation.
+    pub per_rotation: f64,
     /// Share of them that the fast path's error could put before the founder of their cluster; all where every pose is listed.
     pub doubtful: f64,
     /// Poses rescored, one that is not relaxed counted in part.
@@ -208,6 +219,7 @@ impl Workload {
             pairs: TOUCHING * (ligand.len() as f64).sqrt() * near as f64 / probed.max(1) as f64,
             ligand: ligand.len() as f64,
             poses,
+            per_rotation: options.per_rotation as f64,
             doubtful: if options.every_pose {
                 1.0
             } else {
@@ -333,6 +345,7 @@ mod tests {
             pairs: 2e5,
             ligand: 221.0,
             poses: 2000.0,
+            per_rotation: 3.0,
             doubtful: 0.05,
             rescored: 2000.0,
             refined: 0.0,

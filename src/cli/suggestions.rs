@@ -1,0 +1,535 @@
+//! Suggestions for words that other programs of the field use and this one does not: `--restraints`, `--cores`, `rmsd`.
+//!
+//! clap suggests what is spelled alike, which for these words is often something else (`--cores`: `--poses`).
+
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+/// Words for one thing, and what to use here.
+struct Suggestion {
+    /// Words, without leading dashes, `-` between parts.
+    words: &'static [&'static str],
+    /// What to use, in a sentence without a full stop.
+    instead: &'static str,
+}
+
+const fn suggestion(words: &'static [&'static str], instead: &'static str) -> Suggestion {
+    Suggestion { words, instead }
+}
+
+/// Words of options.
+const OPTIONS: [Suggestion; 25] = [
+    suggestion(
+        &[
+            "restraint",
+            "restraints",
+            "restraints-file",
+            "air",
+            "airs",
+            "ambig",
+            "ambig-fname",
+            "unambig",
+            "tbl",
+            "distance-restraints",
+            "contacts",
+            "crosslinks",
+            "xl",
+        ],
+        "restraints between two residues are not read; name the residues of each side that are known to be in contact with \
+         `--attract-receptor A:57,A:189-195` and `--attract-ligand`",
+    ),
+    suggestion(
+        &[
+            "active",
+            "active-residues",
+            "active-receptor",
+            "active-ligand",
+            "attract",
+            "attraction",
+            "interface",
+            "interface-residues",
+            "hotspots",
+            "binding-site",
+            "binding-residues",
+            "site",
+            "passive",
+            "passive-residues",
+            "epitope",
+            "paratope",
+        ],
+        "name residues that are known to be in contact with `--attract-receptor` and `--attract-ligand`",
+    ),
+    suggestion(
+        &[
+            "block",
+            "blocked",
+            "blocking",
+            "exclude",
+            "excluded",
+            "non-interface",
+            "repel",
+            "mask",
+        ],
+        "name residues that are to stay free of contact with `--block-receptor` and `--block-ligand`",
+    ),
+    suggestion(
+        &[
+            "receptor", "ligand", "rec", "lig", "r", "l", "pdb", "pdb1", "pdb2", "input", "i",
+            "mobile", "target", "static",
+        ],
+        "files are given without an option, the receptor first: `knotdock dock RECEPTOR LIGAND`",
+    ),
+    suggestion(
+        &[
+            "chain",
+            "chains",
+            "receptor-chain",
+            "receptor-chains",
+            "ligand-chain",
+            "ligand-chains",
+            "select",
+            "selection",
+        ],
+        "chains are picked behind the file's name: `antibody.pdb:H,L`",
+    ),
+    suggestion(
+        &[
+            "cores",
+            "core",
+            "ncores",
+            "n-cores",
+            "nproc",
+            "ncpu",
+            "cpu",
+            "cpus",
+            "num-threads",
+            "nthreads",
+            "jobs",
+            "j",
+            "np",
+            "t",
+            "workers",
+            "processes",
+        ],
+        "use `--threads N`",
+    ),
+    suggestion(
+        &["gpu", "cuda", "device", "opencl", "vulkan", "use-gpu"],
+        "use `--engine gpu`",
+    ),
+    suggestion(
+        &[
+            "seed",
+            "random-seed",
+            "rng-seed",
+            "iniseed",
+            "random",
+            "deterministic",
+            "reproducible",
+        ],
+        "no seed is needed: nothing is random, and the same input and options give the same bytes",
+    ),
+    suggestion(
+        &[
+            "out",
+            "outdir",
+            "out-dir",
+            "output-dir",
+            "output-directory",
+            "outfile",
+            "prefix",
+            "output-prefix",
+            "run-dir",
+            "workdir",
+            "directory",
+            "dir",
+        ],
+        "use `-o DIR`",
+    ),
+    suggestion(
+        &["overwrite", "replace", "clobber", "f"],
+        "use `--force`, which replaces an earlier run in the directory",
+    ),
+    suggestion(
+        &[
+            "rerun",
+            "repeat",
+            "restore",
+            "config",
+            "settings",
+            "params",
+            "parameters",
+        ],
+        "use `--from RUN.JSON`, which repeats the run that wrote that file",
+    ),
+    suggestion(
+        &["resume", "restart", "continue"],
+        "one run is not resumed; `knotdock batch` called again docks only the pairs that are left",
+    ),
+    suggestion(
+        &[
+            "angle-step",
+            "rotation-step",
+            "rotational-step",
+            "angular-step",
+            "rotational-sampling",
+            "sampling-angle",
+            "degrees",
+            "step",
+        ],
+        "use `--angle DEGREES`, or `--rotations N`",
+    ),
+    suggestion(
+        &[
+            "swarms",
+            "glowworms",
+            "steps",
+            "generations",
+            "population",
+            "sampling",
+            "samples",
+            "decoys",
+            "n-rotations",
+            "num-rotations",
+            "nrot",
+            "orientations",
+        ],
+        "use `--rotations N` for how densely to search, and `--poses N` for how many poses to keep",
+    ),
+    suggestion(
+        &[
+            "models",
+            "n-models",
+            "nposes",
+            "num-poses",
+            "n-poses",
+            "number-of-poses",
+            "num-predictions",
+            "top-poses",
+            "nout",
+            "n",
+        ],
+        "use `--poses N` for how many poses to keep, and `--write-top N` for how many complexes to write",
+    ),
+    suggestion(
+        &[
+            "top",
+            "topn",
+            "top-n",
+            "save",
+            "write",
+            "write-pdb",
+            "write-complexes",
+            "n-complexes",
+        ],
+        "use `--write-top N`; `knotdock complex RUN --rank 37` writes further complexes of a run",
+    ),
+    suggestion(
+        &[
+            "grid",
+            "voxel",
+            "voxel-size",
+            "grid-size",
+            "grid-spacing",
+            "grid-step",
+            "cell",
+            "v",
+        ],
+        "use `--spacing LENGTH` for the grid, or `--resolution LENGTH` for what is ranked",
+    ),
+    suggestion(
+        &[
+            "cluster",
+            "clustering",
+            "cluster-cutoff",
+            "clust-cutoff",
+            "rmsd",
+            "rmsd-cutoff",
+            "clustfcc",
+            "clustrmsd",
+        ],
+        "use `--cluster-radius LENGTH`; `--no-cluster` lists every pose",
+    ),
+    suggestion(
+        &[
+            "reference",
+            "reference-fname",
+            "ref",
+            "crystal",
+            "bound",
+            "truth",
+            "complex",
+            "known",
+        ],
+        "use `--native COMPLEX`, which compares each pose with a known complex",
+    ),
+    suggestion(
+        &[
+            "score",
+            "scoring",
+            "scoring-function",
+            "energy",
+            "terms",
+            "potential",
+            "potentials",
+            "vdw",
+            "elec",
+            "electrostatics",
+            "desolvation",
+            "contact",
+        ],
+        "use `--effects shape,electrostatics,contact` for the terms of the score, and their `--...-weight` options",
+    ),
+    suggestion(
+        &[
+            "tolerate", "softness", "soft", "overlap", "penalty", "clash", "clashes",
+        ],
+        "use `--lambda X`, the weight of overlap against contact",
+    ),
+    suggestion(
+        &["ensemble", "multi-model", "nmr", "conformers"],
+        "one model of a file is docked: `--model N` picks it; a table of `knotdock batch` with a column `model` docks each",
+    ),
+    suggestion(
+        &[
+            "symm",
+            "cn",
+            "c2",
+            "homodimer",
+            "oligomer",
+            "multimer",
+            "ncs",
+        ],
+        "use `--symmetry C2` (or C3, D2 ...) with one file",
+    ),
+    suggestion(
+        &[
+            "time",
+            "timeout",
+            "time-limit",
+            "max-time",
+            "walltime",
+            "deadline",
+        ],
+        "use `--budget TIME`, such as `--budget 5min`",
+    ),
+    suggestion(
+        &[
+            "water",
+            "keep-water",
+            "remove-water",
+            "no-water",
+            "keep-het",
+            "het",
+            "hetatms",
+            "noh",
+            "no-hydrogens",
+            "keep-hydrogens",
+            "addh",
+        ],
+        "use `--waters`, `--hetatm` or `--hydrogens`, each with keep or drop",
+    ),
+];
+
+/// Words of commands.
+const COMMANDS: [Suggestion; 10] = [
+    suggestion(
+        &[
+            "docking", "run", "search", "predict", "global", "zdock", "megadock",
+        ],
+        "use `knotdock dock RECEPTOR LIGAND`",
+    ),
+    suggestion(
+        &[
+            "rmsd",
+            "capri",
+            "caprieval",
+            "dockq",
+            "eval",
+            "analyze",
+            "analyse",
+            "analysis",
+            "compare",
+            "assess",
+            "validate",
+        ],
+        "use `knotdock evaluate RUN --native COMPLEX`",
+    ),
+    suggestion(
+        &["rescore", "rescoring", "scoring", "energy"],
+        "use `knotdock score RECEPTOR LIGAND --pose QW,QX,QY,QZ,TX,TY,TZ`",
+    ),
+    suggestion(
+        &[
+            "info", "check", "prepare", "prep", "clean", "read", "summary", "topoaa", "setup",
+        ],
+        "use `knotdock inspect FILE`; files need no preparation",
+    ),
+    suggestion(
+        &[
+            "build", "export", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
+        ],
+        "use `knotdock complex RUN --rank 37,40-45`",
+    ),
+    suggestion(
+        &["screen", "screening", "table", "pairs", "many", "benchmark"],
+        "use `knotdock batch PAIRS.CSV`",
+    ),
+    suggestion(
+        &[
+            "voxelize",
+            "voxelise",
+            "spheres",
+            "sphere",
+            "decompose",
+            "mesh",
+            "cover",
+            "pack",
+        ],
+        "use `knotdock sample MESH`",
+    ),
+    suggestion(
+        &["sweep", "accuracy", "convergence", "scan"],
+        "use `knotdock tradeoff RECEPTOR LIGAND`",
+    ),
+    suggestion(
+        &["rerun", "repeat", "resume", "restart"],
+        "use `knotdock dock --from RUN.JSON`",
+    ),
+    suggestion(
+        &["tune", "bench", "speed", "timing"],
+        "use `knotdock calibrate`, which measures how fast this machine is",
+    ),
+];
+
+/// What to use instead of a word that is no option or command.
+fn find(suggestions: &[Suggestion], word: &str) -> Option<&'static str> {
+    let word = word.trim_start_matches('-');
+    let word = word.split('=').next().unwrap_or(word);
+    let word = word.to_lowercase().replace('_', "-");
+    let known = |one: &&Suggestion| one.words.contains(&word.as_str());
+    suggestions.iter().find(known).map(|one| one.instead)
+}
+
+/// What to do about an error of the command line, where the field's word for something is at fault or one that is spelled alike.
+pub fn suggested(error: &clap::Error) -> Option<String> {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let alike = |kind| match error.get(kind) {
+        Some(ContextValue::String(one)) => Some(format!("is `{one}` meant?")),
+        Some(ContextValue::Strings(some)) => some.first().map(|one| format!("is `{one}` meant?")),
+        _ => None,
+    };
+    match error.kind() {
+        ErrorKind::UnknownArgument => text(ContextKind::InvalidArg)
+            .and_then(|word| find(&OPTIONS, word))
+            .map(str::to_owned)
+            .or_else(|| alike(ContextKind::SuggestedArg)),
+        ErrorKind::InvalidSubcommand => text(ContextKind::InvalidSubcommand)
+            .and_then(|word| find(&COMMANDS, word))
+            .map(str::to_owned)
+            .or_else(|| alike(ContextKind::SuggestedSubcommand)),
+        ErrorKind::InvalidValue => alike(ContextKind::SuggestedValue),
+        _ => None,
+    }
+}
+
+/// The error with the field's word explained, in place of what is spelled alike.
+pub fn explained(mut error: clap::Error) -> clap::Error {
+    let word = match error.kind() {
+        ErrorKind::UnknownArgument => (&OPTIONS[..], ContextKind::InvalidArg),
+        ErrorKind::InvalidSubcommand => (&COMMANDS[..], ContextKind::InvalidSubcommand),
+        _ => return error,
+    };
+    let (suggestions, kind) = word;
+    let found = match error.get(kind) {
+        Some(ContextValue::String(word)) => find(suggestions, word),
+        _ => None,
+    };
+    if let Some(instead) = found {
+        // The usage line shows what is spelled alike, too.
+        for alike in [
+            ContextKind::SuggestedArg,
+            ContextKind::SuggestedSubcommand,
+            ContextKind::Usage,
+        ] {
+            error.remove(alike);
+        }
+        let tips = vec![StyledStr::from(instead)];
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Options and commands that a suggestion names, in backquotes.
+    fn named(text: &str) -> Vec<String> {
+        let quoted = text.split('`').skip(1).step_by(2);
+        let words = quoted.flat_map(str::split_whitespace);
+        words.map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn what_is_suggested_exists_and_no_word_of_ours_is_explained_away() {
+        use clap::CommandFactory;
+        let cli = super::super::Cli::command();
+        let commands: Vec<&str> = cli.get_subcommands().map(clap::Command::get_name).collect();
+        let dock = cli.find_subcommand("dock").unwrap();
+        let options: Vec<String> = dock
+            .get_arguments()
+            .flat_map(|option| {
+                let short = option.get_short().map(|letter| format!("-{letter}"));
+                let long = option.get_long().map(|name| format!("--{name}"));
+                [short, long].into_iter().flatten()
+            })
+            .collect();
+        for one in OPTIONS.iter().chain(&COMMANDS) {
+            let words = named(one.instead);
+            for word in &words {
+                let general = word.starts_with("--...") || word == "--rank" || word == "--pose";
+                assert!(
+                    !word.starts_with('-') || general || options.contains(word),
+                    "{word}"
+                );
+            }
+            for pair in words.windows(2).filter(|pair| pair[0] == "knotdock") {
+                assert!(commands.contains(&pair[1].as_str()), "{}", pair[1]);
+            }
+        }
+        for word in OPTIONS.iter().flat_map(|one| one.words) {
+            let ours = [format!("--{word}"), format!("-{word}")];
+            assert!(!ours.iter().any(|ours| options.contains(ours)), "{word}");
+        }
+        for word in COMMANDS.iter().flat_map(|one| one.words) {
+            assert!(!commands.contains(word), "{word}");
+        }
+    }
+
+    #[test]
+    fn no_word_has_two_suggestions() {
+        for suggestions in [&OPTIONS[..], &COMMANDS[..]] {
+            let mut words: Vec<&str> = suggestions
+                .iter()
+                .flat_map(|one| one.words)
+                .copied()
+                .collect();
+            let count = words.len();
+            words.sort_unstable();
+            words.dedup();
+            assert_eq!(words.len(), count);
+        }
+    }
+
+    #[test]
+    fn words_are_found_however_they_are_spelled() {
+        for word in ["--ncores", "--NCORES", "--n_cores", "--ncores=4"] {
+            assert_eq!(find(&OPTIONS, word), Some("use `--threads N`"), "{word}");
+        }
+        assert_eq!(find(&OPTIONS, "--no-such-thing"), None);
+    }
+}
