@@ -380,7 +380,7 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
     fs::create_dir(folder.path().join("knotdock")).unwrap();
-    // No machine is as fast: all 56,250 rotations are expected to fit into a twentieth of a second.
+    // No machine is as fast: tens of thousands of rotations are expected to fit into a twentieth of a second.
     let fast = SLOW.replace("1e-7", "1e-15");
     fs::write(folder.path().join("knotdock/cost_model.json"), fast).unwrap();
     let pair = [receptor.as_str(), &ligand, "--poses", "50"];
@@ -389,14 +389,15 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     assert!(output.status.success(), "{output:?}");
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     let run = &object["run"];
-    assert_eq!(run["options"]["rotations"], 56_250);
+    let planned = run["options"]["rotations"].as_u64().unwrap();
+    assert!(planned > 10_000);
     let searched = run["results"]["rotations"].as_u64().unwrap();
-    assert!((1..56_250).contains(&searched), "{searched}");
+    assert!((1..planned).contains(&searched), "{searched} of {planned}");
     assert_eq!(run["options"]["stopped"]["rotations"], searched);
     assert!(run["results"]["chance_acceptable_in_10"].is_null());
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
-        said.contains(&format!("searched {searched} of 56250 rotations")),
+        said.contains(&format!("searched {searched} of {planned} rotations")),
         "{said}"
     );
     assert_eq!(

@@ -54,8 +54,9 @@ pub struct Dock {
     /// grid poses, as a share of the best score.
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], help_heading = TRADE_OFFS)]
     accuracy: Option<f64>,
-    /// Take as many rotations as are expected to fit into a time, such as 5s or 2min, but no more than 56,250; `knotdock calibrate` tells how fast this
-    /// machine is.
+    /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are planned as are
+    /// expected to fit, but no more than 56,250; where the machine is slower than expected the search stops earlier, and
+    /// run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "angle"], help_heading = TRADE_OFFS)]
     budget: Option<f64>,
     /// Complexes to write to top/.
