@@ -1,5 +1,7 @@
 //! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it already.
 
+use std::collections::HashSet;
+
 use knotdock_structures::molecule::Molecule;
 
 use super::alignment::align;
@@ -7,6 +9,9 @@ use super::residues::{Residue, Residues};
 
 /// Fewest residues of a chain that counts.
 const LEAST_RESIDUES: usize = 5;
+
+/// Fewest kinds of residues of such a chain: what has fewer is like any other of its kind.
+const LEAST_KINDS: usize = 3;
 
 /// Least share of the residues of the longer chain that are equal in two copies of one chain, which may lack loops.
 const LEAST_EQUAL: f64 = 0.8;
@@ -37,10 +42,15 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
     let mut shared = Vec::new();
     for segment in wanted {
         let own = members(&one, segment);
-        let found = free
-            .iter()
-            .position(|&place| are_copies(&own, &members(&other, place)))?;
-        shared.push((segment, free.remove(found)));
+        let mut best: Option<(usize, usize)> = None;
+        for (index, &place) in free.iter().enumerate() {
+            let equal = equal_residues(&own, &members(&other, place));
+            if equal > best.map_or(0, |(equal, _)| equal) {
+                best = Some((equal, index));
+            }
+        }
+        let (_, index) = best?;
+        shared.push((segment, free.remove(index)));
     }
     let pairs: Vec<(String, String)> = shared
         .into_iter()
@@ -66,10 +76,15 @@ fn members(residues: &Residues, segment: usize) -> Vec<&Residue> {
     members.map(|&member| &residues.residues[member]).collect()
 }
 
-/// Whether two chains are of one sequence, loops that one of them lacks aside.
-fn are_copies(one: &[&Residue], other: &[&Residue]) -> bool {
+/// Equal residues of two chains of one sequence, loops that one of them lacks aside; 0 of other chains.
+fn equal_residues(one: &[&Residue], other: &[&Residue]) -> usize {
     let least = LEAST_EQUAL * one.len().max(other.len()) as f64;
-    one.len().min(other.len()) as f64 >= least && align(one, other).pairs.len() as f64 >= least
+    let kinds: HashSet<&str> = one.iter().map(|residue| residue.kind.as_str()).collect();
+    if kinds.len() < LEAST_KINDS || (one.len().min(other.len()) as f64) < least {
+        return 0;
+    }
+    let equal = align(one, other).pairs.len();
+    if equal as f64 >= least { equal } else { 0 }
 }
 
 /// A segment's chain name; further segments of one name carry a number behind it.

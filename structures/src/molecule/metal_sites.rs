@@ -54,3 +54,87 @@ impl Molecule {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::molecule::{Atom, Format, LabelReport};
+
+    fn atom(name: &str, residue: &str, number: i64, element: &str, position: [f64; 3]) -> Atom {
+        Atom {
+            name: name.to_owned(),
+            residue_name: residue.to_owned(),
+            chain: "A".to_owned(),
+            residue_number: number,
+            insertion_code: None,
+            alternate_location: None,
+            element: element.to_owned(),
+            position,
+            occupancy: 1.0,
+            b_factor: 0.0,
+            hetero: false,
+            radius: 1.7,
+            line: 1,
+        }
+    }
+
+    /// Side chains of cysteine at so far from the origin along each axis, and a metal there.
+    fn cysteines(name: &str, distance: f64, metal: &str) -> LabelReport {
+        let mut atoms = vec![atom(metal, metal, 100, metal, [0.0; 3])];
+        for axis in 0..3 {
+            for (place, sign) in [(1, 1.0), (2, -1.0)] {
+                let at = |distance: f64| {
+                    let mut position = [0.0; 3];
+                    position[axis] = sign * distance;
+                    position
+                };
+                let number = 10 * (2 * axis as i64 + place);
+                atoms.push(atom("SG", name, number, "S", at(distance)));
+                atoms.push(atom("CB", name, number, "C", at(distance + 1.8)));
+            }
+        }
+        Molecule::new(atoms, Format::Pdb).labels(7.0).report
+    }
+
+    /// Found by a user: zinc fingers were as positive as their zinc, and a RING domain of eight cysteines was charged by 8 e too high.
+    #[test]
+    fn cysteines_that_bind_a_metal_are_thiolates() {
+        for (name, distance, metal, charge, bound) in [
+            ("CYS", 2.35, "Zn", -4.0, 6),
+            ("CYS", 2.8, "Fe", -3.0, 6),
+            ("CYM", 2.35, "Zn", -4.0, 0),
+            // Too far, a disulphide's half by its name, and a metal that binds oxygens.
+            ("CYS", 2.81, "Zn", 2.0, 0),
+            ("CYX", 2.35, "Zn", 2.0, 0),
+            ("CYS", 2.35, "Mg", 2.0, 0),
+        ] {
+            let report = cysteines(name, distance, metal);
+            assert_eq!((report.net_charge, report.metal_bound), (charge, bound));
+        }
+    }
+
+    /// The nitrogen that binds has no proton.
+    #[test]
+    fn histidines_bind_by_the_nitrogen_without_a_proton() {
+        let of = |name: &str, metals: &[f64], ph: f64| {
+            let mut atoms = vec![
+                atom("ND1", name, 1, "N", [0.0; 3]),
+                atom("NE2", name, 1, "N", [2.2, 0.0, 0.0]),
+            ];
+            for (index, x) in metals.iter().enumerate() {
+                let zinc = atom("ZN", "ZN", 100 + index as i64, "Zn", [*x, 0.0, 0.0]);
+                atoms.push(zinc);
+            }
+            let labels = Molecule::new(atoms, Format::Pdb).labels(ph);
+            [labels.charges[0], labels.charges[1]]
+        };
+        for ph in [2.0, 7.0] {
+            assert_eq!(of("HIS", &[-2.1], ph), [-0.40, -0.10]);
+            assert_eq!(of("HIS", &[4.3], ph), [-0.10, -0.40]);
+            // The imidazolate of superoxide dismutase, between copper and zinc.
+            assert_eq!(of("HIS", &[-2.1, 4.3], ph), [-0.5, -0.5]);
+        }
+        assert_eq!(of("HIS", &[], 2.0), [0.05, 0.05]);
+        assert_eq!(of("HID", &[-2.1], 7.0), [-0.10, -0.40]);
+    }
+}
