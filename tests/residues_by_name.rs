@@ -181,6 +181,7 @@ fn a_chain_that_the_other_file_holds_is_warned_of() {
         assert!(told.contains("already") && told.contains(remedy), "{told}");
     }
     for arguments in ["complex.pdb:A,B complex.pdb:C", "complex.pdb complex.pdb"] {
-        assert_eq!(warnings("receptor", arguments), json!([]));
+        let told = warnings("receptor", arguments).to_string();
+        assert!(!told.contains("already"), "{told}");
     }
 }

@@ -49,8 +49,8 @@ pub(super) fn warning(atoms: &[Atom], groups: &[Residue<'_>]) -> Option<String> 
         remedies.insert(0, "--hetatm drop".to_owned());
     }
     Some(format!(
-        "ligands without known charges or contact types are kept as solid atoms: {ligands}; where one fills the binding site, the \
-         partner cannot dock there, which {} prevents",
+        "small molecules are kept as solid atoms without charges or contact types, which are not known: {ligands}; if one fills the \
+         binding site, leave it out with {}",
         remedies.join(" or ")
     ))
 }
