@@ -90,6 +90,15 @@ pub fn assembly_name(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
+/// The name of a residue.
+pub fn residue_name(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("the name of a residue is needed, such as HEM".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
 /// A pLDDT, above 0 and up to 100.
 pub fn plddt(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -79,12 +79,13 @@ const NO_RING: [&str; 6] = [
 ];
 
 /// What run.json records, so that none of it goes with --from.
-const RECORDED: [&str; 58] = [
+const RECORDED: [&str; 59] = [
     "receptor",
     "ligand",
     "symmetry",
     "waters",
     "hetatm",
+    "drop_residue",
     "hydrogens",
     "altloc",
     "model",

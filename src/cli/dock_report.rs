@@ -197,6 +197,14 @@ pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
     told.flatten().collect()
 }
 
+/// How many Cys and His are charged as what binds a metal, behind other words.
+pub fn metal_bound(labels: &LabelReport) -> String {
+    match labels.metal_bound {
+        0 => String::new(),
+        bound => format!(", {bound} Cys and His charged as bound to a metal"),
+    }
+}
+
 /// What was assumed of one side's charges and contact types, where effects use them.
 pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
     let names = |unknown: &BTreeMap<String, usize>| {
@@ -209,10 +217,11 @@ pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<Stri
     if plan.is_on(Effect::Electrostatics) {
         let [amino, carboxyl] = labels.termini;
         parts.push(format!(
-            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} capped",
+            "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} capped{}",
             labels.net_charge,
             plan.options.ph,
-            counted(labels.gaps, "gap")
+            counted(labels.gaps, "gap"),
+            metal_bound(labels)
         ));
         if !labels.unknown_charges.is_empty() {
             parts.push(format!(

@@ -52,6 +52,9 @@ impl Docking {
         console: Console,
     ) -> Result<Self, Failure> {
         let symmetry = request.options.dock.symmetry;
+        if symmetry.is_none() {
+            request.bodies.note_shared_chains();
+        }
         request.bodies.describe(symmetry, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {

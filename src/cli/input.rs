@@ -1,11 +1,12 @@
 //! Structures named on the command line or in a run.json: read, recorded, described.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock_structures::molecule::{
-    InputSpec, Listed, Molecule, ReadOptions, file_bytes, read_bytes, read_bytes_listed,
+    DropKind, InputSpec, Listed, Molecule, ReadOptions, file_bytes, read_bytes, read_bytes_listed,
 };
 
 use super::failure::Failure;
@@ -88,16 +89,45 @@ impl Input {
 }
 
 /// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
-/// says anything of one, `--model` where none has several.
+/// says anything of one, `--model` where none has several, `--drop-residue` of a name that none has.
 pub fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
 ) -> Result<(), Failure> {
     let (mut predicted, mut built, mut several) = (false, false, false);
+    let (mut left_out, mut kept) = (BTreeSet::new(), BTreeSet::new());
     for molecule in molecules {
+        let dropped = molecule.report.dropped.iter();
+        let by_name = dropped.filter(|dropped| dropped.kind == DropKind::Residue);
+        left_out.extend(by_name.flat_map(|dropped| dropped.names.keys().map(String::as_str)));
+        kept.extend(
+            molecule
+                .report
+                .groups
+                .iter()
+                .map(|group| group.name.as_str()),
+        );
         predicted |= molecule.report.confidence.is_some();
         built |= molecule.report.assembly.is_some();
         several |= molecule.report.altered.models_ignored > 0;
+    }
+    if let Some(name) = options
+        .drop_residue
+        .iter()
+        .find(|name| !left_out.contains(name.as_str()))
+    {
+        let kept: Vec<&str> = kept.into_iter().collect();
+        return Err(Failure::input(format!(
+            "--drop-residue names {name}, and no residue read here has that name"
+        ))
+        .remedy(match kept.join(", ") {
+            none if none.is_empty() => {
+                "leave it out: all residues here are standard amino acids".to_owned()
+            }
+            names => format!(
+                "leave it out, or name one of those that are kept beside standard amino acids: {names}"
+            ),
+        }));
     }
     if options.min_plddt.is_some() && !predicted {
         return Err(Failure::input(

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use super::arguments::not_negative;
 use super::console::Console;
+use super::dock_report::metal_bound;
 use super::failure::Failure;
 use super::input::{Input, check_used};
 use super::output_file::{check_output, is_same};
@@ -172,8 +173,10 @@ fn told(
     let [amino, carboxyl] = labels.termini;
     let mut lines = vec![
         format!(
-            "Charges at pH {ph}: {:+} e in all, on {} atoms; {amino} amino and {carboxyl} carboxyl ends charged",
-            labels.net_charge, labels.charged_atoms
+            "Charges at pH {ph}: {:+} e in all, on {} atoms; {amino} amino and {carboxyl} carboxyl ends charged{}",
+            labels.net_charge,
+            labels.charged_atoms,
+            metal_bound(labels)
         ),
         format!(
             "Missing residues: {} in {}; {} of chains that may go on; {} near ends of chains or gaps",

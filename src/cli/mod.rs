@@ -28,6 +28,7 @@ mod request;
 mod sample;
 mod score;
 mod search_arguments;
+mod shared_chains;
 mod suggestions;
 mod tradeoff;
 

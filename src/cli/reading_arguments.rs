@@ -1,15 +1,16 @@
 //! Options that say what is read of a structure.
 
+use std::collections::BTreeSet;
+
 use clap::Args;
 use knotdock_structures::molecule::{AlternateLocation, Hetatm, Hydrogens, ReadOptions, Waters};
 
-use super::arguments::{assembly_name, at_least_one, plddt};
+use super::arguments::{assembly_name, at_least_one, plddt, residue_name};
 
 const READING: &str = "Reading";
 
 /// All of them, for messages.
-pub const READING_OPTIONS: &str =
-    "--waters, --hetatm, --hydrogens, --altloc, --model, --assembly and --min-plddt";
+pub const READING_OPTIONS: &str = "--waters, --hetatm, --drop-residue, --hydrogens, --altloc, --model, --assembly and --min-plddt";
 
 /// Options of reading. They hold for the molecules named, not for a known complex, which is read by the defaults.
 #[derive(Args, Debug)]
@@ -21,6 +22,9 @@ pub struct ReadingArguments {
     /// modified amino acids.
     #[arg(long, value_name = "WHAT", default_value_t = Hetatm::default(), help_heading = READING)]
     hetatm: Hetatm,
+    /// Leave out the residues of these names, such as an inhibitor in the binding site, whatever their record; with commas between, or given again.
+    #[arg(long, value_name = "NAME", value_parser = residue_name, value_delimiter = ',', help_heading = READING)]
+    drop_residue: Vec<String>,
     /// Hydrogens: drop (united-atom radii stand for them) or keep (all-atom radii for a molecule that has some).
     #[arg(long, value_name = "WHAT", default_value_t = Hydrogens::default(), help_heading = READING)]
     hydrogens: Hydrogens,
@@ -41,6 +45,8 @@ pub struct ReadingArguments {
 impl ReadingArguments {
     /// The options as the reader takes them.
     pub fn options(&self) -> ReadOptions {
+        // In one order, so that runs that leave out the same are the same run.
+        let names: BTreeSet<String> = self.drop_residue.iter().cloned().collect();
         ReadOptions {
             waters: self.waters,
             hetatm: self.hetatm,
@@ -49,6 +55,7 @@ impl ReadingArguments {
             model: self.model,
             assembly: self.assembly.clone(),
             min_plddt: self.min_plddt,
+            drop_residue: names.into_iter().collect(),
             ..ReadOptions::default()
         }
     }

@@ -34,6 +34,7 @@ mod permutations;
 mod report;
 mod residues;
 mod rmsd;
+mod shared_chains;
 mod superposition;
 #[cfg(test)]
 mod test_molecules;
@@ -50,6 +51,7 @@ pub use dockq::{Capri, dockq};
 pub use error::EvaluateError;
 pub use native::Native;
 pub use report::{ChainMatch, MatchMethod, MatchReport, SideMatch};
+pub use shared_chains::{SharedChains, shared_chains};
 
 use contacts::{AcrossPair, NativeContacts, pairs_across};
 use native::Groups;

@@ -8,7 +8,9 @@
 
 use std::collections::HashSet;
 
-use knotdock_structures::molecule::{Atom, Molecule, plain_atom_name, plain_residue_name};
+use knotdock_structures::molecule::{
+    Atom, Molecule, plain_atom_name, plain_residue_name, standard_residue_name,
+};
 use nalgebra::Point3;
 
 use super::EvaluateError;
@@ -284,7 +286,10 @@ impl Residue {
             .fold(0.0, f64::max);
         let residue = Self {
             number: (first.residue_number, first.insertion_code),
-            kind: kind(&first.residue_name),
+            kind: kind(standard_residue_name(
+                first.residue_name.trim(),
+                atoms.iter().copied(),
+            )),
             backbone,
             hetero: first.hetero,
             heavy,
@@ -297,10 +302,11 @@ impl Residue {
 
 /// The name under which residues are compared.
 ///
-/// Selenomethionine counts as methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force
-/// fields count as the plain residue's, and nucleotides as their base ([`plain_residue_name`]).
+/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as methionine and
+/// S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the plain residue's, and nucleotides as their
+/// base ([`plain_residue_name`]).
 fn kind(name: &str) -> String {
-    let plain = match name.trim() {
+    let plain = match name {
         "MSE" => "MET",
         "CME" => "CYS",
         other => plain_residue_name(other),
@@ -401,6 +407,22 @@ mod tests {
         let residues = Residues::of(&molecule(atoms.to_vec()), "receptor").unwrap();
         let backbone = residues.residues[0].backbone.iter().flatten();
         assert_eq!(backbone.count(), names.len());
+    }
+
+    /// Found by a user: of a file with GROMOS's names 19 of 29 residues were matched, of one with D-amino acids fewer.
+    #[test]
+    fn standard_residues_are_known_under_other_names() {
+        let serine = ["N", "CA", "C", "O", "CB", "OG"];
+        for (name, plain) in [
+            ("DSN", "SER"),
+            ("X", "SER"),
+            ("CSER", "SER"),
+            ("SEP", "SEP"),
+        ] {
+            let atoms = serine.map(|atom_name| atom("A", 1, name, atom_name, [0.0; 3]));
+            let residues = Residues::of(&molecule(atoms.to_vec()), "receptor").unwrap();
+            assert_eq!(residues.residues[0].kind, plain, "{name}");
+        }
     }
 
     /// Pseudouridine within a strand counts, and AMP beside it does not.

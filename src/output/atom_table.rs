@@ -81,6 +81,8 @@ fn reason(kind: DropKind) -> &'static str {
         DropKind::Assembly => "assembly",
         DropKind::Hydrogen => "hydrogen",
         DropKind::Water => "water",
+        DropKind::Residue => "residue",
+        DropKind::PseudoAtom => "pseudo_atom",
         DropKind::Additive => "additive",
         DropKind::Hetatm => "hetatm",
         DropKind::AlternateLocation => "alternate_location",

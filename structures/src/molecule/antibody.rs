@@ -134,7 +134,10 @@ impl Annotators {
 
     /// The variable domains of one chain, each with the CDR (0 to 2) that each of the chain's residues belongs to, if to one of this domain.
     fn variable_domains(&self, chain: &[Residue<'_>]) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
-        let sequence: String = chain.iter().map(|residue| letter(residue.key.3)).collect();
+        let sequence: String = chain
+            .iter()
+            .map(|residue| letter(residue.known_as))
+            .collect();
         // A chain too short, or longer than any antibody's, is an error of the search, as is one without a domain.
         let numbered = |annotator: &Annotator| annotator.number_domains(&sequence).ok();
         let (Some(imgt), Some(kabat)) = (numbered(&self.imgt), numbered(&self.kabat)) else {

@@ -10,6 +10,8 @@
 //! pH and the pKa of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci. 15 (2006) 1214-1218 (arginine: 13.8,
 //! Fitch, Platzer, Okon, Garcia-Moreno & McIntosh, Protein Sci. 24 (2015) 752-761).
 
+use super::residues::is_amino_acid;
+
 /// Charges in e by atom name.
 pub(super) type Charges = &'static [(&'static str, f64)];
 
@@ -41,13 +43,13 @@ const TITRATABLE: [(&str, f64, &str, &str); 7] = [
     ("GLU", 4.25, "GLH", "GLU"),
     ("HIS", 6.54, "HIP", "HIS"),
     ("CYS", 8.55, "CYS", "CYM"),
-    ("TYR", 9.84, "TYR", "TYM"),
+    ("TYR", 9.84, "TYR", "TYR-"),
     ("LYS", 10.40, "LYS", "LYN"),
     ("ARG", 13.8, "ARG", "ARN"),
 ];
 
 /// Side chains, by state.
-const SIDE_CHAINS: [(&str, Charges); 42] = [
+const SIDE_CHAINS: [(&str, Charges); 43] = [
     ("ALA", &[]),
     (
         "ARG",
@@ -107,6 +109,8 @@ const SIDE_CHAINS: [(&str, Charges); 42] = [
             ("CE1", 0.45),
         ],
     ),
+    // Without a proton, between two metals.
+    ("HIS-", &[("ND1", -0.5), ("NE2", -0.5)]),
     ("ILE", &[]),
     ("LEU", &[]),
     ("LYS", &[("CE", 0.25), ("NZ", 0.75)]),
@@ -131,7 +135,7 @@ const SIDE_CHAINS: [(&str, Charges); 42] = [
         ],
     ),
     ("TYR", &[("CZ", 0.25), ("OH", -0.25)]),
-    ("TYM", &[("CZ", 0.25), ("OH", -1.25)]),
+    ("TYR-", &[("CZ", 0.25), ("OH", -1.25)]),
     ("VAL", &[]),
     // Phosphates of two charges, a sulphate of one.
     ("SEP", &PHOSPHATE),
@@ -177,8 +181,22 @@ pub(super) const NUCLEOTIDE: Charges = &[
     ("O3P", -1.0),
 ];
 
-/// Cofactors whose charge is known: heme with its two propionates, Fe(II) in a porphyrin of -2.
-const COFACTORS: [(&str, Charges); 3] = [("HEM", HEME), ("HEC", HEME), ("HEA", HEME)];
+/// Cofactors whose charge is known: heme with its two propionates, Fe(II) in a porphyrin of -2; clusters of iron and sulphide as they are
+/// oxidised, [2Fe-2S] and [4Fe-4S] of +2 and [3Fe-4S] of +1, without the thiolates that hold them.
+const COFACTORS: [(&str, Charges); 6] = [
+    ("HEM", HEME),
+    ("HEC", HEME),
+    ("HEA", HEME),
+    ("FES", &[("FE1", 1.0), ("FE2", 1.0)]),
+    (
+        "F3S",
+        &[("FE1", 1.0 / 3.0), ("FE3", 1.0 / 3.0), ("FE4", 1.0 / 3.0)],
+    ),
+    (
+        "SF4",
+        &[("FE1", 0.5), ("FE2", 0.5), ("FE3", 0.5), ("FE4", 0.5)],
+    ),
+];
 
 const HEME: Charges = &[
     ("FE", 2.0),
@@ -262,6 +280,11 @@ pub(super) fn side_chain(residue_name: &str, ph: f64) -> Option<Charges> {
     find(&SIDE_CHAINS, state)
 }
 
+/// Whether the charges of a modified amino acid of this name are known: it is not a standard one, nor a state of one.
+pub(super) fn is_modified(residue_name: &str) -> bool {
+    find(&SIDE_CHAINS, residue_name).is_some() && !is_amino_acid(residue_name)
+}
+
 /// Charges of a cofactor that is known.
 pub(super) fn cofactor(residue_name: &str) -> Option<Charges> {
     find(&COFACTORS, residue_name)
@@ -292,7 +315,12 @@ mod tests {
         assert!((sum(PROLINE_TERMINUS) - 1.0).abs() < 1e-12);
         assert!((CARBOXYL_CARBON + CARBOXYL_OXYGENS + 1.0).abs() < 1e-12);
         for (name, charges) in COFACTORS {
-            assert!((sum(charges) + 2.0).abs() < 1e-12, "{name}");
+            let expected = match name {
+                "FES" | "SF4" => 2.0,
+                "F3S" => 1.0,
+                _ => -2.0,
+            };
+            assert!((sum(charges) - expected).abs() < 1e-12, "{name}");
         }
     }
 
@@ -310,6 +338,8 @@ mod tests {
             ("HIP", 1.0, 1.0, 1.0),
             ("LYN", 0.0, 0.0, 0.0),
             ("SEP", -2.0, -2.0, -2.0),
+            ("TYR-", -1.0, -1.0, -1.0),
+            ("HIS-", -1.0, -1.0, -1.0),
         ] {
             let found = [2.0, 7.0, 14.0].map(|ph| total(name, ph));
             assert_eq!(found, [at_2, at_7, at_14], "{name}");

@@ -72,7 +72,7 @@ fn missing_side_chains(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<Strin
             continue;
         }
         let (chain, number, insertion, name) = residue.key;
-        let expected = side_chain(name).unwrap_or(&[]);
+        let expected = side_chain(residue.known_as).unwrap_or(&[]);
         let missing = expected
             .iter()
             // GROMACS and CHARMM write isoleucine's CD1 as CD.

@@ -1,6 +1,6 @@
 //! Contact types and kinds of amino acid atoms, from the table beside this file, which the scripts that derive potentials read too.
 
-use super::residues::parent;
+use super::residues::{parent, standard_atom_name};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -64,11 +64,7 @@ pub fn atom_kinds() -> &'static [&'static str] {
 
 /// Contact type and kind of an atom; `None` outside the amino acids of the table.
 pub(super) fn atom_types(residue_name: &str, atom_name: &str) -> Option<AtomTypes> {
-    let name = match (parent(residue_name), atom_name) {
-        ("ILE", "CD") => "CD1",
-        (_, "OT1" | "OT2" | "O1" | "O2" | "OT") => "OXT",
-        (_, other) => other,
-    };
+    let name = standard_atom_name(residue_name, atom_name);
     TYPES.get(&(parent(residue_name), name)).copied()
 }
 

@@ -39,7 +39,7 @@ pub(super) fn resolve(
     name_column: NameColumn,
     aligned: bool,
 ) -> Option<Resolved> {
-    let given = symbol(column.trim_end_matches(|c: char| c.is_ascii_digit() || "+-".contains(c)));
+    let given = column_symbol(column);
     let by_names = if is_standard(residue_name) {
         of_standard_residue(residue_name, atom_name)
     } else {
@@ -66,6 +66,11 @@ pub(super) fn resolve(
             },
         }),
     }
+}
+
+/// The element that a column gives, a charge beside it aside.
+pub(super) fn column_symbol(column: &str) -> Option<&'static str> {
+    symbol(column.trim_end_matches(|c: char| c.is_ascii_digit() || "+-".contains(c)))
 }
 
 /// Whether an atom is hydrogen of any mass.

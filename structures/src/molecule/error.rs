@@ -266,7 +266,8 @@ impl ReadError {
                 "write the file again with all columns that the wwPDB requires"
             }
             Self::UnknownElement { .. } => {
-                "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), or remove the atom"
+                "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), remove the atom, or leave its residue out with \
+                 --drop-residue NAME"
             }
             Self::UnknownChain { .. } => {
                 "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"

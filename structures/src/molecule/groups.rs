@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use serde::Serialize;
 
 use super::Atom;
+use super::other_names::known_as;
 use super::plain_names::{links_nucleotides, plain_atom_name};
 use super::residues::{is_amino_acid, is_nucleotide};
 
@@ -55,7 +56,7 @@ const GLYCANS: [&str; 30] = [
 ];
 
 /// Elements whose ions count as metals; everything not listed is none.
-const NON_METALS: [&str; 22] = [
+pub(super) const NON_METALS: [&str; 22] = [
     "H", "D", "He", "B", "C", "N", "O", "F", "Ne", "Si", "P", "S", "Cl", "Ar", "As", "Se", "Br",
     "Kr", "Te", "I", "Xe", "At",
 ];
@@ -73,11 +74,31 @@ pub(super) fn residue_key(atom: &Atom) -> ResidueKey<'_> {
     )
 }
 
-/// One residue: its key, the indices of its atoms, and its kind.
+/// One residue: its key, the name under which the tables have it, the indices of its atoms, and its kind.
 pub(super) struct Residue<'a> {
     pub(super) key: ResidueKey<'a>,
+    /// A standard amino acid's name where it is one under another (`other_names`), else its own.
+    pub(super) known_as: &'a str,
     pub(super) atoms: Vec<usize>,
     pub(super) kind: GroupKind,
+}
+
+impl<'a> Residue<'a> {
+    fn new(key: ResidueKey<'a>, members: Vec<usize>, atoms: &'a [Atom]) -> Self {
+        let names = || {
+            members.iter().filter_map(|&index| {
+                let atom = atoms.get(index)?;
+                Some((atom.name.as_str(), atom.element.as_str()))
+            })
+        };
+        let known_as = known_as(key.3, names());
+        Self {
+            key,
+            known_as,
+            kind: kind(known_as, names()),
+            atoms: members,
+        }
+    }
 }
 
 impl Residue<'_> {
@@ -117,17 +138,7 @@ pub(super) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     }
     grouped
         .into_iter()
-        .map(|(key, members)| Residue {
-            key,
-            kind: kind(
-                key.3,
-                members.iter().filter_map(|&index| {
-                    let atom = atoms.get(index)?;
-                    Some((atom.name.as_str(), atom.element.as_str()))
-                }),
-            ),
-            atoms: members,
-        })
+        .map(|(key, members)| Residue::new(key, members, atoms))
         .collect()
 }
 
@@ -139,15 +150,11 @@ pub(super) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
     for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
         let last = first + run.len();
         if let Some(atom) = run.first() {
-            runs.push(Residue {
-                key: residue_key(atom),
-                atoms: (first..last).collect(),
-                kind: kind(
-                    &atom.residue_name,
-                    run.iter()
-                        .map(|atom| (atom.name.as_str(), atom.element.as_str())),
-                ),
-            });
+            runs.push(Residue::new(
+                residue_key(atom),
+                (first..last).collect(),
+                atoms,
+            ));
         }
         first = last;
     }

@@ -31,6 +31,8 @@ pub struct LabelReport {
     pub typed_atoms: usize,
     /// Charged amino and carboxyl termini.
     pub termini: [usize; 2],
+    /// Cysteines and histidines whose charge follows from a metal that they bind.
+    pub metal_bound: usize,
     /// Breaks in a chain where residues are missing; their ends carry no charge.
     pub gaps: usize,
     /// Residues whose charges are not known and count as zero (of a modified residue: those of its side chain), by name.
@@ -42,27 +44,24 @@ pub struct LabelReport {
 impl Molecule {
     /// Charges at a pH, and contact types.
     pub fn labels(&self, ph: f64) -> Labels {
-        let types = self
-            .atoms
-            .iter()
-            .map(|atom| atom_types(&atom.residue_name, &atom.name));
-        let (contact_types, atom_kinds) = types
-            .map(|types| {
-                (
-                    types.map(|types| types.contact),
-                    types.map(|types| types.kind),
-                )
-            })
-            .unzip();
         let mut labels = Labels {
             charges: vec![0.0; self.atoms.len()],
-            contact_types,
-            atom_kinds,
+            contact_types: vec![None; self.atoms.len()],
+            atom_kinds: vec![None; self.atoms.len()],
             report: LabelReport::default(),
         };
         let groups = residues(&self.atoms);
+        let metals = self.metals(&groups);
         for residue in &groups {
-            self.charge(residue, ph, &mut labels);
+            let bound = self.metal_bound(residue, &metals);
+            labels.report.metal_bound += usize::from(bound.is_some());
+            self.charge(residue, bound, ph, &mut labels);
+            for &index in &residue.atoms {
+                if let Some(types) = atom_types(residue.known_as, &self.atoms[index].name) {
+                    labels.contact_types[index] = Some(types.contact);
+                    labels.atom_kinds[index] = Some(types.kind);
+                }
+            }
             if !residue
                 .atoms
                 .iter()
@@ -81,15 +80,15 @@ impl Molecule {
         labels
     }
 
-    /// Charges of one residue within a chain.
-    fn charge(&self, residue: &Residue<'_>, ph: f64, labels: &mut Labels) {
-        let name = residue.key.3;
+    /// Charges of one residue within a chain; `bound` is its state where a metal decides that.
+    fn charge(&self, residue: &Residue<'_>, bound: Option<&str>, ph: f64, labels: &mut Labels) {
+        let name = residue.known_as;
         let mut known = true;
         match residue.kind {
             GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
                 let backbone = if is_proline(name) { PROLINE } else { BACKBONE };
                 self.set(residue, backbone, labels);
-                match side_chain(name, ph) {
+                match side_chain(bound.unwrap_or(name), ph) {
                     Some(charges) => self.set(residue, charges, labels),
                     None => known = false,
                 }

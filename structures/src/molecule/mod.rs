@@ -35,12 +35,16 @@ mod error;
 mod groups;
 mod input;
 mod labels;
+mod ligands;
+mod metal_sites;
 mod missing;
+mod other_names;
 mod parse;
 mod peptidase;
 mod peptidase_families;
 mod plain_names;
 mod policy;
+mod pseudo_atoms;
 mod radii;
 mod read;
 mod report;
@@ -67,10 +71,12 @@ pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
 pub use missing::MissingResidues;
 pub use peptidase::ActiveSite;
-pub use plain_names::{plain_atom_name, plain_residue_name};
+pub use plain_names::{plain_atom_name, plain_residue_name, standard_residue_name};
 pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
 pub use read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
-pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
+pub use report::{
+    Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, OtherName, ReadReport,
+};
 pub use residue_selection::{ResidueSelection, UnknownResidues};
 pub use source::file_bytes;
 pub use write::{

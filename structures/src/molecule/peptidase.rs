@@ -44,7 +44,7 @@ impl Molecule {
         let chains: Vec<(&[Residue<'_>], Vec<char>)> = peptides(&groups)
             .into_iter()
             .map(|chain| {
-                let letters = chain.iter().map(|residue| letter(residue.key.3));
+                let letters = chain.iter().map(|residue| letter(residue.known_as));
                 (chain, letters.collect())
             })
             .collect();

@@ -2,12 +2,27 @@
 
 use std::borrow::Cow;
 
+use super::Atom;
+use super::other_names::known_as;
 use super::residues::{base, parent};
 
 /// The plain name of a residue: of a protonation state or a disulphide's half the amino acid (`CYX` is `CYS`), of a nucleotide its base as one
 /// letter (`DA`, `ADE` and `RA3` are `A`). Of all others the name itself.
 pub fn plain_residue_name(residue_name: &str) -> &str {
     base(residue_name).unwrap_or_else(|| parent(residue_name))
+}
+
+/// The name under which the tables have a residue: that of a standard amino acid, or of a state of one, where its atoms or its name show that it
+/// is one under another name (`DAL` is `ALA`, `NHIE` is `HIE`); else its own.
+pub fn standard_residue_name<'a>(
+    residue_name: &'a str,
+    atoms: impl IntoIterator<Item = &'a Atom>,
+) -> &'a str {
+    let atoms = atoms.into_iter();
+    known_as(
+        residue_name,
+        atoms.map(|atom| (atom.name.as_str(), atom.element.as_str())),
+    )
 }
 
 /// The plain name of an atom: `'` where files from before the remediation of 2007 have `*` in a sugar, and `OP1` for their `O1P`.

@@ -25,6 +25,8 @@ pub struct ReadOptions {
     pub assembly: Option<String>,
     /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
     pub min_plddt: Option<f64>,
+    /// Residues of these names are left out, whatever they are.
+    pub drop_residue: Vec<String>,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
     #[serde(skip)]
     pub keep: Vec<String>,
@@ -40,6 +42,7 @@ impl Default for ReadOptions {
             model: 1,
             assembly: None,
             min_plddt: None,
+            drop_residue: Vec::new(),
             keep: Vec::new(),
         }
     }

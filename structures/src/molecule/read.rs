@@ -1,11 +1,15 @@
 //! Reading a structure, from path to molecule.
 
+use std::collections::BTreeMap;
+
 use super::error::ReadError;
 use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
 use super::policy::ReadOptions;
-use super::report::{ChainCount, DropKind, GroupCount, ReadReport, count};
-use super::{Atom, Format, Molecule, assembly, completeness, parse, radii, select, sieve, source};
+use super::report::{ChainCount, DropKind, GroupCount, OtherName, ReadReport, count};
+use super::{
+    Atom, Format, Molecule, assembly, completeness, ligands, parse, radii, select, sieve, source,
+};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,8 +161,10 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
     report
         .warnings
         .extend(completeness::warnings(&atoms, &groups));
+    report.warnings.extend(ligands::warning(&atoms, &groups));
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
+    report.other_names = count_other_names(&groups);
     let all_atom = atoms.iter().any(Atom::is_hydrogen);
     let mut all_radii = vec![0.0; atoms.len()];
     for group in &groups {
@@ -167,7 +173,7 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
                 *radius = if all_atom {
                     radii::all_atom_radius(&atom.element)
                 } else {
-                    radii::radius(&atom.residue_name, &atom.name, &atom.element, group.kind)
+                    radii::radius(group.known_as, &atom.name, &atom.element, group.kind)
                 };
             }
         }
@@ -223,4 +229,19 @@ fn count_groups(groups: &[Residue<'_>]) -> Vec<GroupCount> {
     }
     counts.sort_by(|a, b| (a.kind, &a.name).cmp(&(b.kind, &b.name)));
     counts
+}
+
+fn count_other_names(groups: &[Residue<'_>]) -> Vec<OtherName> {
+    let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
+    for group in groups.iter().filter(|group| group.known_as != group.key.3) {
+        *counts.entry((group.key.3, group.known_as)).or_default() += 1;
+    }
+    let counts = counts.into_iter();
+    counts
+        .map(|((name, read_as), residues)| OtherName {
+            name: name.to_owned(),
+            read_as: read_as.to_owned(),
+            residues,
+        })
+        .collect()
 }

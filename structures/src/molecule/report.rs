@@ -24,6 +24,8 @@ pub struct ReadReport {
     pub chains: Vec<ChainCount>,
     /// Groups kept that are not standard amino acids, by name.
     pub groups: Vec<GroupCount>,
+    /// Standard amino acids under other names, and what they were read as.
+    pub other_names: Vec<OtherName>,
     /// What was dropped, by kind; kinds with nothing dropped are left out.
     pub dropped: Vec<Dropped>,
     /// What was altered.
@@ -60,6 +62,17 @@ pub struct GroupCount {
     pub atoms: usize,
 }
 
+/// A standard amino acid under another name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct OtherName {
+    /// Residue name in the file.
+    pub name: String,
+    /// What it was read as: a standard residue's name, or that of a state of one (`HIE`, `ASH`).
+    pub read_as: String,
+    /// How many of it.
+    pub residues: usize,
+}
+
 /// Why atoms were dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -72,6 +85,10 @@ pub enum DropKind {
     Hydrogen,
     /// Water.
     Water,
+    /// Residues that are not wanted, by name.
+    Residue,
+    /// Records that are no atoms: marks of membranes and pockets, sites without mass.
+    PseudoAtom,
     /// Buffer and cryo additives.
     Additive,
     /// Other HETATM records, where these are not wanted.
@@ -91,7 +108,7 @@ pub struct Dropped {
     pub kind: DropKind,
     /// Atoms dropped.
     pub atoms: usize,
-    /// Residues (for chains and additives: chain or residue names) with the number of atoms dropped from each.
+    /// Residues (for chains: their names, for sites without mass: the atoms') with the number of atoms dropped from each.
     pub names: BTreeMap<String, usize>,
 }
 

@@ -48,6 +48,18 @@ impl fmt::Display for ReadReport {
             }));
             write!(f, "\n  kept: {groups}")?;
         }
+        if !self.other_names.is_empty() {
+            let residues = self.other_names.iter().map(|other| other.residues).sum();
+            let names =
+                list(self.other_names.iter().map(|other| {
+                    format!("{} {} as {}", other.residues, other.name, other.read_as)
+                }));
+            write!(
+                f,
+                "\n  {} under other names read: {names}",
+                count(residues, "residue")
+            )?;
+        }
         if !self.dropped.is_empty() {
             write!(
                 f,
@@ -109,6 +121,12 @@ fn show_dropped(dropped: &Dropped) -> String {
         DropKind::Assembly => format!("{atoms} of chains outside the assembly ({})", names()),
         DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
         DropKind::Water => count(dropped.atoms, "water atom"),
+        DropKind::Residue => format!("{atoms} of residues not wanted ({})", names()),
+        DropKind::PseudoAtom => {
+            let each = dropped.names.iter();
+            let each = each.map(|(name, count)| format!("{count} {name}"));
+            format!("{} ({})", count(dropped.atoms, "pseudo-atom"), list(each))
+        }
         DropKind::Additive => format!("{atoms} of additives ({})", names()),
         DropKind::Hetatm => format!("{atoms} of HETATM records ({})", names()),
         DropKind::AlternateLocation => format!("{atoms} of alternate locations"),

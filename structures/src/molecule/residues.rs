@@ -162,10 +162,27 @@ pub(super) fn parent(residue_name: &str) -> &str {
         "ASH" | "ASX" | "ASPP" => "ASP",
         "GLH" | "GLX" | "GLUP" => "GLU",
         "CYX" | "CYM" | "CYZ" | "CYN" => "CYS",
-        "HID" | "HIE" | "HIP" | "HIM" | "HSD" | "HSE" | "HSP" => "HIS",
+        "HID" | "HIE" | "HIP" | "HIM" | "HSD" | "HSE" | "HSP" | "HIS-" => "HIS",
         "LYN" | "LYP" | "LSN" => "LYS",
         "ARN" => "ARG",
+        // AMBER's TYM; that name is another molecule's, which only atoms tell from it (`other_names`).
+        "TYR-" => "TYR",
         other => other,
+    }
+}
+
+/// The residues of the table above, with their side chains.
+pub(super) fn side_chains() -> impl Iterator<Item = (&'static str, SideChain)> {
+    SIDE_CHAINS.into_iter()
+}
+
+/// The name that the tables have for an atom of an amino acid: `CD1` for isoleucine's `CD` of CHARMM and GROMOS, `OXT` for the oxygens of a
+/// chain's end as CHARMM, GROMOS, GROMACS and old entries name them.
+pub(super) fn standard_atom_name<'a>(residue_name: &str, atom_name: &'a str) -> &'a str {
+    match (parent(residue_name), atom_name) {
+        ("ILE", "CD") => "CD1",
+        (_, "OT1" | "OT2" | "O1" | "O2" | "OT" | "OC1" | "OC2") => "OXT",
+        (_, other) => other,
     }
 }
 
@@ -183,18 +200,18 @@ pub(super) fn is_amino_acid(residue_name: &str) -> bool {
     side_chain(residue_name).is_some()
 }
 
-/// Bases of the nucleotides, as one letter, from the names in use: `DA`, `A`, `ADE`, `RA5`, ...
+/// Bases of the nucleotides, as one letter, from the names in use: `DA`, `A`, `ADE`, `RA5`, `DADE`, ...
 pub(super) fn base(residue_name: &str) -> Option<&str> {
-    let letter = match residue_name {
+    let name = residue_name
+        .strip_suffix(['3', '5', 'N'])
+        .unwrap_or(residue_name);
+    let letter = match name.strip_prefix(['D', 'R']).unwrap_or(name) {
         "ADE" => "A",
         "CYT" => "C",
         "GUA" => "G",
         "THY" => "T",
         "URA" | "URI" => "U",
-        other => {
-            let other = other.strip_suffix(['3', '5', 'N']).unwrap_or(other);
-            other.strip_prefix(['D', 'R']).unwrap_or(other)
-        }
+        letter => letter,
     };
     matches!(letter, "A" | "C" | "G" | "T" | "U" | "I").then_some(letter)
 }
@@ -233,11 +250,7 @@ pub(super) fn is_water(residue_name: &str) -> bool {
 
 /// Atom type of a heavy atom of an amino acid's backbone, whatever the residue.
 pub(super) fn backbone_type(atom_name: &str) -> Option<AtomType> {
-    let name = match atom_name {
-        // Terminal oxygens as CHARMM, GROMACS and old entries name them.
-        "OT1" | "OT2" | "O1" | "O2" | "OT" => "OXT",
-        other => other,
-    };
+    let name = standard_atom_name("", atom_name);
     BACKBONE
         .iter()
         .find(|(backbone, _)| *backbone == name)
@@ -247,10 +260,7 @@ pub(super) fn backbone_type(atom_name: &str) -> Option<AtomType> {
 /// Atom type of a heavy atom of a standard amino acid.
 pub(super) fn amino_acid_type(residue_name: &str, atom_name: &str) -> Option<AtomType> {
     let side_chain = side_chain(residue_name)?;
-    let name = match (parent(residue_name), atom_name) {
-        ("ILE", "CD") => "CD1",
-        (_, other) => other,
-    };
+    let name = standard_atom_name(residue_name, atom_name);
     side_chain
         .iter()
         .find(|(atom, _)| *atom == name)
@@ -338,7 +348,9 @@ mod tests {
 
     #[test]
     fn nucleotides_under_old_and_new_names() {
-        for name in ["A", "DA", "ADE", "RA5", "DG3", "U", "DT", "I"] {
+        for name in [
+            "A", "DA", "ADE", "RA5", "DG3", "U", "DT", "I", "DADE", "RURA",
+        ] {
             assert!(is_nucleotide(name), "{name}");
         }
         // Alanine's one-letter neighbours and ligands that only look alike.

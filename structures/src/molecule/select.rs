@@ -9,12 +9,13 @@ use super::alternate::choose;
 use super::confidence::{Provenance, weigh};
 use super::elements::{self, Origin};
 use super::error::ReadError;
+use super::other_names::known_as;
 use super::parse::Parsed;
 use super::policy::{Hetatm, Hydrogens, ReadOptions, Waters};
 use super::report::{DropKind, ReadReport, show_chain};
 use super::residues::{is_amino_acid, is_water};
 use super::sieve::NameColumn;
-use super::{Atom, report};
+use super::{Atom, pseudo_atoms, report};
 
 /// Applies all selections and notes in the report what they dropped.
 ///
@@ -30,29 +31,45 @@ pub(super) fn select(
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
     let wanted = wanted_chains(file, &parsed, chains)?;
-    let aligned = keeps_alignment(&parsed);
+    let other_names = other_names(&parsed);
+    let (aligned, pseudo_atoms) = {
+        let names = parsed.iter().zip(&other_names);
+        let known: Vec<&str> = names
+            .map(|(record, other)| other.as_deref().unwrap_or(&record.carried.residue_name))
+            .collect();
+        (
+            keeps_alignment(&parsed, &known),
+            pseudo_atoms::find(&parsed, &known),
+        )
+    };
     let modified = match options.hetatm {
         Hetatm::Drop => modified_residues(&parsed),
         Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
     };
     let mut atoms = Vec::with_capacity(parsed.len());
-    for record in parsed {
+    let facts = other_names.into_iter().zip(pseudo_atoms);
+    for (record, (other_name, pseudo_atom)) in parsed.into_iter().zip(facts) {
         let carried = &record.carried;
         let name = carried.residue_name.as_str();
+        let known = other_name.as_deref().unwrap_or(name);
         let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
         let resolved = || {
             let column = &carried.element;
-            elements::resolve(name, &record.name, column, carried.name_column, aligned)
+            elements::resolve(known, &record.name, column, carried.name_column, aligned)
         };
         let is_elsewhere = wanted
             .as_ref()
             .is_some_and(|wanted| !wanted.contains(&carried.chain));
         let unwanted = if is_elsewhere {
             Some((DropKind::Chain, show_chain(&carried.chain)))
-        } else if is_kept_by_name {
+        } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
+            Some((DropKind::Residue, name))
+        } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
+            Some((DropKind::Water, name))
+        } else if let Some(of) = &pseudo_atom {
+            Some((DropKind::PseudoAtom, of.as_str()))
+        } else if is_kept_by_name || is_water(name) {
             None
-        } else if is_water(name) {
-            (options.waters == Waters::Drop).then_some((DropKind::Water, name))
         } else if options.hetatm != Hetatm::Keep && is_additive(name) {
             Some((DropKind::Additive, name))
         } else if options.hetatm == Hetatm::Drop
@@ -122,6 +139,36 @@ pub(super) fn atom(record: Parsed, element: &str) -> Atom {
     }
 }
 
+/// Of each record the name under which the tables have its residue, where that is not its own.
+fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
+    let mut residues: HashMap<(&str, i64, Option<char>, &str), Vec<usize>> = HashMap::new();
+    for (index, record) in parsed.iter().enumerate() {
+        let carried = &record.carried;
+        let name = carried.residue_name.as_str();
+        if !(is_amino_acid(name) || is_water(name)) {
+            let number = (carried.residue_number, carried.insertion_code);
+            let key = (carried.chain.as_str(), number.0, number.1, name);
+            residues.entry(key).or_default().push(index);
+        }
+    }
+    let mut found = vec![None; parsed.len()];
+    for ((.., name), records) in residues {
+        let atoms = records.iter().filter_map(|&index| parsed.get(index));
+        let known = known_as(
+            name,
+            atoms.map(|record| (record.name.as_str(), record.carried.element.as_str())),
+        );
+        if known != name {
+            for index in records {
+                if let Some(place) = found.get_mut(index) {
+                    *place = Some(known.to_owned());
+                }
+            }
+        }
+    }
+    found
+}
+
 /// What tells a residue from all others.
 type ResidueKey = (String, i64, Option<char>, String);
 
@@ -184,10 +231,12 @@ fn wanted_chains(
     Ok(Some(wanted))
 }
 
-/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank.
-fn keeps_alignment(parsed: &[Parsed]) -> bool {
+/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known` are the names under which the
+/// tables have the records' residues.
+fn keeps_alignment(parsed: &[Parsed], known: &[&str]) -> bool {
     parsed
         .iter()
-        .filter(|record| record.name == "CA" && is_amino_acid(&record.carried.residue_name))
-        .all(|record| record.carried.name_column == NameColumn::Blank)
+        .zip(known)
+        .filter(|(record, known)| record.name == "CA" && is_amino_acid(known))
+        .all(|(record, _)| record.carried.name_column == NameColumn::Blank)
 }

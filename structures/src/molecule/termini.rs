@@ -48,7 +48,7 @@ impl Molecule {
             if begins && !self.capped(&caps, residue, "N") && ph < TERMINI_PKA[0] {
                 self.charge_amino(residue, labels);
             }
-            let last_oxygen = ["OXT", "OT2", "O2"]
+            let last_oxygen = ["OXT", "OT2", "O2", "OC2"]
                 .iter()
                 .any(|name| self.atom(residue, name).is_some());
             if (ends || last_oxygen) && !self.capped(&caps, residue, "C") && ph >= TERMINI_PKA[1] {
@@ -130,7 +130,7 @@ impl Molecule {
         if residue.key.3 == "PCA" {
             return;
         }
-        let charges = if is_proline(residue.key.3) {
+        let charges = if is_proline(residue.known_as) {
             PROLINE_TERMINUS
         } else {
             AMINO_TERMINUS
@@ -146,7 +146,10 @@ impl Molecule {
             .copied()
             .filter(|&index| {
                 let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
-                matches!(name, "O" | "OXT" | "OT1" | "OT2" | "O1" | "O2")
+                matches!(
+                    name,
+                    "O" | "OXT" | "OT1" | "OT2" | "O1" | "O2" | "OC1" | "OC2"
+                )
             })
             .collect();
         if oxygens.is_empty() {

@@ -1,0 +1,130 @@
+//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it already.
+
+use std::collections::HashSet;
+
+use knotdock_structures::molecule::Molecule;
+
+use super::alignment::align;
+use super::residues::{Residue, Residues};
+
+/// Fewest residues of a chain that counts.
+const LEAST_RESIDUES: usize = 5;
+
+/// Fewest kinds of residues of such a chain: what has fewer is like any other of its kind.
+const LEAST_KINDS: usize = 3;
+
+/// Least share of the residues of the longer chain that are equal in two copies of one chain, which may lack loops.
+const LEAST_EQUAL: f64 = 0.8;
+
+/// The chains of one molecule that the other holds, and the other's further chains.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SharedChains {
+    /// Chain names: the one's, and the other's of the same sequence.
+    pub pairs: Vec<(String, String)>,
+    /// Names of the other's chains that are none of these; none where its chains share one name.
+    pub rest: Vec<String>,
+}
+
+/// The chains of `one` that `other` holds, if it holds all of them and further chains beside. Two copies of one molecule, as of a homodimer, hold
+/// nothing beside one another.
+pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
+    let one = Residues::of(one, "molecule").ok()?;
+    let other = Residues::of(other, "molecule").ok()?;
+    let chains = |residues: &Residues| -> Vec<usize> {
+        let long = |&place: &usize| residues.segments[place].members.len() >= LEAST_RESIDUES;
+        (0..residues.segments.len()).filter(long).collect()
+    };
+    let mut free = chains(&other);
+    let wanted = chains(&one);
+    if wanted.is_empty() || free.len() <= wanted.len() {
+        return None;
+    }
+    let mut shared = Vec::new();
+    for segment in wanted {
+        let own = members(&one, segment);
+        let mut best: Option<(usize, usize)> = None;
+        for (index, &place) in free.iter().enumerate() {
+            let equal = equal_residues(&own, &members(&other, place));
+            if equal > best.map_or(0, |(equal, _)| equal) {
+                best = Some((equal, index));
+            }
+        }
+        let (_, index) = best?;
+        shared.push((segment, free.remove(index)));
+    }
+    let pairs: Vec<(String, String)> = shared
+        .into_iter()
+        .map(|(own, place)| (name(&one, own), name(&other, place)))
+        .collect();
+    let mut rest: Vec<String> = Vec::new();
+    for chain in free.into_iter().map(|place| name(&other, place)) {
+        if !rest.contains(&chain) {
+            rest.push(chain);
+        }
+    }
+    if rest
+        .iter()
+        .any(|chain| pairs.iter().any(|(_, taken)| taken == chain))
+    {
+        rest.clear();
+    }
+    Some(SharedChains { pairs, rest })
+}
+
+fn members(residues: &Residues, segment: usize) -> Vec<&Residue> {
+    let members = residues.segments[segment].members.iter();
+    members.map(|&member| &residues.residues[member]).collect()
+}
+
+/// Equal residues of two chains of one sequence, loops that one of them lacks aside; 0 of other chains.
+fn equal_residues(one: &[&Residue], other: &[&Residue]) -> usize {
+    let least = LEAST_EQUAL * one.len().max(other.len()) as f64;
+    let kinds: HashSet<&str> = one.iter().map(|residue| residue.kind.as_str()).collect();
+    if kinds.len() < LEAST_KINDS || (one.len().min(other.len()) as f64) < least {
+        return 0;
+    }
+    let equal = align(one, other).pairs.len();
+    if equal as f64 >= least { equal } else { 0 }
+}
+
+/// A segment's chain name; further segments of one name carry a number behind it.
+fn name(residues: &Residues, segment: usize) -> String {
+    let name = &residues.segments[segment].name;
+    match name.rsplit_once('/') {
+        Some((chain, piece)) if piece.bytes().all(|byte| byte.is_ascii_digit()) => chain.to_owned(),
+        _ => name.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_molecules::{chain_of, molecule, numbers, random_sequence};
+    use super::*;
+
+    fn of(chains: &[(&str, &str)]) -> Molecule {
+        let atoms = chains
+            .iter()
+            .flat_map(|(name, letters)| chain_of(name, letters, &numbers(1, letters.len())));
+        molecule(atoms.collect())
+    }
+
+    /// A user docked an inhibitor against the file of its complex: it was docked beside itself, without a word.
+    #[test]
+    fn a_complex_holds_its_own_chains() {
+        let [enzyme, inhibitor] =
+            [(1, 80), (2, 30)].map(|(seed, length)| random_sequence(seed, length));
+        let complex = of(&[("E", &enzyme), ("I", &inhibitor)]);
+        // The unbound form lacks its last residues.
+        let ligand = of(&[("A", &inhibitor[..27])]);
+        let found = shared_chains(&ligand, &complex).unwrap();
+        assert_eq!(found.pairs, [("A".to_owned(), "I".to_owned())]);
+        assert_eq!(found.rest, ["E"]);
+        // Two chains of one name cannot be told apart by it.
+        let merged = of(&[("A", &enzyme), ("A", &inhibitor)]);
+        assert_eq!(shared_chains(&ligand, &merged).unwrap().rest, [""; 0]);
+        assert_eq!(shared_chains(&of(&[("E", &enzyme)]), &ligand), None);
+        // Copies of one molecule are a homodimer's halves.
+        assert_eq!(shared_chains(&complex, &complex), None);
+        assert_eq!(shared_chains(&ligand, &ligand), None);
+    }
+}
