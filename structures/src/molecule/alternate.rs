@@ -1,10 +1,10 @@
 //! One alternate location a residue.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::Atom;
 use super::policy::AlternateLocation;
 use super::report::{AlternateChoice, DropKind, ReadReport};
+use super::{Atom, squared_distance};
 
 /// What tells a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
 /// (microheterogeneity), and one choice must hold for both names.
@@ -14,7 +14,68 @@ fn position(atom: &Atom) -> Position<'_> {
     (&atom.chain, atom.residue_number, atom.insertion_code)
 }
 
-/// Keeps, in each residue, the atoms without an alternate location and those of one: the one named by the policy where it is
+/// Stands for the blank location where atoms without a letter are one of the alternatives.
+const UNNAMED: char = ' ';
+
+/// Largest distance in Å of an atom from itself at another location: the tip of an arginine turned over.
+const MAX_DISPLACEMENT: f64 = 12.0;
+
+/// The same where the other location has another residue: backbones stay where they are.
+const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
+
+/// Indices of the atoms without a location that are alternatives to lettered ones: those that a lettered atom of the same residue and name shows
+/// elsewhere, and all of a residue beside lettered atoms of another residue on the same backbone.
+fn unnamed_alternatives(atoms: &[Atom]) -> HashSet<usize> {
+    let mut lettered: HashMap<Position<'_>, Vec<&Atom>> = HashMap::new();
+    for atom in atoms
+        .iter()
+        .filter(|atom| atom.alternate_location.is_some())
+    {
+        lettered.entry(position(atom)).or_default().push(atom);
+    }
+    let mut unnamed = HashSet::new();
+    if lettered.is_empty() {
+        return unnamed;
+    }
+    // Residues of which one atom shows that they are an alternative as a whole.
+    let mut whole: HashSet<(Position<'_>, &str)> = HashSet::new();
+    let blank = || {
+        let all = atoms.iter().enumerate();
+        all.filter(|(_, atom)| atom.alternate_location.is_none())
+    };
+    for (index, atom) in blank() {
+        let Some(there) = lettered.get(&position(atom)) else {
+            continue;
+        };
+        let within = |other: &Atom, limit: f64| {
+            other.name == atom.name
+                && squared_distance(other.position, atom.position) <= limit * limit
+        };
+        let is_same = |other: &&Atom| other.residue_name == atom.residue_name;
+        if there
+            .iter()
+            .any(|other| is_same(other) && within(other, MAX_DISPLACEMENT))
+        {
+            unnamed.insert(index);
+        }
+        if !there.iter().any(is_same)
+            && there
+                .iter()
+                .any(|other| within(other, MAX_BACKBONE_DISPLACEMENT))
+        {
+            whole.insert((position(atom), &atom.residue_name));
+        }
+    }
+    for (index, atom) in blank() {
+        if whole.contains(&(position(atom), atom.residue_name.as_str())) {
+            unnamed.insert(index);
+        }
+    }
+    unnamed
+}
+
+/// Keeps, in each residue, the atoms without an alternate location and those of one. Atoms without one beside the same atoms with a letter are
+/// the blank one's. Kept is the one named by the policy where it is
 /// offered, otherwise the location of the highest occupancy summed over its atoms, the alphabetically first of equals.
 pub(super) fn choose(
     atoms: Vec<Atom>,
@@ -24,8 +85,13 @@ pub(super) fn choose(
 ) -> Vec<Atom> {
     let mut offers: HashMap<Position<'_>, BTreeMap<char, f64>> = HashMap::new();
     let mut order: Vec<Position<'_>> = Vec::new();
-    for atom in &atoms {
-        if let Some(location) = atom.alternate_location {
+    let unnamed = unnamed_alternatives(&atoms);
+    let location_of = |index: usize, atom: &Atom| {
+        let is_unnamed = unnamed.contains(&index);
+        atom.alternate_location.or(is_unnamed.then_some(UNNAMED))
+    };
+    for (index, atom) in atoms.iter().enumerate() {
+        if let Some(location) = location_of(index, atom) {
             let offered = offers.entry(position(atom)).or_insert_with(|| {
                 order.push(position(atom));
                 BTreeMap::new()
@@ -64,9 +130,10 @@ pub(super) fn choose(
     }
     let keep: Vec<bool> = atoms
         .iter()
-        .map(|atom| {
-            atom.alternate_location.is_none()
-                || atom.alternate_location == chosen.get(&position(atom)).copied()
+        .enumerate()
+        .map(|(index, atom)| match location_of(index, atom) {
+            None => true,
+            location => location == chosen.get(&position(atom)).copied(),
         })
         .collect();
     let mut kept = Vec::with_capacity(atoms.len());

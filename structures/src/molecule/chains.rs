@@ -114,6 +114,7 @@ impl Molecule {
             Between::Bond
         } else if chain != next_chain
             || next_number < number
+            || self.has_last_oxygen(before)
             || missing > MOST_RESIDUES
             || apart > LONGEST
             || (missing != counted && apart > LONGEST_UNCOUNTED)

@@ -92,6 +92,14 @@ pub enum ReadError {
         /// Number of characters on the line.
         length: usize,
     },
+    /// A line holds an atom record that does not stand in the columns of the format.
+    #[error("the line holds an atom record that does not stand in the columns of the PDB format")]
+    MisplacedRecord {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line of the record.
+        line: usize,
+    },
     /// The mmCIF text breaks the rules of the format.
     #[error("the mmCIF text is broken: {what}")]
     BrokenCif {
@@ -154,6 +162,14 @@ pub enum ReadError {
         /// Names of those that the file has.
         present: Vec<String>,
     },
+    /// A biological assembly was asked for of a file whose models are read as one molecule.
+    #[error(
+        "--assembly builds copies of one model, and --model all reads all models as one molecule"
+    )]
+    AssemblyOfModels {
+        /// The path as given.
+        file: PathBuf,
+    },
     /// What the file says of its biological assemblies cannot be understood.
     #[error("the biological assemblies cannot be built: {what}")]
     BrokenAssembly {
@@ -211,12 +227,14 @@ impl ReadError {
             | Self::NoAtoms { file }
             | Self::Field { file, .. }
             | Self::ShortRecord { file, .. }
+            | Self::MisplacedRecord { file, .. }
             | Self::BrokenCif { file, .. }
             | Self::MissingColumn { file, .. }
             | Self::UnknownElement { file, .. }
             | Self::UnknownChain { file, .. }
             | Self::UnknownModel { file, .. }
             | Self::UnknownAssembly { file, .. }
+            | Self::AssemblyOfModels { file }
             | Self::BrokenAssembly { file, .. }
             | Self::EmptySelection { file, .. }
             | Self::Parser { file, .. } => Some(file),
@@ -228,6 +246,7 @@ impl ReadError {
         match self {
             Self::Field { line, .. }
             | Self::ShortRecord { line, .. }
+            | Self::MisplacedRecord { line, .. }
             | Self::BrokenCif { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::UnknownElement { line, .. } => Some(*line),
@@ -261,6 +280,9 @@ impl ReadError {
             Self::ShortRecord { .. } => {
                 "fetch the file again: it may be cut short; coordinates stand in columns 31 to 54"
             }
+            Self::MisplacedRecord { .. } => {
+                "begin it with ATOM or HETATM in column 1, in capitals, with blanks and no tabs, and put x, y and z into columns 31-38, 39-46 and 47-54"
+            }
             Self::BrokenCif { .. } => "fetch the file again, or check the text about this line",
             Self::MissingColumn { .. } => {
                 "write the file again with all columns that the wwPDB requires"
@@ -272,11 +294,12 @@ impl ReadError {
                 "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"
             }
             Self::UnknownModel { .. } => {
-                "ask for one of the models that the file has; they count from 1 in the order of the file"
+                "ask for one of the models that the file has, which count from 1 in the order of the file, or for --model all"
             }
             Self::UnknownAssembly { .. } => {
                 "ask for one of these, or leave --assembly out to read the coordinates as they stand"
             }
+            Self::AssemblyOfModels { .. } => "leave one of the two out",
             Self::BrokenAssembly { .. } => {
                 "fetch the file again, or leave --assembly out to read the coordinates as they stand"
             }

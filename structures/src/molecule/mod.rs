@@ -36,6 +36,8 @@ mod groups;
 mod input;
 mod labels;
 mod missing;
+mod models;
+mod overlap;
 mod parse;
 mod peptidase;
 mod peptidase_families;
@@ -66,9 +68,12 @@ pub use groups::GroupKind;
 pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
 pub use missing::MissingResidues;
+pub use models::JoinedModels;
 pub use peptidase::ActiveSite;
 pub use plain_names::{plain_atom_name, plain_residue_name};
-pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
+pub use policy::{
+    AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
+};
 pub use read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
 pub use report::{Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, ReadReport};
 pub use residue_selection::{ResidueSelection, UnknownResidues};

@@ -3,9 +3,12 @@
 use super::error::ReadError;
 use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
-use super::policy::ReadOptions;
+use super::policy::{ModelChoice, ReadOptions};
 use super::report::{ChainCount, DropKind, GroupCount, ReadReport, count};
-use super::{Atom, Format, Molecule, assembly, completeness, parse, radii, select, sieve, source};
+use super::{
+    Atom, Format, Molecule, assembly, completeness, models, overlap, parse, radii, select, sieve,
+    source,
+};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,19 +91,21 @@ fn read_telling(
         file: file.to_path_buf(),
     };
     let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
-    let sieve = |model: usize| match format {
+    let sieve = |model: ModelChoice| match format {
         Format::Pdb => sieve::pdb::sieve(file, &source.text, model),
         Format::Mmcif => sieve::mmcif::sieve(file, &source.text, model),
     };
     let mut sieved = sieve(options.model)?;
-    if sieved.models == 1 && options.model != 1 {
-        sieved = sieve(1)?;
-    } else if sieved.models > 1 && !(1..=sieved.models).contains(&options.model) {
-        return Err(ReadError::UnknownModel {
-            file: file.to_path_buf(),
-            model: options.model,
-            models: sieved.models,
-        });
+    if let ModelChoice::Number(model) = options.model {
+        if sieved.models == 1 && model != 1 {
+            sieved = sieve(ModelChoice::Number(1))?;
+        } else if sieved.models > 1 && !(1..=sieved.models).contains(&model) {
+            return Err(ReadError::UnknownModel {
+                file: file.to_path_buf(),
+                model,
+                models: sieved.models,
+            });
+        }
     }
     drop(source.text);
     if sieved.carried.is_empty() {
@@ -119,7 +124,10 @@ fn read_telling(
         compressed: source.compressed,
         ..ReadReport::default()
     };
-    report.altered.models_ignored = sieved.models.saturating_sub(1);
+    let is_joined = options.model == ModelChoice::All && sieved.models > 1;
+    if !is_joined {
+        report.altered.models_ignored = sieved.models.saturating_sub(1);
+    }
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
@@ -129,12 +137,45 @@ fn read_telling(
             count(sieved.other_blocks.len(), "further data block")
         ));
     }
+    if let Some(first) = sieved.displaced.first() {
+        report.warnings.push(format!(
+            "{} out of the columns of the format, the first at line {first}: moved and read",
+            count(sieved.displaced.len(), "atom record")
+        ));
+    }
     let provenance = sieved.provenance;
+    let (models, ignored) = (sieved.models, std::mem::take(&mut sieved.ignored));
     let assemblies = std::mem::take(&mut sieved.assemblies);
     let mut parsed = parse::parse(file, format, sieved)?;
+    let relation = match models {
+        0 | 1 => models::Relation::Single,
+        _ => {
+            let read = parsed.iter();
+            let read = read.map(|record| (record.carried.model, record.exact.position));
+            models::relation(read.chain(ignored.iter().copied()))
+        }
+    };
+    if is_joined {
+        if options.assembly.is_some() && !assemblies.list.is_empty() {
+            return Err(ReadError::AssemblyOfModels {
+                file: file.to_path_buf(),
+            });
+        }
+        if relation == models::Relation::Alternatives {
+            report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
+        }
+        let (joined, told) = models::join(parsed, relation);
+        (parsed, report.joined_models) = (joined, Some(told));
+    } else if relation == models::Relation::Parts {
+        report.altered.models_are_parts = true;
+        let read = parsed.first().map_or(1, |record| record.carried.model);
+        report
+            .warnings
+            .push(models::warning(models, read, ignored.len()));
+    }
     if let Some(wanted) = &options.assembly {
         parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
-    } else if spec.chains.is_none() {
+    } else if spec.chains.is_none() && !is_joined {
         report
             .warnings
             .extend(assembly::warning(&parsed, &assemblies));
@@ -157,6 +198,7 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
     report
         .warnings
         .extend(completeness::warnings(&atoms, &groups));
+    report.warnings.extend(overlap::warnings(&atoms, &groups));
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
     let all_atom = atoms.iter().any(Atom::is_hydrogen);

@@ -8,6 +8,7 @@ use super::Format;
 use super::assembly::BuiltAssembly;
 use super::confidence::Confidence;
 use super::groups::GroupKind;
+use super::models::JoinedModels;
 
 /// What reading one file did.
 ///
@@ -30,6 +31,8 @@ pub struct ReadReport {
     pub altered: Altered,
     /// The biological assembly that was built; nothing where the coordinates were taken as they stand.
     pub assembly: Option<BuiltAssembly>,
+    /// The models that were read as one molecule; nothing where one was read.
+    pub joined_models: Option<JoinedModels>,
     /// How sure the prediction is that the file holds; nothing where it holds none.
     pub confidence: Option<Confidence>,
     /// What the user should know before trusting the result.
@@ -108,6 +111,9 @@ pub struct Altered {
     pub alternate_locations: Vec<AlternateChoice>,
     /// Models that were not read.
     pub models_ignored: usize,
+    /// Whether all models lie beside one another, so that those that were not read are parts of what was.
+    #[serde(skip)]
+    pub models_are_parts: bool,
 }
 
 /// The alternate location chosen for a residue.

@@ -74,6 +74,17 @@ impl fmt::Display for ReadReport {
                 )?;
             }
         }
+        if let Some(joined) = &self.joined_models {
+            write!(
+                f,
+                "\n  {} read as one molecule",
+                count(joined.models, "model")
+            )?;
+            if joined.on_axes > 0 {
+                let atoms = count(joined.on_axes, "atom");
+                write!(f, "; {atoms} in one place in several kept once")?;
+            }
+        }
         if let Some(confidence) = &self.confidence {
             let told_by = match confidence.told_by {
                 ToldBy::Header => "as the file says",

@@ -9,6 +9,7 @@ use flate2::read::MultiGzDecoder;
 use super::Format;
 use super::error::ReadError;
 use super::sieve::pdb::is_atom;
+use super::sieve::{Displaced, displaced};
 
 /// The first two bytes of every gzip stream (RFC 1952, section 2.3.1).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -97,7 +98,7 @@ pub(super) fn format_of(path: &Path, text: &str) -> Option<Format> {
 
 fn by_content(text: &str) -> Option<Format> {
     for (_, line) in lines(text) {
-        if is_atom(line) {
+        if is_atom(line) || matches!(displaced(line), Some(Displaced::Moved(_))) {
             return Some(Format::Pdb);
         }
         let starts = |word: &str| {

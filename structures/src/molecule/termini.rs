@@ -1,8 +1,8 @@
 //! Ends of peptide chains, which are charged where nothing is bonded to them.
 //!
 //! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
-//! and begin another if the chain's name changes or the numbering has no gap; where numbers are missing, so are residues, and the
-//! loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
+//! and begin another if the chain's name changes, the first has its second carboxyl oxygen, or the numbering has no gap; else, where numbers are
+//! missing, so are residues, and the loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
 
 use super::cells::Cells;
 use super::charge_table::{
@@ -42,16 +42,18 @@ impl Molecule {
         let caps = self.caps(groups);
         for (place, residue) in peptide.iter().enumerate() {
             let before = place.checked_sub(1).and_then(|place| peptide.get(place));
-            let after = peptide.get(place + 1);
-            let begins = before.is_none_or(|before| self.separate(before, residue));
+            let after = peptide.get(place + 1).copied();
+            let begins = before.is_none_or(|before| {
+                self.separate(before, residue) || self.follows_an_end(before, residue, after)
+            });
             let ends = after.is_none_or(|after| self.separate(residue, after));
             if begins && !self.capped(&caps, residue, "N") && ph < TERMINI_PKA[0] {
                 self.charge_amino(residue, labels);
             }
-            let last_oxygen = ["OXT", "OT2", "O2"]
-                .iter()
-                .any(|name| self.atom(residue, name).is_some());
-            if (ends || last_oxygen) && !self.capped(&caps, residue, "C") && ph >= TERMINI_PKA[1] {
+            if (ends || self.has_last_oxygen(residue))
+                && !self.capped(&caps, residue, "C")
+                && ph >= TERMINI_PKA[1]
+            {
                 self.charge_carboxyl(residue, labels);
             }
             let broken = before.is_some_and(|before| {
@@ -75,6 +77,40 @@ impl Molecule {
         let (chain, number, ..) = before.key;
         let (next_chain, next_number, ..) = after.key;
         apart && (chain != next_chain || next_number <= number.saturating_add(1))
+    }
+
+    /// Whether a residue has the second oxygen of a carboxyl end.
+    pub(super) fn has_last_oxygen(&self, residue: &Residue<'_>) -> bool {
+        ["OXT", "OT2", "O2"]
+            .iter()
+            .any(|name| self.atom(residue, name).is_some())
+    }
+
+    /// Whether a residue begins a chain because the one before it ended one, whatever their numbers: that has its second oxygen. Ligands that have
+    /// an amino acid's atoms follow chains, too; of these none but standard residues in ATOM records and those bonded to the next are of a chain.
+    fn follows_an_end(
+        &self,
+        before: &Residue<'_>,
+        residue: &Residue<'_>,
+        after: Option<&Residue<'_>>,
+    ) -> bool {
+        let bonded = |from: &Residue<'_>, to: &Residue<'_>| {
+            self.distance(from, to)
+                .is_some_and(|distance| distance <= BOND)
+        };
+        let is_of_chain = || {
+            let first = residue
+                .atoms
+                .first()
+                .and_then(|&index| self.atoms.get(index));
+            residue.kind == GroupKind::AminoAcid && first.is_some_and(|atom| !atom.hetero)
+                || after.is_some_and(|after| bonded(residue, after))
+        };
+        self.has_last_oxygen(before)
+            && self
+                .distance(before, residue)
+                .is_some_and(|distance| distance > BOND)
+            && is_of_chain()
     }
 
     /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
