@@ -17,7 +17,7 @@ use serde_json::json;
 use super::arguments::not_negative;
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, check_used};
+use super::input::Input;
 use super::output_file::{check_output, is_same};
 use super::reading_arguments::ReadingArguments;
 
@@ -83,10 +83,10 @@ impl Inspect {
             let (input, listed) = Input::read_listed(&self.file, &reading)?;
             (input, Some(listed))
         } else {
-            (Input::read(&self.file, &reading)?, None)
+            let [input] = Input::read_all([&self.file], &reading)?;
+            (input, None)
         };
         let molecule = &input.molecule;
-        check_used(&reading, [molecule])?;
         if let (Some(file), Some(format)) = (&self.write, format) {
             fits(format, molecule).map_err(|error| {
                 Failure::input(error)

@@ -13,7 +13,7 @@ use super::arguments::at_least_one;
 use super::console::Console;
 use super::dock_report::{loose_told, site_told};
 use super::failure::Failure;
-use super::input::{Input, check_used};
+use super::input::Input;
 use super::memory;
 use super::reading_arguments::ReadingArguments;
 use super::search_arguments::KernelArguments;
@@ -73,14 +73,10 @@ impl Score {
         };
         let reading = self.reading.options();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
-        let read = |text: &String, what: &str| -> Result<_, Failure> {
-            let input = Input::read(text, &reading)?;
-            console.say(format!("{what}: {}", input.molecule.report));
-            Ok(input.molecule)
-        };
-        let receptor = read(&self.receptor, "Receptor")?;
-        let ligand = read(&self.ligand, "Ligand")?;
-        check_used(&reading, [&receptor, &ligand])?;
+        let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
+        let [receptor, ligand] = inputs.map(|input| input.molecule);
+        console.say(format!("Receptor: {}", receptor.report));
+        console.say(format!("Ligand: {}", ligand.report));
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;

@@ -5,8 +5,8 @@
 mod pdb_text;
 
 use knotdock_structures::molecule::{
-    AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, Molecule, ReadError, ReadOptions,
-    Waters, read, read_listed,
+    AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, ModelChoice, Molecule, ReadError,
+    ReadOptions, Waters, read, read_listed,
 };
 use pdb_text::{ATOM, Line, names, text};
 
@@ -153,7 +153,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     let second = read_by(
         &file,
         &ReadOptions {
-            model: 2,
+            model: ModelChoice::Number(2),
             ..ReadOptions::default()
         },
     )
@@ -162,7 +162,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     assert_eq!(second.report.atoms_dropped(), 2);
     // A ligand of one model beside a receptor of several.
     let options = ReadOptions {
-        model: 2,
+        model: ModelChoice::Number(2),
         ..ReadOptions::default()
     };
     assert_eq!(read_by(&text(&[ATOM]), &options).unwrap().atoms.len(), 1);

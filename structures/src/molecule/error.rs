@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// rest, so that a caller can lay the four out as it likes.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// An input specification has a colon with no usable chain after it.
-    #[error("'{text}' names no chain after the colon")]
+    /// An input specification has a colon with no usable chain or residue after it.
+    #[error("'{text}' names no chain and no residues after the colon")]
     Specification {
         /// The specification as given.
         text: String,
@@ -55,6 +55,16 @@ pub enum ReadError {
         file: PathBuf,
         /// The largest size that is read, in bytes.
         limit: u64,
+    },
+    /// The file is an archive, of another compression than gzip, or of another format of molecules.
+    #[error("this is {what}, not a PDB or mmCIF file")]
+    Foreign {
+        /// The path as given.
+        file: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// What to do with it.
+        remedy: &'static str,
     },
     /// The file holds neither PDB nor mmCIF records.
     #[error("this is not a structure: no PDB record and no mmCIF data block was found")]
@@ -142,6 +152,18 @@ pub enum ReadError {
         /// Author names of the chains in the file, in file order.
         present: Vec<String>,
     },
+    /// Residues were asked for that a chain of the file does not have.
+    #[error("there is no residue {part}; chain {chain} of the file has {} to {}", numbers[0], numbers[1])]
+    UnknownResidues {
+        /// The path as given.
+        file: PathBuf,
+        /// The residues asked for, as `A:1-50`.
+        part: String,
+        /// The chain, `_` where it has no name.
+        chain: String,
+        /// Smallest and largest residue number of the chain.
+        numbers: [i64; 2],
+    },
     /// A model was asked for that the file does not have.
     #[error("there is no model {model}; the file has {models}")]
     UnknownModel {
@@ -223,6 +245,7 @@ impl ReadError {
             | Self::Unreadable { file, .. }
             | Self::Gzip { file, .. }
             | Self::TooLarge { file, .. }
+            | Self::Foreign { file, .. }
             | Self::NotAStructure { file }
             | Self::NoAtoms { file }
             | Self::Field { file, .. }
@@ -232,6 +255,7 @@ impl ReadError {
             | Self::MissingColumn { file, .. }
             | Self::UnknownElement { file, .. }
             | Self::UnknownChain { file, .. }
+            | Self::UnknownResidues { file, .. }
             | Self::UnknownModel { file, .. }
             | Self::UnknownAssembly { file, .. }
             | Self::AssemblyOfModels { file }
@@ -259,9 +283,11 @@ impl ReadError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Specification { .. } | Self::Unnamed { .. } => {
-                "write FILE to read all chains, or FILE:H,L to pick chains by their author names"
+                "write FILE to read all chains, FILE:H,L to pick chains by their author names, or FILE:H:1-120,L to pick residues"
             }
-            Self::Missing { .. } => "check the path; chains are picked with FILE:H,L",
+            Self::Missing { .. } => {
+                "check the path; chains are picked with FILE:H,L and residues with FILE:H:1-120"
+            }
             Self::Directory { .. } => "name one .pdb, .ent, .cif or .mmcif file, plain or .gz",
             Self::Unreadable { .. } => {
                 "check the permissions of the file and that it is on a readable disk"
@@ -270,6 +296,7 @@ impl ReadError {
                 "fetch the file again, or unpack it with gunzip to see where it breaks"
             }
             Self::TooLarge { .. } => "cut the file down to the chains and the model to be docked",
+            Self::Foreign { remedy, .. } => remedy,
             Self::NotAStructure { .. } => {
                 "give a PDB or mmCIF file, plain or gzip-compressed; BinaryCIF, XML and other compressions are not read"
             }
@@ -291,7 +318,10 @@ impl ReadError {
                 "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), or remove the atom"
             }
             Self::UnknownChain { .. } => {
-                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"
+                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name; residues are picked as in FILE:A:1-120"
+            }
+            Self::UnknownResidues { .. } => {
+                "pick residues that the file has, by the author's numbers: FILE:A:1-120 or FILE:A:52A, with all parts of a list after commas"
             }
             Self::UnknownModel { .. } => {
                 "ask for one of the models that the file has, which count from 1 in the order of the file, or for --model all"

@@ -25,6 +25,9 @@ pub struct ReadOptions {
     pub assembly: Option<String>,
     /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
     pub min_plddt: Option<f64>,
+    /// Whether the B column is pLDDT wherever it can be, as the user says who gives a least one and no file is known as a prediction.
+    #[serde(skip)]
+    pub trust_plddt: bool,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
     #[serde(skip)]
     pub keep: Vec<String>,
@@ -40,6 +43,7 @@ impl Default for ReadOptions {
             model: ModelChoice::default(),
             assembly: None,
             min_plddt: None,
+            trust_plddt: false,
             keep: Vec::new(),
         }
     }

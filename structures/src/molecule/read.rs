@@ -6,8 +6,8 @@ use super::input::InputSpec;
 use super::policy::{ModelChoice, ReadOptions};
 use super::report::{ChainCount, DropKind, GroupCount, ReadReport, count};
 use super::{
-    Atom, Format, Molecule, assembly, completeness, models, overlap, parse, radii, select, sieve,
-    source,
+    Atom, Format, Molecule, assembly, completeness, foreign, models, overlap, parse, radii, scope,
+    select, sieve, source,
 };
 
 /// An atom of the model that was read, and what became of it.
@@ -87,8 +87,15 @@ fn read_telling(
 ) -> Result<Molecule, ReadError> {
     let file = spec.path.as_path();
     let source = source::unpack(file, bytes)?;
-    let not_a_structure = || ReadError::NotAStructure {
-        file: file.to_path_buf(),
+    let not_a_structure = || match foreign::by_name(file) {
+        Some(foreign) => ReadError::Foreign {
+            file: file.to_path_buf(),
+            what: foreign.what,
+            remedy: foreign.remedy,
+        },
+        None => ReadError::NotAStructure {
+            file: file.to_path_buf(),
+        },
     };
     let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
     let sieve = |model: ModelChoice| match format {
@@ -199,6 +206,7 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         .warnings
         .extend(completeness::warnings(&atoms, &groups));
     report.warnings.extend(overlap::warnings(&atoms, &groups));
+    report.warnings.extend(scope::warnings(&atoms, &groups));
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
     let all_atom = atoms.iter().any(Atom::is_hydrogen);

@@ -9,6 +9,7 @@ use super::assembly::BuiltAssembly;
 use super::confidence::Confidence;
 use super::groups::GroupKind;
 use super::models::JoinedModels;
+use super::wanted::CutEnd;
 
 /// What reading one file did.
 ///
@@ -35,6 +36,12 @@ pub struct ReadReport {
     pub joined_models: Option<JoinedModels>,
     /// How sure the prediction is that the file holds; nothing where it holds none.
     pub confidence: Option<Confidence>,
+    /// Ends that a selection of residues cut out of chains: they stand for bonds.
+    #[serde(skip)]
+    pub(super) cut_ends: Vec<CutEnd>,
+    /// Why the B column is taken for no pLDDT where a least one is given.
+    #[serde(skip)]
+    pub no_confidence: Option<String>,
     /// What the user should know before trusting the result.
     pub warnings: Vec<String>,
 }
@@ -69,6 +76,8 @@ pub struct GroupCount {
 pub enum DropKind {
     /// Chains that were not asked for.
     Chain,
+    /// Residues that were not asked for, of chains of which others were.
+    OtherResidue,
     /// Chains that have no part in the biological assembly asked for.
     Assembly,
     /// Hydrogen and deuterium: united-atom radii stand for them.

@@ -89,6 +89,7 @@ impl fmt::Display for ReadReport {
             let told_by = match confidence.told_by {
                 ToldBy::Header => "as the file says",
                 ToldBy::Values => "told by its B column",
+                ToldBy::User => "as --min-plddt says",
             };
             write!(
                 f,
@@ -117,6 +118,7 @@ fn show_dropped(dropped: &Dropped) -> String {
     let atoms = count(dropped.atoms, "atom");
     match dropped.kind {
         DropKind::Chain => format!("{atoms} of other chains ({})", names()),
+        DropKind::OtherResidue => format!("{atoms} of other residues of {}", names()),
         DropKind::Assembly => format!("{atoms} of chains outside the assembly ({})", names()),
         DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
         DropKind::Water => count(dropped.atoms, "water atom"),

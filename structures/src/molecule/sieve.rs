@@ -19,6 +19,7 @@ mod assembly_items;
 mod assembly_remark;
 mod atom_site;
 mod displaced;
+mod element_column;
 pub(super) mod mmcif;
 pub(super) mod pdb;
 mod provenance;

@@ -16,7 +16,7 @@ use super::{Atom, Molecule, squared_distance};
 pub(super) const BOND: f64 = 2.5;
 
 /// Longest distance in Å of a terminal atom from what is bonded to it.
-const LONGEST_CAP: f64 = 1.7;
+pub(super) const LONGEST_CAP: f64 = 1.7;
 
 /// An atom that may be bonded to the end of a chain.
 struct Cap<'a> {
@@ -81,7 +81,7 @@ impl Molecule {
 
     /// Whether a residue has the second oxygen of a carboxyl end.
     pub(super) fn has_last_oxygen(&self, residue: &Residue<'_>) -> bool {
-        ["OXT", "OT2", "O2"]
+        ["OXT", "OT2", "O2", "OC2"]
             .iter()
             .any(|name| self.atom(residue, name).is_some())
     }
@@ -113,12 +113,20 @@ impl Molecule {
             && is_of_chain()
     }
 
-    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
-    /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
+    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; a residue that was not picked; or the
+    /// other end of a residue that stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
     pub(super) fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
         let Some(end) = self.atom(residue, name) else {
             return true;
         };
+        if self
+            .report
+            .cut_ends
+            .iter()
+            .any(|cut| cut.is(residue.key, name))
+        {
+            return true;
+        }
         caps.cells.around(end.position).any(|index| {
             let cap = &caps.atoms[index];
             let fits = cap

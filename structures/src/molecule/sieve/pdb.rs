@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::assembly_remark::Remark;
 use super::displaced::{Displaced, displaced, shifted};
+use super::element_column::element;
 use super::provenance::is_measured;
 use super::residue_columns::{has_wide_chains, residue_and_chain, residue_number};
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
@@ -286,7 +287,7 @@ fn atom(
         residue_number,
         insertion_code: Some(insertion).filter(|code| *code != ' '),
         alternate_location: alternate,
-        element: slice(76, 78).trim().to_string(),
+        element: element(record).to_string(),
         name_column: if name.starts_with(' ') {
             NameColumn::Blank
         } else {
