@@ -25,7 +25,8 @@ use super::reading_arguments::ReadingArguments;
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
-    /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too.
     #[arg(value_name = "FILE")]
     file: String,
     /// Write every atom of the model to this CSV file, kept or dropped, with the reason.

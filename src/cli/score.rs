@@ -24,7 +24,8 @@ use super::search_arguments::KernelArguments;
 /// of the exact value or of the scale, the best score at this rotation.
 #[derive(Args, Debug)]
 pub struct Score {
-    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
     /// The molecule that moves, likewise.

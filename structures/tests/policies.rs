@@ -133,7 +133,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     let file = [model(7, 1.0), model(3, 2.0), model(9, 3.0)].concat();
     let place = |model: usize| {
         let options = ReadOptions {
-            model,
+            model: ModelChoice::Number(model),
             ..ReadOptions::default()
         };
         read_by(&file, &options).map(|molecule| molecule.atoms[0].position[0])
@@ -181,7 +181,7 @@ fn models_of_mmcif_go_by_their_column() {
     );
     for (model, expected) in [(1, [1.0, 3.0]), (2, [2.0, 4.0])] {
         let options = ReadOptions {
-            model,
+            model: ModelChoice::Number(model),
             ..ReadOptions::default()
         };
         let molecule = read_by(&file, &options).unwrap();

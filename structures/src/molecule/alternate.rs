@@ -1,6 +1,6 @@
 //! One alternate location a residue.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use super::policy::AlternateLocation;
 use super::report::{AlternateChoice, DropKind, ReadReport};
@@ -23,17 +23,20 @@ const MAX_DISPLACEMENT: f64 = 12.0;
 /// The same where the other location has another residue: backbones stay where they are.
 const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 
-/// Indices of the atoms without a location that are alternatives to lettered ones: those that a lettered atom of the same residue and name shows
-/// elsewhere, and all of a residue beside lettered atoms of another residue on the same backbone.
-fn unnamed_alternatives(atoms: &[Atom]) -> HashSet<usize> {
-    let mut lettered: HashMap<Position<'_>, Vec<&Atom>> = HashMap::new();
-    for atom in atoms
-        .iter()
-        .filter(|atom| atom.alternate_location.is_some())
-    {
-        lettered.entry(position(atom)).or_default().push(atom);
+/// The locations of atoms that have no letter beside lettered atoms of their residue, by index: where a lettered atom of the same name is elsewhere,
+/// those of the letters that lack it, whose letter was left out, or else the blank one, to which all of a residue belongs on whose backbone
+/// letters have another residue.
+fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
+    let mut lettered: HashMap<Position<'_>, Vec<(&Atom, char)>> = HashMap::new();
+    for atom in atoms {
+        if let Some(letter) = atom.alternate_location {
+            lettered
+                .entry(position(atom))
+                .or_default()
+                .push((atom, letter));
+        }
     }
-    let mut unnamed = HashSet::new();
+    let mut unnamed = HashMap::new();
     if lettered.is_empty() {
         return unnamed;
     }
@@ -51,24 +54,30 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashSet<usize> {
             other.name == atom.name
                 && squared_distance(other.position, atom.position) <= limit * limit
         };
-        let is_same = |other: &&Atom| other.residue_name == atom.residue_name;
-        if there
-            .iter()
-            .any(|other| is_same(other) && within(other, MAX_DISPLACEMENT))
-        {
-            unnamed.insert(index);
-        }
-        if !there.iter().any(is_same)
-            && there
-                .iter()
-                .any(|other| within(other, MAX_BACKBONE_DISPLACEMENT))
+        let of_residue = |own: bool| {
+            let is_own = move |other: &Atom| (other.residue_name == atom.residue_name) == own;
+            there.iter().filter(move |(other, _)| is_own(other))
+        };
+        let letters: BTreeSet<char> = of_residue(true).map(|(_, letter)| *letter).collect();
+        let having = of_residue(true).filter(|(other, _)| within(other, MAX_DISPLACEMENT));
+        let having: BTreeSet<char> = having.map(|(_, letter)| *letter).collect();
+        if !having.is_empty() {
+            let lacking: Vec<char> = letters.difference(&having).copied().collect();
+            let own = if lacking.is_empty() {
+                vec![UNNAMED]
+            } else {
+                lacking
+            };
+            unnamed.insert(index, own);
+        } else if letters.is_empty()
+            && of_residue(false).any(|(other, _)| within(other, MAX_BACKBONE_DISPLACEMENT))
         {
             whole.insert((position(atom), &atom.residue_name));
         }
     }
     for (index, atom) in blank() {
         if whole.contains(&(position(atom), atom.residue_name.as_str())) {
-            unnamed.insert(index);
+            unnamed.insert(index, vec![UNNAMED]);
         }
     }
     unnamed
@@ -86,12 +95,15 @@ pub(super) fn choose(
     let mut offers: HashMap<Position<'_>, BTreeMap<char, f64>> = HashMap::new();
     let mut order: Vec<Position<'_>> = Vec::new();
     let unnamed = unnamed_alternatives(&atoms);
-    let location_of = |index: usize, atom: &Atom| {
-        let is_unnamed = unnamed.contains(&index);
-        atom.alternate_location.or(is_unnamed.then_some(UNNAMED))
+    let locations = |index: usize, atom: &Atom| -> Vec<char> {
+        match (atom.alternate_location, unnamed.get(&index)) {
+            (Some(letter), _) => vec![letter],
+            (None, Some(own)) => own.clone(),
+            (None, None) => Vec::new(),
+        }
     };
     for (index, atom) in atoms.iter().enumerate() {
-        if let Some(location) = location_of(index, atom) {
+        for location in locations(index, atom) {
             let offered = offers.entry(position(atom)).or_insert_with(|| {
                 order.push(position(atom));
                 BTreeMap::new()
@@ -131,9 +143,10 @@ pub(super) fn choose(
     let keep: Vec<bool> = atoms
         .iter()
         .enumerate()
-        .map(|(index, atom)| match location_of(index, atom) {
-            None => true,
-            location => location == chosen.get(&position(atom)).copied(),
+        .map(|(index, atom)| {
+            let own = locations(index, atom);
+            let chosen = chosen.get(&position(atom));
+            own.is_empty() || chosen.is_some_and(|chosen| own.contains(chosen))
         })
         .collect();
     let mut kept = Vec::with_capacity(atoms.len());

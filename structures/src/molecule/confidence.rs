@@ -19,6 +19,9 @@ use super::report::{DropKind, ReadReport, show_chain};
 /// pLDDT below which a residue is likely disordered.
 pub const LOW: f64 = 50.0;
 
+/// Share of the residues that reach the least pLDDT at least, where the user's word is taken.
+const MIN_REACHING: f64 = 0.25;
+
 /// What a file says of where its coordinates come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Provenance {
@@ -72,7 +75,7 @@ fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
     }
 }
 
-/// pLDDT, 0 to 100, of each of the residues, and how it was known.
+/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is asked for, and `trusted` says that the user's word is taken.
 ///
 /// # Errors
 /// Why the B column is taken for none.
@@ -80,7 +83,7 @@ fn values(
     atoms: &[Atom],
     residues: &[Residue<'_>],
     provenance: Provenance,
-    trusted: bool,
+    (least, trusted): (f64, bool),
 ) -> Result<(ToldBy, Vec<f64>), String> {
     let highest = atoms.iter().map(|atom| atom.b_factor);
     let highest = highest.fold(f64::NEG_INFINITY, f64::max);
@@ -92,6 +95,7 @@ fn values(
         (scale * sum / residue.atoms.len() as f64 * 1e6).round() / 1e6
     };
     let values: Vec<f64> = residues.iter().map(of_residue).collect();
+    let reaching = values.iter().filter(|value| **value >= least).count();
     let first = atoms.first().map_or(0.0, |atom| atom.b_factor);
     match contradiction(atoms, provenance) {
         Some(reason) => Err(reason),
@@ -102,6 +106,11 @@ fn values(
         None if atoms.iter().all(|atom| atom.b_factor == first) => {
             Err(format!("all B values are {first}"))
         }
+        // A partner that was measured, whose low values leave next to nothing of it.
+        None if trusted && (reaching as f64) < MIN_REACHING * values.len() as f64 => Err(format!(
+            "{reaching} of {} residues reach {least}, as of temperature factors",
+            values.len()
+        )),
         None if trusted => Ok((ToldBy::User, values)),
         None => Err("neither the file nor its B values say that they are pLDDT".to_owned()),
     }
@@ -123,13 +132,14 @@ pub(super) fn weigh(
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Vec<Atom> {
     let groups = residues(&atoms);
-    let (told_by, values) = match values(&atoms, &groups, provenance, trusted) {
-        Ok(known) => known,
-        Err(reason) => {
-            report.no_confidence = least.map(|_| reason);
-            return atoms;
-        }
-    };
+    let (told_by, values) =
+        match values(&atoms, &groups, provenance, (least.unwrap_or(0.0), trusted)) {
+            Ok(known) => known,
+            Err(reason) => {
+                report.no_confidence = least.map(|_| reason);
+                return atoms;
+            }
+        };
     if told_by == ToldBy::User {
         report.warnings.push(
             "the B values are taken for pLDDT because --min-plddt is given: neither the file nor they say so"

@@ -18,7 +18,7 @@ const UNPACK: &str =
     "unpack it and give one of its structure files, .pdb or .cif, plain or gzip-compressed";
 const GUNZIP: &str = "unpack it, and give the structure file plain or gzip-compressed";
 const CONVERT: &str =
-    "give a PDB or mmCIF file: Open Babel converts it, as in `obabel IN.sdf -O OUT.pdb`";
+    "give a PDB or mmCIF file: Open Babel converts it, as in `obabel FILE -O OUT.pdb`";
 const TOPOLOGY: &str = "give a PDB or mmCIF file: GROMACS writes one by `gmx editconf -f IN.gro -o OUT.pdb`, other programs alike";
 const TABLE: &str =
     "give a PDB or mmCIF file: the archive has every entry in mmCIF, and gemmi and PyMOL convert";

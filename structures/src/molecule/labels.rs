@@ -244,6 +244,15 @@ mod tests {
         }
         let report = merged(None);
         assert_eq!((report.termini, report.gaps), ([1, 1], 1));
+        // X-PLOR writes the oxygen before a gap, too (1TFH, the ligand of 1AHW in Docking Benchmark 5): seven residues fit into 10 Å.
+        let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
+        atoms.push(atom("OXT", "ALA", 2, [7.0, 1.0, 0.0]));
+        for mut moved in chain(&[("ALA", 10), ("ALA", 11)]) {
+            moved.position[1] += 10.0;
+            atoms.push(moved);
+        }
+        let report = labels(atoms).report;
+        assert_eq!((report.termini[0], report.gaps), (1, 1));
     }
 
     /// Ligands, metals and waters behind a chain's last oxygen have no amino end, though some have an amino acid's atoms.

@@ -10,6 +10,10 @@ use super::{Atom, squared_distance};
 /// Distance in Å below which atoms of different residues are in one place: bonded ones are more than 1.2 Å apart, hydrogens left aside.
 const ON_TOP: f64 = 0.5;
 
+/// The same of fewer than [`FEW`] atoms between two chains, which come to lie so by chance where bodies overlap.
+const IN_ONE_PLACE: f64 = 0.1;
+const FEW: usize = 3;
+
 /// The same of residues of one number and different names, which are alternatives of one place.
 const ONE_NUMBER: f64 = 1.2;
 
@@ -21,25 +25,37 @@ const SHOWN: usize = 3;
 
 /// Warnings about atoms of different residues in one place.
 pub(super) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
+    // Atoms without any place of their own have a warning of their own, or are made up.
+    let mut places = atoms.iter().map(|atom| atom.position);
+    let first = places.next();
+    if places.all(|place| Some(place) == first) {
+        return Vec::new();
+    }
     let pairs = on_top(atoms, residues);
     let mut one_number = BTreeSet::new();
-    // By the two chains: the atoms of the second on the first, and their residues.
-    let mut on: BTreeMap<(&str, &str), (usize, BTreeSet<usize>)> = BTreeMap::new();
-    for (residue, other) in pairs {
+    // By the two chains: the atoms of the second on the first, their least distance squared, and their residues.
+    let mut on: BTreeMap<(&str, &str), (usize, f64, BTreeSet<usize>)> = BTreeMap::new();
+    for (residue, other, squared) in pairs {
         let (Some(own), Some(there)) = (residues.get(residue), residues.get(other)) else {
             continue;
         };
         if is_one_number(own.key, there.key) {
             one_number.insert((other, residue));
         } else {
-            let (count, named) = on.entry((there.key.0, own.key.0)).or_default();
+            let chains = (there.key.0, own.key.0);
+            let none = || (0, f64::INFINITY, BTreeSet::new());
+            let (count, least, named) = on.entry(chains).or_insert_with(none);
             *count += 1;
+            *least = least.min(squared);
             named.insert(residue);
         }
     }
     let mut warnings: Vec<String> = on
         .iter()
-        .map(|((first, second), (atoms, named))| in_words(first, second, *atoms, named, residues))
+        .filter(|(_, (atoms, least, _))| *atoms >= FEW || *least < IN_ONE_PLACE * IN_ONE_PLACE)
+        .map(|((first, second), (atoms, _, named))| {
+            in_words(first, second, *atoms, named, residues)
+        })
         .collect();
     if !one_number.is_empty() {
         let examples = one_number
@@ -111,8 +127,8 @@ fn is_one_number(a: ResidueKey<'_>, b: ResidueKey<'_>) -> bool {
     (a.0, a.1, a.2) == (b.0, b.1, b.2) && a.3 != b.3
 }
 
-/// For each atom that lies on one of an earlier residue, its own residue and that one.
-fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize)> {
+/// For each atom that lies on one of an earlier residue, its own residue, that one, and the square of their distance (Å²).
+fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> {
     let mut residue_of = vec![usize::MAX; atoms.len()];
     for (index, residue) in residues.iter().enumerate() {
         for &atom in &residue.atoms {
@@ -140,9 +156,10 @@ fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize)> {
         let mut others = cells.around(atom.position).filter_map(|index| {
             let (there, &other) = (atoms.get(index)?, residue_of.get(index)?);
             let squared = squared_distance(there.position, atom.position);
-            (other < residue && is_on(residue, other, squared)).then_some(other)
+            (other < residue && is_on(residue, other, squared)).then_some((other, squared))
         });
-        found.extend(others.next().map(|other| (residue, other)));
+        let first = others.next();
+        found.extend(first.map(|(other, squared)| (residue, other, squared)));
     }
     found
 }
@@ -191,6 +208,19 @@ mod tests {
             warned[0].starts_with("30 atoms of chain B lie on atoms of chain A"),
             "{warned:?}"
         );
+        // Bodies that overlap have an atom on another by chance; an ion given twice is in one place.
+        let ion = |x: f64| {
+            let mut ion = chain("C", "ZN", 1..2, 0.0);
+            ion.truncate(1);
+            ion[0].position[0] = 4.0 + x;
+            ion
+        };
+        assert!(of(&[first.clone(), ion(0.3)]).is_empty());
+        let warned = of(&[first.clone(), ion(0.0)]);
+        assert!(
+            warned[0].starts_with("1 atom of chain C lies on atoms of chain A"),
+            "{warned:?}"
+        );
         // Two names at one number, on one another and a little apart.
         for y in [0.0, 0.9] {
             let warned = of(&[first.clone(), chain("A", "SER", 5..6, y)]);
@@ -223,6 +253,9 @@ mod tests {
         for atom in &mut atoms {
             atom.position = [0.0; 3];
         }
+        assert!(of(std::slice::from_ref(&atoms)).is_empty());
+        let last = atoms.len() - 1;
+        atoms[last].position = [9.0; 3];
         assert_eq!(of(&[atoms]).len(), 1);
     }
 }

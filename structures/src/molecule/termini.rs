@@ -1,7 +1,7 @@
 //! Ends of peptide chains, which are charged where nothing is bonded to them.
 //!
 //! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
-//! and begin another if the chain's name changes, the first has its second carboxyl oxygen, or the numbering has no gap; else, where numbers are
+//! and begin another if the chain's name changes, the first has its second carboxyl oxygen and the gap in the numbering does not fit, or there is none; else, where numbers are
 //! missing, so are residues, and the loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
 
 use super::cells::Cells;
@@ -86,8 +86,9 @@ impl Molecule {
             .any(|name| self.atom(residue, name).is_some())
     }
 
-    /// Whether a residue begins a chain because the one before it ended one, whatever their numbers: that has its second oxygen. Ligands that have
-    /// an amino acid's atoms follow chains, too; of these none but standard residues in ATOM records and those bonded to the next are of a chain.
+    /// Whether a residue begins a chain because the one before it ended one: that has its second oxygen, and no residues that the numbers leave out
+    /// fit between. Some programs write such an oxygen before a gap. Ligands that have an amino acid's atoms follow chains, too; of these none but
+    /// standard residues in ATOM records and those bonded to the next are of a chain.
     fn follows_an_end(
         &self,
         before: &Residue<'_>,
@@ -107,9 +108,9 @@ impl Molecule {
                 || after.is_some_and(|after| bonded(residue, after))
         };
         self.has_last_oxygen(before)
-            && self
-                .distance(before, residue)
-                .is_some_and(|distance| distance > BOND)
+            && self.distance(before, residue).is_some_and(|distance| {
+                distance > BOND && !Self::may_be_gap(before, residue, distance)
+            })
             && is_of_chain()
     }
 

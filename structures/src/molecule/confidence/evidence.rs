@@ -32,8 +32,8 @@ const LOW_TAIL: f64 = 0.1;
 /// By how many standard deviations side chains lie at most above their backbones; of refined structures mostly 0.1 to 0.5.
 const MAX_TIPS: f64 = 0.1;
 
-/// Least correlation of the value with the number of atoms about; of refined structures mostly -0.3 to -0.7.
-const MIN_PACKING: f64 = -0.25;
+/// Least correlation of the value with the number of atoms about; of refined structures mostly -0.35 to -0.7.
+const MIN_PACKING: f64 = -0.3;
 
 /// Distance in Å within which atoms are about one.
 const ABOUT: f64 = 6.0;
@@ -71,7 +71,7 @@ fn tells_by_atom(
     mean_of_residues: f64,
     scale: f64,
 ) -> bool {
-    if mean_of_residues <= TELLING_MEAN_BY_ATOM || atoms.iter().any(|atom| atom.occupancy != 1.0) {
+    if mean_of_residues <= TELLING_MEAN_BY_ATOM {
         return false;
     }
     let mut values: Vec<f64> = atoms.iter().map(|atom| scale * atom.b_factor).collect();
