@@ -242,9 +242,24 @@ impl UnknownResidues {
             format!("{chain}:{first}-{last}")
         });
         let mut text = chains.collect::<Vec<_>>().join(", ");
-        if let (Some(_), Some((chain, _))) = (range(&self.part), self.present.first_key_value()) {
-            let (part, chain) = (&self.part, show_chain(chain));
-            text += &format!("; for residue {part} of chain {chain} write {chain}:{part}");
+        let (chain, residue) = match self.part.split_once(':') {
+            Some((chain, residue)) => (Some(chain), residue),
+            None => (None, self.part.as_str()),
+        };
+        // The chain is left out, or is another than the only one.
+        let is_elsewhere = chain.is_some_and(|chain| {
+            let is_there = self
+                .present
+                .keys()
+                .any(|name| show_chain(name) == show_chain(chain));
+            !is_there && self.present.len() == 1
+        });
+        if let Some((own, _)) = self.present.first_key_value()
+            && range(residue).is_some()
+            && (chain.is_none() || is_elsewhere)
+        {
+            let own = show_chain(own);
+            text += &format!("; for residue {residue} of chain {own} write {own}:{residue}");
         }
         text
     }
@@ -318,6 +333,15 @@ mod tests {
             "{said}"
         );
         assert!(chosen("H,52").unwrap_err().starts_with("52 of "));
+        // Another chain than the only one.
+        let mut only = molecule();
+        only.atoms.truncate(4);
+        let unknown = |text: &str| only.selected(&text.parse().unwrap()).unwrap_err();
+        assert_eq!(
+            unknown("B:52").present(),
+            "H:51-53; for residue 52 of chain H write H:52"
+        );
+        assert_eq!(unknown("H:99").present(), "H:51-53");
         // A chain of that name is meant.
         let mut named = molecule();
         named.atoms[4].chain = "52".to_owned();
