@@ -45,6 +45,7 @@ FORCE_FIELD_IONS = {"CLA": "Cl", "POT": "K", "SOD": "Na", "CAL": "Ca", "CES": "C
 
 # Files that differ for a reason. Part of the path: why.
 MEANT = {
+    "Tests/PDB/disordered.pdb": "of CZ one location has no letter: it belongs to A, which lacks it, where the rules here keep it beside B's",
     "pdb1tw7_step3_charmm2namd.pdb": "residue 10000 has its fifth digit in the column of the insertion code; gemmi reads 1000 with code 0",
     "pdb1tw7_step3_charmm2namd_doubled_hex.pdb": "residue numbers in hexadecimal; gemmi reads the digits before the first letter",
     "nucl_res.pdb": "made-up residues RA, RC and so on, whose CA stands where calcium does; gemmi goes by the place, here nucleotides have carbon",

@@ -212,6 +212,172 @@ fn an_assembly_is_written_and_read_again() {
     assert!(!folder.join("all.cif").exists());
 }
 
+/// A molecule of two models that lie side by side: the ligand, and itself moved along x.
+fn two_models() -> String {
+    let moved = molecules::ligand().replace("END\n", "");
+    let moved = moved.lines().map(|line| {
+        let x: f64 = line[30..38].trim().parse().unwrap();
+        format!("{}{:>8.3}{}\n", &line[..30], x + 12.0, &line[38..])
+    });
+    let first = molecules::ligand().replace("END\n", "");
+    format!(
+        "MODEL        1\n{first}ENDMDL\nMODEL        2\n{}ENDMDL\nEND\n",
+        moved.collect::<String>()
+    )
+}
+
+/// Found by a user: of an assembly in models half was docked. All models are read where they are asked for, by every command.
+#[test]
+fn all_models_are_recorded_and_followed() {
+    let folder = place();
+    let folder = folder.path();
+    fs::write(folder.join("dimer.pdb1"), two_models()).unwrap();
+    let told = json(folder, "inspect dimer.pdb1 --json");
+    assert_eq!(told["input"]["atoms"], 60);
+    let warnings = told["input"]["report"]["warnings"].to_string();
+    assert!(warnings.contains("--model all"), "{warnings}");
+    let told = json(
+        folder,
+        "inspect dimer.pdb1:A-2 --model all --atoms atoms.csv --json",
+    );
+    assert_eq!(told["input"]["atoms"], 60);
+
+    let run = "dock receptor.pdb dimer.pdb1 --model all --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    succeed(folder, run.split_whitespace());
+    let recorded = |name: &str| -> Value {
+        serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
+    };
+    let first = recorded("run");
+    assert_eq!(first["options"]["model"], "all");
+    let ligand = &first["inputs"]["ligand"];
+    assert_eq!(ligand["atoms"], 120);
+    assert_eq!(
+        ligand["report"]["joined_models"],
+        serde_json::json!({"models": 2, "on_axes": 0})
+    );
+    succeed(
+        folder,
+        "dock --from run/run.json -o again --quiet".split_whitespace(),
+    );
+    succeed(
+        folder,
+        "complex run --rank 1 -o out --quiet".split_whitespace(),
+    );
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
+    assert_eq!(recorded("again")["options"], first["options"]);
+    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    let matched = json(folder, "evaluate run --native native.pdb --json");
+    assert_eq!(matched["match"], first["match"]);
+
+    let pairs = "name,receptor,ligand,model,rotations\nfirst,receptor.pdb,dimer.pdb1,all,20\n";
+    fs::write(folder.join("pairs.csv"), pairs).unwrap();
+    succeed(folder, "batch pairs.csv -o runs --quiet".split_whitespace());
+    assert_eq!(recorded("runs/first")["options"]["model"], "all");
+    assert_eq!(recorded("runs/first")["inputs"]["ligand"]["atoms"], 120);
+
+    // Two files of one model have none to join.
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args("dock receptor.pdb ligand.pdb --model all".split_whitespace())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("--model all is for files of several models"),
+        "{said}"
+    );
+}
+
+/// The user's word on pLDDT is taken where no file is known as a prediction, and a measured partner is left alone where one is.
+#[test]
+fn the_users_word_on_plddt_is_taken_and_followed() {
+    let folder = place();
+    let folder = folder.path();
+    // pLDDT 22, 27 ... 77: a mean of 49.5, by which nothing tells.
+    let low = predicted().lines().fold(String::new(), |text, line| {
+        let line = match line
+            .get(60..66)
+            .and_then(|value| value.trim().parse::<f64>().ok())
+        {
+            Some(value) => format!("{}{:>6.2}{}", &line[..60], value - 20.0, &line[66..]),
+            None => line.to_owned(),
+        };
+        text + &line + "\n"
+    });
+    fs::write(folder.join("low.pdb"), &low).unwrap();
+    let told = json(folder, "inspect low.pdb --min-plddt 50 --json");
+    assert_eq!(told["input"]["report"]["confidence"]["told_by"], "user");
+    assert_eq!(told["input"]["atoms"], 30);
+    let warnings = told["input"]["report"]["warnings"].to_string();
+    assert!(
+        warnings.contains("because --min-plddt is given"),
+        "{warnings}"
+    );
+
+    let run = "dock receptor.pdb low.pdb --min-plddt 50 --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
+    succeed(folder, run.split_whitespace());
+    let text = fs::read(folder.join("run/run.json")).unwrap();
+    let first: Value = serde_json::from_slice(&text).unwrap();
+    let inputs = &first["inputs"];
+    assert_eq!(inputs["ligand"]["report"]["confidence"]["told_by"], "user");
+    // All B values of the receptor are 10, which is no pLDDT.
+    assert_eq!(inputs["receptor"]["report"]["confidence"], Value::Null);
+    let matched = json(folder, "evaluate run --native native.pdb --json");
+    assert_eq!(matched["match"], first["match"]);
+    let named = "evaluate run --ligand low.pdb --min-plddt 50 --native native.pdb --json";
+    assert_eq!(json(folder, named)["match"], first["match"]);
+
+    // Beside a model that is known as one, what may be measured stays.
+    let beside =
+        "dock low.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 0 -o beside --quiet";
+    succeed(folder, beside.split_whitespace());
+    let text = fs::read(folder.join("beside/run.json")).unwrap();
+    let inputs = serde_json::from_slice::<Value>(&text).unwrap()["inputs"].clone();
+    assert_eq!(inputs["receptor"]["atoms"], 60);
+    assert_eq!(inputs["ligand"]["atoms"], 50);
+}
+
+/// Residues of a chain are docked, and recorded as they were picked.
+#[test]
+fn picked_residues_are_recorded_and_followed() {
+    let folder = place();
+    let folder = folder.path();
+    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --attract-ligand A:2,3,4-6 --rotations 20 --write-top 1 -o run --quiet";
+    succeed(folder, run.split_whitespace());
+    let text = fs::read(folder.join("run/run.json")).unwrap();
+    let first: Value = serde_json::from_slice(&text).unwrap();
+    let inputs = &first["inputs"];
+    assert_eq!(
+        inputs["receptor"]["chains"],
+        serde_json::json!(["A:3-12", "B"])
+    );
+    assert_eq!(inputs["receptor"]["atoms"], 5 * 24);
+    assert_eq!(inputs["ligand"]["atoms"], 5 * 6);
+    assert_eq!(first["options"]["attract_ligand"], "A:2,3,4-6");
+    succeed(
+        folder,
+        "dock --from run/run.json -o again --quiet".split_whitespace(),
+    );
+    succeed(
+        folder,
+        "complex run --rank 1 -o out --quiet".split_whitespace(),
+    );
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
+    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder)
+        .args("dock receptor.pdb ligand.pdb --attract-ligand 5".split_whitespace())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("write A:5"), "{said}");
+}
+
 /// Options that would do nothing are no answer to who asked for them.
 #[test]
 fn what_would_do_nothing_is_refused() {
@@ -225,7 +391,7 @@ fn what_would_do_nothing_is_refused() {
     let options = [
         (
             "--min-plddt 50",
-            "--min-plddt is for predicted models",
+            "no B values here can be pLDDT: all B values are 10",
             "_ma_qa_metric",
         ),
         (

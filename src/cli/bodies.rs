@@ -17,7 +17,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 use super::console::Console;
 use super::failure::Failure;
 use super::idle_options::refuse_of_meshes;
-use super::input::{Input, check_used, folders_of, label};
+use super::input::{Input, folders_of, label};
 use super::mesh_input::{MeshInput, is_mesh};
 use super::reading_arguments::READING_OPTIONS;
 
@@ -72,17 +72,7 @@ impl Bodies {
     fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
         match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
-            [false, false] => {
-                let first = Input::of(receptor, reading)?;
-                // Twice the same, as of a ring, may be a pipe, which can be read but once.
-                let second = match ligand == receptor {
-                    true => first.clone(),
-                    false => Input::of(ligand, reading)?,
-                };
-                let inputs = [first, second];
-                check_used(reading, inputs.iter().map(|input| &input.molecule))?;
-                Ok(Self::Molecules(Box::new(inputs)))
-            }
+            [false, false] => Ok(Self::Molecules(Box::new(Input::all(&specs, reading)?))),
             [true, true] if *reading != ReadOptions::default() => Err(Failure::input(format!(
                 "{READING_OPTIONS} belong to molecules, and these are meshes"
             ))

@@ -25,8 +25,8 @@ use super::search_arguments::{RANKING, SearchArguments, TRADE_OFFS};
 /// same bytes for any number of threads.
 #[derive(Args, Debug)]
 pub struct Dock {
-    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names) or a mesh (.stl, .obj,
-    /// .ply or .off).
+    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too) or a mesh (.stl, .obj, .ply or .off).
     #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// What moves, likewise and of the same kind.

@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::console::Console;
 use super::failure::Failure;
-use super::input::{Input, check_used};
+use super::input::Input;
 use super::native::{NativeArguments, NativeFiles, match_text, measure};
 use super::output_file::check_output;
 use super::reading_arguments::{READING_OPTIONS, ReadingArguments};
@@ -104,9 +104,7 @@ impl Evaluate {
         }
         let native = match (&self.receptor, &self.ligand, self.native.read()?) {
             (Some(receptor), Some(ligand), Some(native)) => {
-                let receptor = Input::read(receptor, &reading)?;
-                let ligand = Input::read(ligand, &reading)?;
-                check_used(&reading, [&receptor.molecule, &ligand.molecule])?;
+                let [receptor, ligand] = Input::read_all([receptor, ligand], &reading)?;
                 return Ok((receptor, ligand, native));
             }
             (_, _, native) => native,
@@ -115,13 +113,22 @@ impl Evaluate {
                       --native or with --native-receptor and --native-ligand";
         let run =
             RecordedRun::read(run_path).map_err(|error| Failure::from(error).remedy(needed))?;
-        let part = |named: &Option<String>, record| match named {
+        let part = |named: &Option<String>, place: usize| match named {
             Some(text) => {
-                let input = Input::read(text, &reading)?;
-                check_used(&reading, [&input.molecule])?;
+                let [input] = Input::read_all([text], &reading)?;
                 Ok(input)
             }
-            None => Input::recorded(record, run_path, &run.options.reading),
+            // Whether B values were taken for pLDDT hangs on both.
+            None if run.options.reading.min_plddt.is_some() => {
+                let records = [&run.receptor, &run.ligand];
+                let [receptor, ligand] =
+                    Input::recorded_all(records, run_path, &run.options.reading)?;
+                Ok(if place == 0 { receptor } else { ligand })
+            }
+            None => {
+                let record = [&run.receptor, &run.ligand][place];
+                Input::recorded(record, run_path, &run.options.reading)
+            }
         };
         let native = match (native, &run.native) {
             (Some(native), _) => native,
@@ -132,11 +139,7 @@ impl Evaluate {
                 ));
             }
         };
-        Ok((
-            part(&self.receptor, &run.receptor)?,
-            part(&self.ligand, &run.ligand)?,
-            native,
-        ))
+        Ok((part(&self.receptor, 0)?, part(&self.ligand, 1)?, native))
     }
 }
 

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock_structures::molecule::{
-    DropKind, InputSpec, Listed, Molecule, ReadOptions, file_bytes, read_bytes, read_bytes_listed,
+    DropKind, InputSpec, Listed, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
+    read_bytes_listed,
 };
 
 use super::failure::Failure;
@@ -62,14 +63,84 @@ impl Input {
         })
     }
 
-    /// As [`Input::read`], with every atom listed, kept or dropped.
+    /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is taken.
     pub fn read_listed(text: &str, options: &ReadOptions) -> Result<(Self, Vec<Listed>), Failure> {
         let spec = InputSpec::parse(text)?;
         refuse_mesh(&spec)?;
         let bytes = file_bytes(&spec.path)?;
         let record = InputRecord::new(&spec, &bytes);
-        let (molecule, listed) = read_bytes_listed(&spec, bytes, options)?;
+        let options = ReadOptions {
+            trust_plddt: options.min_plddt.is_some(),
+            ..options.clone()
+        };
+        let (molecule, listed) = read_bytes_listed(&spec, bytes, &options)?;
+        check_used(&options, [&molecule])?;
         Ok((Self { record, molecule }, listed))
+    }
+
+    /// Reads structures that are docked together, `FILE` or `FILE:H,L` each.
+    pub fn read_all<const N: usize>(
+        texts: [&str; N],
+        options: &ReadOptions,
+    ) -> Result<[Self; N], Failure> {
+        let specs = texts.into_iter().map(InputSpec::parse);
+        Self::all(&specs.collect::<Result<Vec<_>, _>>()?, options)
+    }
+
+    /// As [`Input::recorded`], of structures that are docked together.
+    pub fn recorded_all<const N: usize>(
+        records: [&InputRecord; N],
+        run: &Path,
+        options: &ReadOptions,
+    ) -> Result<[Self; N], Failure> {
+        let folders = folders_of(run);
+        let specs = records
+            .into_iter()
+            .map(|record| Ok(record.locate(&folders)?.spec()));
+        Self::all(&specs.collect::<Result<Vec<_>, Failure>>()?, options)
+    }
+
+    /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as predictions; where none is, the
+    /// user's word is taken for all whose B values can be pLDDT.
+    ///
+    /// # Errors
+    /// Where one cannot be read, and where an option does nothing to any.
+    pub fn all<const N: usize>(
+        specs: &[InputSpec],
+        options: &ReadOptions,
+    ) -> Result<[Self; N], Failure> {
+        let mut files: Vec<(&InputSpec, Vec<u8>)> = Vec::new();
+        for spec in specs {
+            refuse_mesh(spec)?;
+            // Twice the same, as of a ring, may be a pipe, which can be read but once.
+            let before = files.iter().find(|(other, _)| other.path == spec.path);
+            let bytes = match before {
+                Some((_, bytes)) => bytes.clone(),
+                None => file_bytes(&spec.path)?,
+            };
+            files.push((spec, bytes));
+        }
+        let read = |options: &ReadOptions| -> Result<Vec<Self>, Failure> {
+            let inputs = files.iter().map(|(spec, bytes)| {
+                Ok(Self {
+                    record: InputRecord::new(spec, bytes),
+                    molecule: read_bytes(spec, bytes.clone(), options)?,
+                })
+            });
+            inputs.collect()
+        };
+        let mut inputs = read(options)?;
+        let is_known = |input: &Self| input.molecule.report.confidence.is_some();
+        if options.min_plddt.is_some() && !inputs.iter().any(is_known) {
+            inputs = read(&ReadOptions {
+                trust_plddt: true,
+                ..options.clone()
+            })?;
+        }
+        check_used(options, inputs.iter().map(|input| &input.molecule))?;
+        inputs
+            .try_into()
+            .map_err(|_| Failure::other("structures were lost on reading"))
     }
 
     /// The structure for run.json.
@@ -90,26 +161,30 @@ impl Input {
 
 /// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
 /// says anything of one, `--model` where none has several, `--drop-residue` of a name that none has.
-pub fn check_used<'a>(
+fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
 ) -> Result<(), Failure> {
     let (mut predicted, mut built, mut several) = (false, false, false);
     let (mut left_out, mut kept) = (BTreeSet::new(), BTreeSet::new());
+    let mut reasons = Vec::new();
     for molecule in molecules {
-        let dropped = molecule.report.dropped.iter();
-        let by_name = dropped.filter(|dropped| dropped.kind == DropKind::Residue);
+        let report = &molecule.report;
+        let by_name = report
+            .dropped
+            .iter()
+            .filter(|dropped| dropped.kind == DropKind::Residue);
         left_out.extend(by_name.flat_map(|dropped| dropped.names.keys().map(String::as_str)));
-        kept.extend(
-            molecule
-                .report
-                .groups
-                .iter()
-                .map(|group| group.name.as_str()),
+        kept.extend(report.groups.iter().map(|group| group.name.as_str()));
+        reasons.extend(
+            report
+                .no_confidence
+                .as_ref()
+                .map(|reason| format!("{reason} ({})", report.file)),
         );
-        predicted |= molecule.report.confidence.is_some();
-        built |= molecule.report.assembly.is_some();
-        several |= molecule.report.altered.models_ignored > 0;
+        predicted |= report.confidence.is_some();
+        built |= report.assembly.is_some();
+        several |= report.altered.models_ignored > 0 || report.joined_models.is_some();
     }
     if let Some(name) = options
         .drop_residue
@@ -130,12 +205,13 @@ pub fn check_used<'a>(
         }));
     }
     if options.min_plddt.is_some() && !predicted {
-        return Err(Failure::input(
-            "--min-plddt is for predicted models, and nothing here is known to be one",
-        )
+        return Err(Failure::input(format!(
+            "--min-plddt is for predicted models, and no B values here can be pLDDT: {}",
+            reasons.join("; ")
+        ))
         .remedy(
-            "leave it out, or give the file as the predictor wrote it: a model is known by `_ma_qa_metric` in mmCIF, or by one B value a residue \
-             with a mean above 60 where the file names no experiment",
+            "leave it out, or give the file as the predictor wrote it, with pLDDT from 0 to 100 or from 0 to 1 in the place of B values; \
+             mmCIF names it in `_ma_qa_metric`",
         ));
     }
     if options.assembly.is_some() && !built {
@@ -146,7 +222,7 @@ pub fn check_used<'a>(
             "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in _pdbx_struct_assembly_gen (mmCIF)",
         ));
     }
-    if options.model != 1 && !several {
+    if options.model != ModelChoice::default() && !several {
         return Err(Failure::input(format!(
             "--model {} is for files of several models, and none is one here",
             options.model

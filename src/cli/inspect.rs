@@ -18,7 +18,7 @@ use super::arguments::not_negative;
 use super::console::Console;
 use super::dock_report::metal_bound;
 use super::failure::Failure;
-use super::input::{Input, check_used};
+use super::input::Input;
 use super::output_file::{check_output, is_same};
 use super::reading_arguments::ReadingArguments;
 
@@ -26,7 +26,8 @@ use super::reading_arguments::ReadingArguments;
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
-    /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too.
     #[arg(value_name = "FILE")]
     file: String,
     /// Write every atom of the model to this CSV file, kept or dropped, with the reason.
@@ -84,10 +85,10 @@ impl Inspect {
             let (input, listed) = Input::read_listed(&self.file, &reading)?;
             (input, Some(listed))
         } else {
-            (Input::read(&self.file, &reading)?, None)
+            let [input] = Input::read_all([&self.file], &reading)?;
+            (input, None)
         };
         let molecule = &input.molecule;
-        check_used(&reading, [molecule])?;
         if let (Some(file), Some(format)) = (&self.write, format) {
             fits(format, molecule).map_err(|error| {
                 Failure::input(error)

@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use clap::Args;
-use knotdock_structures::molecule::{AlternateLocation, Hetatm, Hydrogens, ReadOptions, Waters};
+use knotdock_structures::molecule::{
+    AlternateLocation, Hetatm, Hydrogens, ModelChoice, ReadOptions, Waters,
+};
 
-use super::arguments::{assembly_name, at_least_one, plddt, residue_name};
+use super::arguments::{assembly_name, plddt, residue_name};
 
 const READING: &str = "Reading";
 
@@ -31,13 +33,15 @@ pub struct ReadingArguments {
     /// Alternate location of a residue: occupancy, the best occupied, or the name of one, such as A, where it is offered.
     #[arg(long, value_name = "NAME", default_value_t = AlternateLocation::default(), help_heading = READING)]
     altloc: AlternateLocation,
-    /// Model of a file that has several: 1 is the first, whatever number it carries.
-    #[arg(long, value_name = "N", value_parser = at_least_one, default_value_t = ReadOptions::default().model, help_heading = READING)]
-    model: usize,
+    /// Model of a file that has several: 1 is the first, whatever number it carries; all reads all models as one molecule, as of a biological
+    /// assembly (.pdb1), in which the chain A of the second is called A-2.
+    #[arg(long, value_name = "N", default_value_t = ModelChoice::default(), help_heading = READING)]
+    model: ModelChoice,
     /// Build this biological assembly of a file that has it, such as 1; copies of chain A are called ..., which is how FILE:A,A-2 picks them.
     #[arg(long, value_name = "ID", value_parser = assembly_name, help_heading = READING)]
     assembly: Option<String>,
-    /// Of a predicted model leave out residues with a pLDDT below this, 0 to 100: 50 leaves out what is likely disordered.
+    /// Of a predicted model leave out residues with a pLDDT below this, 0 to 100: 50 leaves out what is likely disordered. Where no file is
+    /// known as a prediction, B values that can be pLDDT are taken for it.
     #[arg(long, value_name = "X", value_parser = plddt, help_heading = READING)]
     min_plddt: Option<f64>,
 }

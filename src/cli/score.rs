@@ -13,7 +13,7 @@ use super::arguments::at_least_one;
 use super::console::Console;
 use super::dock_report::{loose_told, site_told};
 use super::failure::Failure;
-use super::input::{Input, check_used};
+use super::input::Input;
 use super::memory;
 use super::reading_arguments::ReadingArguments;
 use super::search_arguments::KernelArguments;
@@ -24,7 +24,8 @@ use super::search_arguments::KernelArguments;
 /// of the exact value or of the scale, the best score at this rotation.
 #[derive(Args, Debug)]
 pub struct Score {
-    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names.
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
     /// The molecule that moves, likewise.
@@ -73,14 +74,10 @@ impl Score {
         };
         let reading = self.reading.options();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
-        let read = |text: &String, what: &str| -> Result<_, Failure> {
-            let input = Input::read(text, &reading)?;
-            console.say(format!("{what}: {}", input.molecule.report));
-            Ok(input.molecule)
-        };
-        let receptor = read(&self.receptor, "Receptor")?;
-        let ligand = read(&self.ligand, "Ligand")?;
-        check_used(&reading, [&receptor, &ligand])?;
+        let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
+        let [receptor, ligand] = inputs.map(|input| input.molecule);
+        console.say(format!("Receptor: {}", receptor.report));
+        console.say(format!("Ligand: {}", ligand.report));
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;

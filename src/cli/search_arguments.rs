@@ -132,7 +132,8 @@ pub struct KernelArguments {
     /// whole, all of it.
     #[arg(long, value_name = "cdrs|whole", default_value = DockOptions::default().antibody.name(), help_heading = SCORE)]
     antibody: AntibodySurface,
-    /// Residues of the receptor to keep free of contact: H:1-50,H:52,H:52A,L for a range with all that is inserted in it, a residue, an inserted one and a chain.
+    /// Residues of the receptor to keep free of contact: H:1-50,52,52A,L for a range with all that is inserted in it, a residue, an inserted one and a
+    /// chain. A chain without a name is _; after a residue its chain's name may be left out, unless another chain is called so.
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
     block_receptor: Option<ResidueSelection>,
     /// Residues of the ligand to keep free of contact, likewise.

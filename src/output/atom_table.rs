@@ -78,6 +78,7 @@ fn fields(entry: &Listed) -> [String; COLUMNS.len()] {
 fn reason(kind: DropKind) -> &'static str {
     match kind {
         DropKind::Chain => "chain",
+        DropKind::OtherResidue => "other_residue",
         DropKind::Assembly => "assembly",
         DropKind::Hydrogen => "hydrogen",
         DropKind::Water => "water",

@@ -91,7 +91,7 @@ fn object(value: Value) -> Map<String, Value> {
 mod tests {
     use super::*;
     use crate::search::AntibodySurface;
-    use knotdock_structures::molecule::{AlternateLocation, Hetatm};
+    use knotdock_structures::molecule::{AlternateLocation, Hetatm, ModelChoice};
 
     #[test]
     fn options_survive_the_record_and_those_of_the_machine_do_not() {
@@ -99,7 +99,7 @@ mod tests {
             reading: ReadOptions {
                 hetatm: Hetatm::Drop,
                 altloc: AlternateLocation::Named('B'),
-                model: 3,
+                model: ModelChoice::Number(3),
                 ..ReadOptions::default()
             },
             dock: DockOptions {

@@ -228,6 +228,48 @@ fn gzip_is_told_by_its_magic_bytes() {
     assert!(matches!(cut, Err(ReadError::Gzip { .. })));
 }
 
+/// Found by a user: an archive of a structure was read as one, without the atom that its head ran into.
+#[test]
+fn archives_and_other_formats_are_refused_with_what_to_do() {
+    let mut tar = vec![0; 512];
+    tar[257..262].copy_from_slice(b"ustar");
+    tar.extend(ATOM.text().as_bytes());
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    encoder.write_all(&tar).unwrap();
+    let packed = encoder.finish().unwrap();
+    let zip = [b"PK\x03\x04", ATOM.text().as_bytes()].concat();
+    for (name, bytes, says) in [
+        ("x.tar.gz", packed.as_slice(), "a tar archive"),
+        ("x.pdb.gz", packed.as_slice(), "a tar archive"),
+        ("x.tar", tar.as_slice(), "a tar archive"),
+        ("x.zip", zip.as_slice(), "a zip archive"),
+    ] {
+        let error = read_bytes(name, bytes, "").unwrap_err();
+        assert!(error.to_string().contains(says), "{name}: {error}");
+        assert!(error.remedy().contains("unpack it"));
+    }
+    for (name, text) in [
+        (
+            "x.sdf",
+            "ligand\n  made by hand\n\n  1  0  0  0  0\n    0.0    0.0    0.0 C\nM  END\n",
+        ),
+        (
+            "x.mol2",
+            "@<TRIPOS>MOLECULE\nx\n@<TRIPOS>ATOM\n1 C 0.0 0.0 0.0 C.3\n",
+        ),
+        ("x.xyz", "1\n\nC 0.0 0.0 0.0\n"),
+    ] {
+        let error = read_bytes(name, text.as_bytes(), "").unwrap_err();
+        assert!(
+            error.to_string().contains("not a PDB or mmCIF file"),
+            "{error}"
+        );
+        assert!(error.remedy().contains("obabel"));
+    }
+    // A structure is one whatever its name.
+    assert!(read_bytes("x.xyz", ATOM.text().as_bytes(), "").is_ok());
+}
+
 #[test]
 fn bytes_that_are_not_utf8_stop_nothing_outside_the_atoms() {
     // Latin-1 in an author's name, as old files have it.

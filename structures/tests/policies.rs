@@ -5,8 +5,8 @@
 mod pdb_text;
 
 use knotdock_structures::molecule::{
-    AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, Molecule, ReadError, ReadOptions,
-    Waters, read, read_listed,
+    AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, ModelChoice, Molecule, ReadError,
+    ReadOptions, Waters, read, read_listed,
 };
 use pdb_text::{ATOM, Line, names, text};
 
@@ -133,7 +133,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     let file = [model(7, 1.0), model(3, 2.0), model(9, 3.0)].concat();
     let place = |model: usize| {
         let options = ReadOptions {
-            model,
+            model: ModelChoice::Number(model),
             ..ReadOptions::default()
         };
         read_by(&file, &options).map(|molecule| molecule.atoms[0].position[0])
@@ -153,7 +153,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     let second = read_by(
         &file,
         &ReadOptions {
-            model: 2,
+            model: ModelChoice::Number(2),
             ..ReadOptions::default()
         },
     )
@@ -162,7 +162,7 @@ fn models_are_counted_from_one_whatever_their_numbers() {
     assert_eq!(second.report.atoms_dropped(), 2);
     // A ligand of one model beside a receptor of several.
     let options = ReadOptions {
-        model: 2,
+        model: ModelChoice::Number(2),
         ..ReadOptions::default()
     };
     assert_eq!(read_by(&text(&[ATOM]), &options).unwrap().atoms.len(), 1);
@@ -181,7 +181,7 @@ fn models_of_mmcif_go_by_their_column() {
     );
     for (model, expected) in [(1, [1.0, 3.0]), (2, [2.0, 4.0])] {
         let options = ReadOptions {
-            model,
+            model: ModelChoice::Number(model),
             ..ReadOptions::default()
         };
         let molecule = read_by(&file, &options).unwrap();

@@ -243,3 +243,121 @@ fn residues_below_the_limit_are_left_out_and_named() {
     std::fs::write(&path, refined).unwrap();
     assert_eq!(read(&spec, &options(90.0)).unwrap().atoms.len(), 40);
 }
+
+/// The free inhibitor as Chai-1 and AlphaFold 3 write a prediction: a pLDDT for each atom, of residues 1 to 4 about 35 and of the others about 88.
+fn by_atom(scale: f64) -> String {
+    let path = format!(
+        "{}/examples/1ppe_ligand_unbound.pdb",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut state: u64 = 1;
+    let mut jitter = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as f64 / f64::from(1_u32 << 31) * 16.0 - 8.0
+    };
+    let records = text.lines().filter(|line| line.starts_with("ATOM"));
+    records
+        .map(|line| {
+            let number: i64 = line[22..26].trim().parse().unwrap();
+            let value = if number < 5 { 35.0 } else { 88.0 } + jitter();
+            format!("{}{:>6.2}{}\n", &line[..60], scale * value, &line[66..])
+        })
+        .collect()
+}
+
+/// Found by a user: the model of a predictor that writes a value for each atom, and no header, was taken for measured.
+#[test]
+fn values_by_atom_tell_a_prediction_where_they_are_distributed_as_one() {
+    for scale in [1.0, 0.01] {
+        let confidence = confidence_of("x.pdb", &by_atom(scale)).unwrap();
+        assert_eq!(confidence.told_by, ToldBy::Values);
+        assert_eq!((confidence.residues, confidence.below_50), (29, 4));
+    }
+    let text = format!("EXPDTA    X-RAY DIFFRACTION\n{}", by_atom(1.0));
+    assert_eq!(confidence_of("x.pdb", &text), None);
+    // Refined structures, as they are, and with B values moved to the level of pLDDT and below 100.
+    for name in [
+        "1ppe_receptor_unbound",
+        "1ppe_ligand_unbound",
+        "1ppe_receptor_bound",
+        "1ppe_ligand_bound",
+        "4e43_dimer",
+    ] {
+        let path = format!("{}/examples/{name}.pdb", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap();
+        for (factor, shift) in [(1.0, 0.0), (1.0, 40.0), (0.5, 65.0)] {
+            let moved = text.lines().map(|line| match line.get(60..66) {
+                Some(value) if line.starts_with("ATOM") => {
+                    let value: f64 = value.trim().parse().unwrap();
+                    let value = (factor * value + shift).min(99.0);
+                    format!("{}{value:>6.2}{}\n", &line[..60], &line[66..])
+                }
+                _ => format!("{line}\n"),
+            });
+            let moved: String = moved.collect();
+            assert_eq!(
+                confidence_of("x.pdb", &moved),
+                None,
+                "{name} {factor} {shift}"
+            );
+        }
+    }
+}
+
+/// Who gives a least pLDDT is believed of B values that can be pLDDT, and of no others.
+#[test]
+fn the_users_word_is_taken_where_it_can_be_true() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.pdb");
+    let read_by = |text: &str, trust_plddt: bool| {
+        std::fs::write(&path, text).unwrap();
+        let options = ReadOptions {
+            min_plddt: Some(50.0),
+            trust_plddt,
+            ..ReadOptions::default()
+        };
+        read(&InputSpec::whole(&path), &options).unwrap()
+    };
+    // A mean of 44: nothing but the user says that this is a prediction. Three of ten residues are above 50.
+    let low = glycines(10, |residue, atom| {
+        12.0 + 7.0 * residue as f64 + 0.1 * atom as f64
+    });
+    let untold = read_by(&low, false);
+    assert_eq!((untold.atoms.len(), untold.report.confidence), (40, None));
+    for scale in [1.0, 0.01] {
+        let scaled = glycines(10, |residue, _| scale * (12.0 + 7.0 * residue as f64));
+        let trusted = read_by(&scaled, true);
+        let confidence = trusted.report.confidence.unwrap();
+        assert_eq!((confidence.told_by, confidence.below_50), (ToldBy::User, 6));
+        assert_eq!(trusted.atoms.len(), 16);
+        assert!(
+            trusted
+                .report
+                .to_string()
+                .contains("because --min-plddt is given")
+        );
+    }
+    let measured = format!("EXPDTA    SOLUTION NMR\n{low}");
+    for (text, reason) in [
+        (glycines(10, |_, _| 0.0), "all B values are 0"),
+        (glycines(10, |_, _| 20.0), "all B values are 20"),
+        (
+            glycines(10, |residue, _| 60.0 + 5.0 * residue as f64),
+            "above 100",
+        ),
+        (glycines(10, |residue, _| residue as f64 - 1.0), "below 0"),
+        (measured, "the file names an experiment"),
+        (
+            glycines(10, |residue, _| 10.0 + 5.0 * residue as f64),
+            "2 of 10 residues reach 50",
+        ),
+    ] {
+        let refused = read_by(&text, true);
+        assert_eq!((refused.atoms.len(), refused.report.confidence), (40, None));
+        let said = refused.report.no_confidence.unwrap();
+        assert!(said.contains(reason), "{said}");
+    }
+}

@@ -206,3 +206,114 @@ fn a_trace_and_missing_side_chains_are_warned_of() {
     let warnings = read_text(&text(&[ATOM, ATOM])).unwrap().report.warnings;
     assert!(warnings[0].starts_with("1 atom repeats"), "{warnings:?}");
 }
+
+/// Residues 1 to 9 of chain A, 1 to 3 of chain B, a bond's length apart, and a zinc numbered 301 in chain A.
+fn two_chains() -> String {
+    let residue = |chain: char, number: i64| {
+        let at = |name: &'static str, element: &'static str, x: f64| Line {
+            name,
+            chain,
+            number,
+            element,
+            x: 3.8 * number as f64 + x + if chain == 'B' { 100.0 } else { 0.0 },
+            ..ATOM
+        };
+        [
+            at(" N  ", " N", 0.0),
+            at(" CA ", " C", 1.4),
+            at(" C  ", " C", 2.5),
+            at(" O  ", " O", 2.9),
+        ]
+    };
+    let mut lines: Vec<Line> = (1..10).flat_map(|number| residue('A', number)).collect();
+    lines.extend((1..4).flat_map(|number| residue('B', number)));
+    lines.push(Line {
+        x: 300.0,
+        ..Line::of("HETATM", "ZN  ", " ZN", 301, "ZN")
+    });
+    text(&lines)
+}
+
+/// Asked for by users: a domain of a chain is docked without editing the file.
+#[test]
+fn residues_are_picked_by_their_numbers() {
+    let picked = |selection: &str| {
+        let molecule = read_bytes("x.pdb", two_chains().as_bytes(), selection)?;
+        let mut residues: Vec<(String, i64)> = Vec::new();
+        for atom in &molecule.atoms {
+            let residue = (atom.chain.clone(), atom.residue_number);
+            if residues.last() != Some(&residue) {
+                residues.push(residue);
+            }
+        }
+        let names = residues
+            .iter()
+            .map(|(chain, number)| format!("{chain}{number}"));
+        Ok::<_, ReadError>((names.collect::<Vec<_>>().join(" "), molecule))
+    };
+    for (selection, expected) in [
+        (":A:1-3", "A1 A2 A3"),
+        (":A:1-2,B", "A1 A2 B1 B2 B3"),
+        (":A:2,4,6-7", "A2 A4 A6 A7"),
+        (":B:3,A:9", "A9 B3"),
+        (":A:301,B:1-1", "B1 A301"),
+        (":B,B:1", "B1 B2 B3"),
+    ] {
+        assert_eq!(picked(selection).unwrap().0, expected, "{selection}");
+    }
+    let (_, molecule) = picked(":A:1-3").unwrap();
+    let dropped = &molecule.report.dropped;
+    let of_kind = |kind: DropKind| {
+        dropped
+            .iter()
+            .find(|one| one.kind == kind)
+            .map(|one| one.atoms)
+    };
+    assert_eq!(of_kind(DropKind::OtherResidue), Some(25));
+    assert_eq!(of_kind(DropKind::Chain), Some(12));
+    // The end that the cut made stands for a bond, and has no charge; the chain's own has.
+    assert_eq!(molecule.labels(7.0).report.termini, [1, 0]);
+    assert_eq!(
+        picked(":A:4-6").unwrap().1.labels(7.0).report.termini,
+        [0, 0]
+    );
+    assert_eq!(picked(":B").unwrap().1.labels(7.0).report.termini, [1, 1]);
+    let two = picked(":A:1-3,6-9").unwrap().1.labels(7.0).report;
+    assert_eq!((two.termini, two.gaps), ([1, 1], 0));
+
+    let refused = |selection: &str| picked(selection).map(|_| ()).unwrap_err();
+    let error = refused(":A:400-500");
+    assert!(matches!(error, ReadError::UnknownResidues { .. }));
+    assert_eq!(
+        error.to_string(),
+        "there is no residue A:400-500; chain A of the file has 1 to 301"
+    );
+    let error = refused(":A:1-3,20");
+    assert!(
+        error.to_string().contains("there is no residue A:20;"),
+        "{error}"
+    );
+    assert!(matches!(refused(":K:1"), ReadError::UnknownChain { .. }));
+    assert!(matches!(refused(":A,5"), ReadError::UnknownChain { .. }));
+    assert!(matches!(refused(":A:x"), ReadError::Specification { .. }));
+}
+
+/// Chains without a name are `_`, and names of several letters are told from numbers.
+#[test]
+fn residues_of_blank_and_long_chain_names_are_picked() {
+    let blank = two_chains().replace(" A ", "   ");
+    let molecule = read_bytes("x.pdb", blank.as_bytes(), ":_:1-2").unwrap();
+    assert_eq!(molecule.atoms.len(), 8);
+    let cif = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.type_symbol\n_atom_site.auth_asym_id\n\
+        _atom_site.label_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+        CA ALA C AA A 5 0 0 0\nCA ALA C AA A 6 4 0 0\nCA ALA C 6 B 1 9 0 0\n";
+    let of = |selection: &str| {
+        let molecule = read_bytes("x.cif", cif.as_bytes(), selection).unwrap();
+        let atoms = molecule.atoms.iter();
+        atoms.map(|atom| atom.position[0]).collect::<Vec<f64>>()
+    };
+    assert_eq!(of(":AA:5-6"), [0.0, 4.0]);
+    // 6 is a chain here.
+    assert_eq!(of(":AA:5,6"), [0.0, 9.0]);
+    assert_eq!(of(":AA:5,AA:6"), [0.0, 4.0]);
+}

@@ -11,8 +11,8 @@ use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
-    AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ReadError, ReadOptions, Waters,
-    atom_kinds, read_listed, write_molecule,
+    AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ModelChoice, ReadError, ReadOptions,
+    Waters, atom_kinds, read_listed, write_molecule,
 };
 
 /// A reader under test.
@@ -203,9 +203,13 @@ fn molecule(path: &Path, index: u64) -> bool {
         } else {
             AlternateLocation::Named('B')
         },
-        model: 1 + (index / 24 % 2) as usize,
+        model: match index / 24 % 3 {
+            0 => ModelChoice::All,
+            number => ModelChoice::Number(number as usize),
+        },
         assembly: ((index / 96) & 1 == 1).then(|| "1".to_owned()),
         min_plddt: ((index / 48) & 1 == 1).then_some(15.0),
+        trust_plddt: (index / 192) & 1 == 1,
         ..ReadOptions::default()
     };
     match read_listed(&InputSpec::whole(path), &options) {

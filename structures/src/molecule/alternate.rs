@@ -1,10 +1,10 @@
 //! One alternate location a residue.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use super::Atom;
 use super::policy::AlternateLocation;
 use super::report::{AlternateChoice, DropKind, ReadReport};
+use super::{Atom, squared_distance};
 
 /// What tells a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
 /// (microheterogeneity), and one choice must hold for both names.
@@ -14,7 +14,77 @@ fn position(atom: &Atom) -> Position<'_> {
     (&atom.chain, atom.residue_number, atom.insertion_code)
 }
 
-/// Keeps, in each residue, the atoms without an alternate location and those of one: the one named by the policy where it is
+/// Stands for the blank location where atoms without a letter are one of the alternatives.
+const UNNAMED: char = ' ';
+
+/// Largest distance in Å of an atom from itself at another location: the tip of an arginine turned over.
+const MAX_DISPLACEMENT: f64 = 12.0;
+
+/// The same where the other location has another residue: backbones stay where they are.
+const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
+
+/// The locations of atoms that have no letter beside lettered atoms of their residue, by index: where a lettered atom of the same name is elsewhere,
+/// those of the letters that lack it, whose letter was left out, or else the blank one, to which all of a residue belongs on whose backbone
+/// letters have another residue.
+fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
+    let mut lettered: HashMap<Position<'_>, Vec<(&Atom, char)>> = HashMap::new();
+    for atom in atoms {
+        if let Some(letter) = atom.alternate_location {
+            lettered
+                .entry(position(atom))
+                .or_default()
+                .push((atom, letter));
+        }
+    }
+    let mut unnamed = HashMap::new();
+    if lettered.is_empty() {
+        return unnamed;
+    }
+    // Residues of which one atom shows that they are an alternative as a whole.
+    let mut whole: HashSet<(Position<'_>, &str)> = HashSet::new();
+    let blank = || {
+        let all = atoms.iter().enumerate();
+        all.filter(|(_, atom)| atom.alternate_location.is_none())
+    };
+    for (index, atom) in blank() {
+        let Some(there) = lettered.get(&position(atom)) else {
+            continue;
+        };
+        let within = |other: &Atom, limit: f64| {
+            other.name == atom.name
+                && squared_distance(other.position, atom.position) <= limit * limit
+        };
+        let of_residue = |own: bool| {
+            let is_own = move |other: &Atom| (other.residue_name == atom.residue_name) == own;
+            there.iter().filter(move |(other, _)| is_own(other))
+        };
+        let letters: BTreeSet<char> = of_residue(true).map(|(_, letter)| *letter).collect();
+        let having = of_residue(true).filter(|(other, _)| within(other, MAX_DISPLACEMENT));
+        let having: BTreeSet<char> = having.map(|(_, letter)| *letter).collect();
+        if !having.is_empty() {
+            let lacking: Vec<char> = letters.difference(&having).copied().collect();
+            let own = if lacking.is_empty() {
+                vec![UNNAMED]
+            } else {
+                lacking
+            };
+            unnamed.insert(index, own);
+        } else if letters.is_empty()
+            && of_residue(false).any(|(other, _)| within(other, MAX_BACKBONE_DISPLACEMENT))
+        {
+            whole.insert((position(atom), &atom.residue_name));
+        }
+    }
+    for (index, atom) in blank() {
+        if whole.contains(&(position(atom), atom.residue_name.as_str())) {
+            unnamed.insert(index, vec![UNNAMED]);
+        }
+    }
+    unnamed
+}
+
+/// Keeps, in each residue, the atoms without an alternate location and those of one. Atoms without one beside the same atoms with a letter are
+/// the blank one's. Kept is the one named by the policy where it is
 /// offered, otherwise the location of the highest occupancy summed over its atoms, the alphabetically first of equals.
 pub(super) fn choose(
     atoms: Vec<Atom>,
@@ -24,8 +94,16 @@ pub(super) fn choose(
 ) -> Vec<Atom> {
     let mut offers: HashMap<Position<'_>, BTreeMap<char, f64>> = HashMap::new();
     let mut order: Vec<Position<'_>> = Vec::new();
-    for atom in &atoms {
-        if let Some(location) = atom.alternate_location {
+    let unnamed = unnamed_alternatives(&atoms);
+    let locations = |index: usize, atom: &Atom| -> Vec<char> {
+        match (atom.alternate_location, unnamed.get(&index)) {
+            (Some(letter), _) => vec![letter],
+            (None, Some(own)) => own.clone(),
+            (None, None) => Vec::new(),
+        }
+    };
+    for (index, atom) in atoms.iter().enumerate() {
+        for location in locations(index, atom) {
             let offered = offers.entry(position(atom)).or_insert_with(|| {
                 order.push(position(atom));
                 BTreeMap::new()
@@ -64,9 +142,11 @@ pub(super) fn choose(
     }
     let keep: Vec<bool> = atoms
         .iter()
-        .map(|atom| {
-            atom.alternate_location.is_none()
-                || atom.alternate_location == chosen.get(&position(atom)).copied()
+        .enumerate()
+        .map(|(index, atom)| {
+            let own = locations(index, atom);
+            let chosen = chosen.get(&position(atom));
+            own.is_empty() || chosen.is_some_and(|chosen| own.contains(chosen))
         })
         .collect();
     let mut kept = Vec::with_capacity(atoms.len());

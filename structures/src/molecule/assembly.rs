@@ -23,7 +23,7 @@ use super::squared_distance;
 const MOST_ATOMS: usize = 50_000_000;
 
 /// Copies of one atom nearer than this, in Å, are one: it lies on an axis of symmetry.
-const ON_AXIS: f64 = 0.5;
+pub(super) const ON_AXIS: f64 = 0.5;
 
 /// A motion of the file's coordinates, x -> R x + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -231,7 +231,7 @@ fn distinct_chains(parsed: &[Parsed]) -> usize {
 }
 
 /// The name of a chain's copy, counted from 1: one that the file does not have.
-fn copy_name(chain: &str, copy: usize, in_file: &HashSet<&str>) -> String {
+pub(super) fn copy_name(chain: &str, copy: usize, in_file: &HashSet<&str>) -> String {
     if copy == 1 {
         return chain.to_owned();
     }

@@ -15,13 +15,25 @@ const LAST: f64 = (1i64 << 60) as f64;
 impl Cells {
     /// Sorts positions into cells of `width` > 0, in Å: the largest distance that will be asked for.
     pub(super) fn new(positions: impl IntoIterator<Item = [f64; 3]>, width: f64) -> Self {
+        Self::with_at_most(positions, width, usize::MAX)
+    }
+
+    /// As [`Cells::new`], with the first `most` positions of each cell and none beyond.
+    pub(super) fn with_at_most(
+        positions: impl IntoIterator<Item = [f64; 3]>,
+        width: f64,
+        most: usize,
+    ) -> Self {
         let mut cells = Self {
             width,
             members: HashMap::new(),
         };
         for (index, position) in positions.into_iter().enumerate() {
             let cell = cells.cell(position);
-            cells.members.entry(cell).or_default().push(index);
+            let members = cells.members.entry(cell).or_default();
+            if members.len() < most {
+                members.push(index);
+            }
         }
         cells
     }

@@ -86,6 +86,14 @@ impl Molecule {
         chains
     }
 
+    /// Whether the numbers between two residues in a row, so many Å apart, may be of residues that are missing.
+    pub(super) fn may_be_gap(before: &Residue<'_>, after: &Residue<'_>, apart: f64) -> bool {
+        let counted = after.key.1.saturating_sub(before.key.1).saturating_sub(1);
+        (1..=MOST_RESIDUES).contains(&counted)
+            && apart <= LONGEST
+            && apart <= STRETCHED * (counted + 1) as f64
+    }
+
     /// Where an end of a chain is, unless something is bonded to it.
     fn free_end(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> Option<[f64; 3]> {
         let end = self.atom(residue, name)?;
@@ -114,6 +122,7 @@ impl Molecule {
             Between::Bond
         } else if chain != next_chain
             || next_number < number
+            || (missing != counted && self.has_last_oxygen(before))
             || missing > MOST_RESIDUES
             || apart > LONGEST
             || (missing != counted && apart > LONGEST_UNCOUNTED)

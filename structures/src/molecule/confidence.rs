@@ -5,10 +5,10 @@
 //! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): where it stands is no fact, and
 //! as a solid it blocks what it may not touch.
 //!
-//! What the column holds is told by what the file says of itself ([`Provenance`]), or where it says nothing by the values: those of a
-//! prediction are one a residue, as those of a refined structure hardly are.
+//! What the column holds is known from what the file says of itself ([`Provenance`]), or where it says nothing from the values ([`evidence`]), or
+//! else from the user, who gives a least pLDDT.
 
-use std::collections::HashSet;
+mod evidence;
 
 use serde::Serialize;
 
@@ -19,11 +19,8 @@ use super::report::{DropKind, ReadReport, show_chain};
 /// pLDDT below which a residue is likely disordered.
 pub const LOW: f64 = 50.0;
 
-/// Fewest residues of several atoms by which values alone tell a prediction.
-const ENOUGH_RESIDUES: usize = 5;
-
-/// Mean pLDDT above which values alone tell a prediction: models that anyone docks are above it, most refined B values below.
-const TELLING_MEAN: f64 = 60.0;
+/// Share of the residues that reach the least pLDDT at least, where the user's word is taken.
+const MIN_REACHING: f64 = 0.25;
 
 /// What a file says of where its coordinates come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,8 +40,10 @@ pub(super) enum Provenance {
 pub enum ToldBy {
     /// The file says so: `_ma_qa_metric` of ModelCIF.
     Header,
-    /// The B column holds one value a residue, as only a prediction's does.
+    /// The values of the B column look like a prediction's: one a residue, or high ones with a tail of low ones.
     Values,
+    /// The user gave a least pLDDT, and the B column can hold pLDDT.
+    User,
 }
 
 /// How sure a prediction is of a molecule.
@@ -60,20 +59,34 @@ pub struct Confidence {
     pub below_50: usize,
 }
 
-/// pLDDT, 0 to 100, of each of the residues, and how it was known; nothing where the B column holds none.
+/// Why the B column of a file cannot be pLDDT, where it cannot.
+fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
+    let column = || atoms.iter().map(|atom| atom.b_factor);
+    let lowest = column().fold(f64::INFINITY, f64::min);
+    let highest = column().fold(f64::NEG_INFINITY, f64::max);
+    if provenance == Provenance::NoConfidence {
+        Some("the file names an experiment or another score".to_owned())
+    } else if lowest < 0.0 {
+        Some(format!("a B value is {lowest}, below 0"))
+    } else if highest > 100.0 {
+        Some(format!("a B value is {highest}, above 100"))
+    } else {
+        (highest <= 0.0).then(|| "all B values are 0".to_owned())
+    }
+}
+
+/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is asked for, and `trusted` says that the user's word is taken.
+///
+/// # Errors
+/// Why the B column is taken for none.
 fn values(
     atoms: &[Atom],
     residues: &[Residue<'_>],
     provenance: Provenance,
-) -> Option<(ToldBy, Vec<f64>)> {
-    let column = || atoms.iter().map(|atom| atom.b_factor);
-    let highest = column().fold(f64::NEG_INFINITY, f64::max);
-    if provenance == Provenance::NoConfidence
-        || !column().all(|value| (0.0..=100.0).contains(&value))
-        || highest <= 0.0
-    {
-        return None;
-    }
+    (least, trusted): (f64, bool),
+) -> Result<(ToldBy, Vec<f64>), String> {
+    let highest = atoms.iter().map(|atom| atom.b_factor);
+    let highest = highest.fold(f64::NEG_INFINITY, f64::max);
     let scale = if highest <= 1.0 { 100.0 } else { 1.0 };
     let of_residue = |residue: &Residue<'_>| {
         let members = residue.atoms.iter().filter_map(|&index| atoms.get(index));
@@ -82,28 +95,25 @@ fn values(
         (scale * sum / residue.atoms.len() as f64 * 1e6).round() / 1e6
     };
     let values: Vec<f64> = residues.iter().map(of_residue).collect();
-    match provenance {
-        Provenance::Confidence => Some((ToldBy::Header, values)),
-        _ => looks_like_one(atoms, residues, mean(&values)).then_some((ToldBy::Values, values)),
-    }
-}
-
-/// Whether values alone tell a prediction of this mean.
-fn looks_like_one(atoms: &[Atom], residues: &[Residue<'_>], mean: f64) -> bool {
-    let mut several = 0;
-    let mut seen = HashSet::new();
-    for residue in residues.iter().filter(|residue| residue.atoms.len() > 1) {
-        let mut members = residue.atoms.iter().filter_map(|&index| atoms.get(index));
-        let Some(first) = members.next() else {
-            continue;
-        };
-        if members.any(|atom| atom.b_factor != first.b_factor) {
-            return false;
+    let reaching = values.iter().filter(|value| **value >= least).count();
+    let first = atoms.first().map_or(0.0, |atom| atom.b_factor);
+    match contradiction(atoms, provenance) {
+        Some(reason) => Err(reason),
+        None if provenance == Provenance::Confidence => Ok((ToldBy::Header, values)),
+        None if evidence::tells(atoms, residues, mean(&values), scale) => {
+            Ok((ToldBy::Values, values))
         }
-        several += 1;
-        seen.insert(first.b_factor.to_bits());
+        None if atoms.iter().all(|atom| atom.b_factor == first) => {
+            Err(format!("all B values are {first}"))
+        }
+        // A partner that was measured, whose low values leave next to nothing of it.
+        None if trusted && (reaching as f64) < MIN_REACHING * values.len() as f64 => Err(format!(
+            "{reaching} of {} residues reach {least}, as of temperature factors",
+            values.len()
+        )),
+        None if trusted => Ok((ToldBy::User, values)),
+        None => Err("neither the file nor its B values say that they are pLDDT".to_owned()),
     }
-    several >= ENOUGH_RESIDUES && seen.len() > 1 && mean > TELLING_MEAN
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -112,18 +122,30 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Notes in the report how sure a prediction is of its residues, and leaves out those of a pLDDT below `least`.
 ///
-/// `dropped` hears of the atoms left out. Of what is no prediction all stays.
+/// `trusted` says that the B column is pLDDT wherever it can be. `dropped` hears of the atoms left out. Of what is no prediction all stays.
 pub(super) fn weigh(
     atoms: Vec<Atom>,
     provenance: Provenance,
     least: Option<f64>,
+    trusted: bool,
     report: &mut ReadReport,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Vec<Atom> {
     let groups = residues(&atoms);
-    let Some((told_by, values)) = values(&atoms, &groups, provenance) else {
-        return atoms;
-    };
+    let (told_by, values) =
+        match values(&atoms, &groups, provenance, (least.unwrap_or(0.0), trusted)) {
+            Ok(known) => known,
+            Err(reason) => {
+                report.no_confidence = least.map(|_| reason);
+                return atoms;
+            }
+        };
+    if told_by == ToldBy::User {
+        report.warnings.push(
+            "the B values are taken for pLDDT because --min-plddt is given: neither the file nor they say so"
+                .to_owned(),
+        );
+    }
     let below = |limit: f64| values.iter().filter(move |value| **value < limit).count();
     report.confidence = Some(Confidence {
         told_by,

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// rest, so that a caller can lay the four out as it likes.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// An input specification has a colon with no usable chain after it.
-    #[error("'{text}' names no chain after the colon")]
+    /// An input specification has a colon with no usable chain or residue after it.
+    #[error("'{text}' names no chain and no residues after the colon")]
     Specification {
         /// The specification as given.
         text: String,
@@ -56,6 +56,16 @@ pub enum ReadError {
         /// The largest size that is read, in bytes.
         limit: u64,
     },
+    /// The file is an archive, of another compression than gzip, or of another format of molecules.
+    #[error("this is {what}, not a PDB or mmCIF file")]
+    Foreign {
+        /// The path as given.
+        file: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// What to do with it.
+        remedy: &'static str,
+    },
     /// The file holds neither PDB nor mmCIF records.
     #[error("this is not a structure: no PDB record and no mmCIF data block was found")]
     NotAStructure {
@@ -91,6 +101,14 @@ pub enum ReadError {
         line: usize,
         /// Number of characters on the line.
         length: usize,
+    },
+    /// A line holds an atom record that does not stand in the columns of the format.
+    #[error("the line holds an atom record that does not stand in the columns of the PDB format")]
+    MisplacedRecord {
+        /// The path as given.
+        file: PathBuf,
+        /// 1-based line of the record.
+        line: usize,
     },
     /// The mmCIF text breaks the rules of the format.
     #[error("the mmCIF text is broken: {what}")]
@@ -134,6 +152,18 @@ pub enum ReadError {
         /// Author names of the chains in the file, in file order.
         present: Vec<String>,
     },
+    /// Residues were asked for that a chain of the file does not have.
+    #[error("there is no residue {part}; chain {chain} of the file has {} to {}", numbers[0], numbers[1])]
+    UnknownResidues {
+        /// The path as given.
+        file: PathBuf,
+        /// The residues asked for, as `A:1-50`.
+        part: String,
+        /// The chain, `_` where it has no name.
+        chain: String,
+        /// Smallest and largest residue number of the chain.
+        numbers: [i64; 2],
+    },
     /// A model was asked for that the file does not have.
     #[error("there is no model {model}; the file has {models}")]
     UnknownModel {
@@ -153,6 +183,14 @@ pub enum ReadError {
         assembly: String,
         /// Names of those that the file has.
         present: Vec<String>,
+    },
+    /// A biological assembly was asked for of a file whose models are read as one molecule.
+    #[error(
+        "--assembly builds copies of one model, and --model all reads all models as one molecule"
+    )]
+    AssemblyOfModels {
+        /// The path as given.
+        file: PathBuf,
     },
     /// What the file says of its biological assemblies cannot be understood.
     #[error("the biological assemblies cannot be built: {what}")]
@@ -207,16 +245,20 @@ impl ReadError {
             | Self::Unreadable { file, .. }
             | Self::Gzip { file, .. }
             | Self::TooLarge { file, .. }
+            | Self::Foreign { file, .. }
             | Self::NotAStructure { file }
             | Self::NoAtoms { file }
             | Self::Field { file, .. }
             | Self::ShortRecord { file, .. }
+            | Self::MisplacedRecord { file, .. }
             | Self::BrokenCif { file, .. }
             | Self::MissingColumn { file, .. }
             | Self::UnknownElement { file, .. }
             | Self::UnknownChain { file, .. }
+            | Self::UnknownResidues { file, .. }
             | Self::UnknownModel { file, .. }
             | Self::UnknownAssembly { file, .. }
+            | Self::AssemblyOfModels { file }
             | Self::BrokenAssembly { file, .. }
             | Self::EmptySelection { file, .. }
             | Self::Parser { file, .. } => Some(file),
@@ -228,6 +270,7 @@ impl ReadError {
         match self {
             Self::Field { line, .. }
             | Self::ShortRecord { line, .. }
+            | Self::MisplacedRecord { line, .. }
             | Self::BrokenCif { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::UnknownElement { line, .. } => Some(*line),
@@ -240,9 +283,11 @@ impl ReadError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Specification { .. } | Self::Unnamed { .. } => {
-                "write FILE to read all chains, or FILE:H,L to pick chains by their author names"
+                "write FILE to read all chains, FILE:H,L to pick chains by their author names, or FILE:H:1-120,L to pick residues"
             }
-            Self::Missing { .. } => "check the path; chains are picked with FILE:H,L",
+            Self::Missing { .. } => {
+                "check the path; chains are picked with FILE:H,L and residues with FILE:H:1-120"
+            }
             Self::Directory { .. } => "name one .pdb, .ent, .cif or .mmcif file, plain or .gz",
             Self::Unreadable { .. } => {
                 "check the permissions of the file and that it is on a readable disk"
@@ -251,6 +296,7 @@ impl ReadError {
                 "fetch the file again, or unpack it with gunzip to see where it breaks"
             }
             Self::TooLarge { .. } => "cut the file down to the chains and the model to be docked",
+            Self::Foreign { remedy, .. } => remedy,
             Self::NotAStructure { .. } => {
                 "give a PDB or mmCIF file, plain or gzip-compressed; BinaryCIF, XML and other compressions are not read"
             }
@@ -261,6 +307,9 @@ impl ReadError {
             Self::ShortRecord { .. } => {
                 "fetch the file again: it may be cut short; coordinates stand in columns 31 to 54"
             }
+            Self::MisplacedRecord { .. } => {
+                "begin it with ATOM or HETATM in column 1, in capitals, with blanks and no tabs, and put x, y and z into columns 31-38, 39-46 and 47-54"
+            }
             Self::BrokenCif { .. } => "fetch the file again, or check the text about this line",
             Self::MissingColumn { .. } => {
                 "write the file again with all columns that the wwPDB requires"
@@ -270,14 +319,18 @@ impl ReadError {
                  --drop-residue NAME"
             }
             Self::UnknownChain { .. } => {
-                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name"
+                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name; residues are picked as in FILE:A:1-120"
+            }
+            Self::UnknownResidues { .. } => {
+                "pick residues that the file has, by the author's numbers: FILE:A:1-120 or FILE:A:52A, with all parts of a list after commas"
             }
             Self::UnknownModel { .. } => {
-                "ask for one of the models that the file has; they count from 1 in the order of the file"
+                "ask for one of the models that the file has, which count from 1 in the order of the file, or for --model all"
             }
             Self::UnknownAssembly { .. } => {
                 "ask for one of these, or leave --assembly out to read the coordinates as they stand"
             }
+            Self::AssemblyOfModels { .. } => "leave one of the two out",
             Self::BrokenAssembly { .. } => {
                 "fetch the file again, or leave --assembly out to read the coordinates as they stand"
             }

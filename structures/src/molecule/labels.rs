@@ -224,6 +224,57 @@ mod tests {
         assert_eq!(labels.charges[..8], labels.charges[8..]);
     }
 
+    /// Found by a user: HADDOCK's merged antibodies, whose second chain is numbered from 500 on, lost the charge of its amino end beside the CDRs,
+    /// because a gap in the numbers was taken for missing residues though the chain before had its last oxygen.
+    #[test]
+    fn a_last_oxygen_ends_a_chain_whatever_the_numbers_say() {
+        let merged = |oxygen: Option<&str>| {
+            let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
+            atoms.extend(oxygen.map(|name| atom(name, "ALA", 2, [7.0, 1.0, 0.0])));
+            for mut moved in chain(&[("ALA", 501), ("ALA", 502)]) {
+                moved.position[1] += 10.0;
+                atoms.push(moved);
+            }
+            labels(atoms).report
+        };
+        for name in ["OXT", "OT2"] {
+            let report = merged(Some(name));
+            assert_eq!((report.termini, report.gaps), ([2, 2], 0), "{name}");
+        }
+        let report = merged(None);
+        assert_eq!((report.termini, report.gaps), ([1, 1], 1));
+        // X-PLOR writes the oxygen before a gap, too (1TFH, the ligand of 1AHW in Docking Benchmark 5): seven residues fit into 10 Å.
+        let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
+        atoms.push(atom("OXT", "ALA", 2, [7.0, 1.0, 0.0]));
+        for mut moved in chain(&[("ALA", 10), ("ALA", 11)]) {
+            moved.position[1] += 10.0;
+            atoms.push(moved);
+        }
+        let report = labels(atoms).report;
+        assert_eq!((report.termini[0], report.gaps), (1, 1));
+    }
+
+    /// Ligands, metals and waters behind a chain's last oxygen have no amino end, though some have an amino acid's atoms.
+    #[test]
+    fn what_follows_a_last_oxygen_without_being_a_chain_has_no_end() {
+        let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
+        atoms.push(atom("OXT", "ALA", 2, [7.0, 1.0, 0.0]));
+        let alone = labels(atoms.clone()).report.termini;
+        let ligand = |name: &str, residue: &str, x: f64| Atom {
+            hetero: true,
+            ..atom(name, residue, 300, [x, 30.0, 0.0])
+        };
+        // S-adenosylmethionine has N, CA and C.
+        for (name, x) in [("N", 0.0), ("CA", 1.5), ("C", 2.5), ("O", 3.0)] {
+            atoms.push(ligand(name, "SAM", x));
+        }
+        atoms.push(ligand("O", "HOH", 20.0));
+        atoms.push(ligand("ZN", "ZN", 30.0));
+        let report = labels(atoms).report;
+        // The ligand, last of all, is taken for the end of its chain, as ever.
+        assert_eq!((alone[0], report.termini[0]), (1, 1));
+    }
+
     #[test]
     fn an_acetyl_cap_leaves_the_amide_neutral() {
         let mut atoms = chain(&[("ALA", 1)]);

@@ -32,13 +32,16 @@ mod contact_types;
 mod copies;
 mod elements;
 mod error;
+mod foreign;
 mod groups;
 mod input;
 mod labels;
 mod ligands;
 mod metal_sites;
 mod missing;
+mod models;
 mod other_names;
+mod overlap;
 mod parse;
 mod peptidase;
 mod peptidase_families;
@@ -51,11 +54,13 @@ mod report;
 mod report_text;
 mod residue_selection;
 mod residues;
+mod scope;
 mod select;
 mod sequence;
 mod sieve;
 mod source;
 mod termini;
+mod wanted;
 mod write;
 
 pub use accessible::PROBE;
@@ -70,9 +75,12 @@ pub use groups::GroupKind;
 pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
 pub use missing::MissingResidues;
+pub use models::JoinedModels;
 pub use peptidase::ActiveSite;
 pub use plain_names::{plain_atom_name, plain_residue_name, standard_residue_name};
-pub use policy::{AlternateLocation, Hetatm, Hydrogens, PolicyError, ReadOptions, Waters};
+pub use policy::{
+    AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
+};
 pub use read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
 pub use report::{
     Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, OtherName, ReadReport,

@@ -19,14 +19,17 @@ pub struct ReadOptions {
     pub hydrogens: Hydrogens,
     /// Which alternate location is kept.
     pub altloc: AlternateLocation,
-    /// Which model is read: 1 is the first in the file, whatever number it carries. A file of one model has it read.
-    pub model: usize,
+    /// Which model is read, or all of them as one molecule. A file of one model has it read.
+    pub model: ModelChoice,
     /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is read as it stands.
     pub assembly: Option<String>,
     /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
     pub min_plddt: Option<f64>,
     /// Residues of these names are left out, whatever they are.
     pub drop_residue: Vec<String>,
+    /// Whether the B column is pLDDT wherever it can be, as the user says who gives a least one and no file is known as a prediction.
+    #[serde(skip)]
+    pub trust_plddt: bool,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
     #[serde(skip)]
     pub keep: Vec<String>,
@@ -39,11 +42,90 @@ impl Default for ReadOptions {
             hetatm: Hetatm::default(),
             hydrogens: Hydrogens::default(),
             altloc: AlternateLocation::default(),
-            model: 1,
+            model: ModelChoice::default(),
             assembly: None,
             min_plddt: None,
             drop_residue: Vec::new(),
+            trust_plddt: false,
             keep: Vec::new(),
+        }
+    }
+}
+
+/// Which of a file's models are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "WrittenModel", into = "WrittenModel")]
+pub enum ModelChoice {
+    /// One: 1 is the first in the file, whatever number it carries.
+    Number(usize),
+    /// All of them, as parts of one molecule.
+    All,
+}
+
+/// A choice of models as in `run.json`: a number, or `all`.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum WrittenModel {
+    Number(usize),
+    Word(String),
+}
+
+impl Default for ModelChoice {
+    fn default() -> Self {
+        Self::Number(1)
+    }
+}
+
+impl ModelChoice {
+    /// Whether a model is read, by its number.
+    pub(super) fn takes(self, number: usize) -> bool {
+        match self {
+            Self::Number(wanted) => number == wanted,
+            Self::All => true,
+        }
+    }
+}
+
+impl FromStr for ModelChoice {
+    type Err = PolicyError;
+
+    fn from_str(text: &str) -> Result<Self, PolicyError> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self::All),
+            (_, Ok(number)) if number > 0 => Ok(Self::Number(number)),
+            _ => Err(PolicyError {
+                text: text.to_owned(),
+                choices: "a whole number above zero and all",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for ModelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::All => f.write_str("all"),
+        }
+    }
+}
+
+impl From<ModelChoice> for WrittenModel {
+    fn from(choice: ModelChoice) -> Self {
+        match choice {
+            ModelChoice::Number(number) => Self::Number(number),
+            ModelChoice::All => Self::Word(choice.to_string()),
+        }
+    }
+}
+
+impl TryFrom<WrittenModel> for ModelChoice {
+    type Error = PolicyError;
+
+    fn try_from(written: WrittenModel) -> Result<Self, PolicyError> {
+        match written {
+            WrittenModel::Number(number) => number.to_string().parse(),
+            WrittenModel::Word(word) => word.parse(),
         }
     }
 }

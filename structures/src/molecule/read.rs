@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use super::error::ReadError;
 use super::groups::{GroupKind, Residue, residues};
 use super::input::InputSpec;
-use super::policy::ReadOptions;
+use super::policy::{ModelChoice, ReadOptions};
 use super::report::{ChainCount, DropKind, GroupCount, OtherName, ReadReport, count};
 use super::{
-    Atom, Format, Molecule, assembly, completeness, ligands, parse, radii, select, sieve, source,
+    Atom, Format, Molecule, assembly, completeness, foreign, ligands, models, overlap, parse,
+    radii, scope, select, sieve, source,
 };
 
 /// An atom of the model that was read, and what became of it.
@@ -88,23 +89,32 @@ fn read_telling(
 ) -> Result<Molecule, ReadError> {
     let file = spec.path.as_path();
     let source = source::unpack(file, bytes)?;
-    let not_a_structure = || ReadError::NotAStructure {
-        file: file.to_path_buf(),
+    let not_a_structure = || match foreign::by_name(file) {
+        Some(foreign) => ReadError::Foreign {
+            file: file.to_path_buf(),
+            what: foreign.what,
+            remedy: foreign.remedy,
+        },
+        None => ReadError::NotAStructure {
+            file: file.to_path_buf(),
+        },
     };
     let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
-    let sieve = |model: usize| match format {
+    let sieve = |model: ModelChoice| match format {
         Format::Pdb => sieve::pdb::sieve(file, &source.text, model),
         Format::Mmcif => sieve::mmcif::sieve(file, &source.text, model),
     };
     let mut sieved = sieve(options.model)?;
-    if sieved.models == 1 && options.model != 1 {
-        sieved = sieve(1)?;
-    } else if sieved.models > 1 && !(1..=sieved.models).contains(&options.model) {
-        return Err(ReadError::UnknownModel {
-            file: file.to_path_buf(),
-            model: options.model,
-            models: sieved.models,
-        });
+    if let ModelChoice::Number(model) = options.model {
+        if sieved.models == 1 && model != 1 {
+            sieved = sieve(ModelChoice::Number(1))?;
+        } else if sieved.models > 1 && !(1..=sieved.models).contains(&model) {
+            return Err(ReadError::UnknownModel {
+                file: file.to_path_buf(),
+                model,
+                models: sieved.models,
+            });
+        }
     }
     drop(source.text);
     if sieved.carried.is_empty() {
@@ -123,7 +133,10 @@ fn read_telling(
         compressed: source.compressed,
         ..ReadReport::default()
     };
-    report.altered.models_ignored = sieved.models.saturating_sub(1);
+    let is_joined = options.model == ModelChoice::All && sieved.models > 1;
+    if !is_joined {
+        report.altered.models_ignored = sieved.models.saturating_sub(1);
+    }
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
@@ -133,12 +146,45 @@ fn read_telling(
             count(sieved.other_blocks.len(), "further data block")
         ));
     }
+    if let Some(first) = sieved.displaced.first() {
+        report.warnings.push(format!(
+            "{} out of the columns of the format, the first at line {first}: moved and read",
+            count(sieved.displaced.len(), "atom record")
+        ));
+    }
     let provenance = sieved.provenance;
+    let (models, ignored) = (sieved.models, std::mem::take(&mut sieved.ignored));
     let assemblies = std::mem::take(&mut sieved.assemblies);
     let mut parsed = parse::parse(file, format, sieved)?;
+    let relation = match models {
+        0 | 1 => models::Relation::Single,
+        _ => {
+            let read = parsed.iter();
+            let read = read.map(|record| (record.carried.model, record.exact.position));
+            models::relation(read.chain(ignored.iter().copied()))
+        }
+    };
+    if is_joined {
+        if options.assembly.is_some() && !assemblies.list.is_empty() {
+            return Err(ReadError::AssemblyOfModels {
+                file: file.to_path_buf(),
+            });
+        }
+        if relation == models::Relation::Alternatives {
+            report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
+        }
+        let (joined, told) = models::join(parsed, relation);
+        (parsed, report.joined_models) = (joined, Some(told));
+    } else if relation == models::Relation::Parts {
+        report.altered.models_are_parts = true;
+        let read = parsed.first().map_or(1, |record| record.carried.model);
+        report
+            .warnings
+            .push(models::warning(models, read, ignored.len()));
+    }
     if let Some(wanted) = &options.assembly {
         parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
-    } else if spec.chains.is_none() {
+    } else if spec.chains.is_none() && !is_joined {
         report
             .warnings
             .extend(assembly::warning(&parsed, &assemblies));
@@ -162,6 +208,8 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         .warnings
         .extend(completeness::warnings(&atoms, &groups));
     report.warnings.extend(ligands::warning(&atoms, &groups));
+    report.warnings.extend(overlap::warnings(&atoms, &groups));
+    report.warnings.extend(scope::warnings(&atoms, &groups));
     report.chains = count_chains(&groups);
     report.groups = count_groups(&groups);
     report.other_names = count_other_names(&groups);

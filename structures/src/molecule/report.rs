@@ -8,6 +8,8 @@ use super::Format;
 use super::assembly::BuiltAssembly;
 use super::confidence::Confidence;
 use super::groups::GroupKind;
+use super::models::JoinedModels;
+use super::wanted::CutEnd;
 
 /// What reading one file did.
 ///
@@ -32,8 +34,16 @@ pub struct ReadReport {
     pub altered: Altered,
     /// The biological assembly that was built; nothing where the coordinates were taken as they stand.
     pub assembly: Option<BuiltAssembly>,
+    /// The models that were read as one molecule; nothing where one was read.
+    pub joined_models: Option<JoinedModels>,
     /// How sure the prediction is that the file holds; nothing where it holds none.
     pub confidence: Option<Confidence>,
+    /// Ends that a selection of residues cut out of chains: they stand for bonds.
+    #[serde(skip)]
+    pub(super) cut_ends: Vec<CutEnd>,
+    /// Why the B column is taken for no pLDDT where a least one is given.
+    #[serde(skip)]
+    pub no_confidence: Option<String>,
     /// What the user should know before trusting the result.
     pub warnings: Vec<String>,
 }
@@ -79,6 +89,8 @@ pub struct OtherName {
 pub enum DropKind {
     /// Chains that were not asked for.
     Chain,
+    /// Residues that were not asked for, of chains of which others were.
+    OtherResidue,
     /// Chains that have no part in the biological assembly asked for.
     Assembly,
     /// Hydrogen and deuterium: united-atom radii stand for them.
@@ -125,6 +137,9 @@ pub struct Altered {
     pub alternate_locations: Vec<AlternateChoice>,
     /// Models that were not read.
     pub models_ignored: usize,
+    /// Whether all models lie beside one another, so that those that were not read are parts of what was.
+    #[serde(skip)]
+    pub models_are_parts: bool,
 }
 
 /// The alternate location chosen for a residue.

@@ -86,10 +86,22 @@ impl fmt::Display for ReadReport {
                 )?;
             }
         }
+        if let Some(joined) = &self.joined_models {
+            write!(
+                f,
+                "\n  {} read as one molecule",
+                count(joined.models, "model")
+            )?;
+            if joined.on_axes > 0 {
+                let atoms = count(joined.on_axes, "atom");
+                write!(f, "; {atoms} in one place in several kept once")?;
+            }
+        }
         if let Some(confidence) = &self.confidence {
             let told_by = match confidence.told_by {
                 ToldBy::Header => "as the file says",
                 ToldBy::Values => "told by its B column",
+                ToldBy::User => "as --min-plddt says",
             };
             write!(
                 f,
@@ -118,6 +130,7 @@ fn show_dropped(dropped: &Dropped) -> String {
     let atoms = count(dropped.atoms, "atom");
     match dropped.kind {
         DropKind::Chain => format!("{atoms} of other chains ({})", names()),
+        DropKind::OtherResidue => format!("{atoms} of other residues of {}", names()),
         DropKind::Assembly => format!("{atoms} of chains outside the assembly ({})", names()),
         DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
         DropKind::Water => count(dropped.atoms, "water atom"),

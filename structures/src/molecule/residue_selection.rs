@@ -1,23 +1,26 @@
-//! Residues as a user picks them: `H:1-50,H:52A,L`.
+//! Residues as a user picks them: `H:1-50,52A,L`.
 
 use super::Molecule;
 use super::groups::residue_runs;
+use super::report::show_chain;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Residues by chain and number, as the files' authors name them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct ResidueSelection(Vec<Part>);
 
-/// One part of a selection: a chain, and which of its residues.
+/// One part of a selection as written: a chain, and which of its residues.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     chain: String,
     residues: Range,
+    /// What else it may be where no chain has its name: residues of the chain of the part before it.
+    continued: Option<(String, Range)>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Range {
     /// The whole chain.
     Chain,
@@ -31,12 +34,29 @@ enum Range {
 
 impl std::fmt::Display for Part {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let chain = &self.chain;
-        match self.residues {
-            Range::Chain => write!(f, "{chain}"),
-            Range::Plain(number) => write!(f, "{chain}:{number}"),
-            Range::Numbers(first, last) => write!(f, "{chain}:{first}-{last}"),
-            Range::Inserted(number, insertion) => write!(f, "{chain}:{number}{insertion}"),
+        write!(f, "{}{}", self.chain, self.residues)
+    }
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Chain => Ok(()),
+            Self::Plain(number) => write!(f, ":{number}"),
+            Self::Numbers(first, last) => write!(f, ":{first}-{last}"),
+            Self::Inserted(number, insertion) => write!(f, ":{number}{insertion}"),
+        }
+    }
+}
+
+impl Range {
+    /// Whether a residue is among them.
+    fn holds(self, number: i64, insertion: Option<char>) -> bool {
+        match self {
+            Self::Chain => true,
+            Self::Plain(own) => (own, None) == (number, insertion),
+            Self::Numbers(first, last) => (first..=last).contains(&number),
+            Self::Inserted(own, code) => (own, Some(code)) == (number, insertion),
         }
     }
 }
@@ -45,25 +65,83 @@ impl std::str::FromStr for ResidueSelection {
     type Err = String;
 
     /// Reads parts with commas between them: `H` for a chain, `H:52` for a residue, `H:52A` for one that is inserted, `H:1-50` for a range of
-    /// numbers with all that is inserted among them, `H:52-52` for one number so; `_:12` or `:12` where chains have no name.
+    /// numbers with all that is inserted among them, `H:52-52` for one number so; `_:12` or `:12` where chains have no name. After residues of a
+    /// chain its name may be left out, as in `H:52,54,60-65`, unless a chain is called so.
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split(',').map(|part| {
+        let mut parts: Vec<Part> = Vec::new();
+        for part in text.split(',') {
             let (chain, residues) = match part.trim().split_once(':') {
                 Some((chain, residues)) => (chain, range(residues)),
                 None => (part.trim(), Some(Range::Chain)),
             };
             let empty = chain.is_empty() && residues == Some(Range::Chain);
-            match residues {
-                Some(residues) if !empty => Ok(Part {
-                    chain: chain.to_owned(),
-                    residues,
-                }),
-                _ => Err(format!(
+            let Some(residues) = residues.filter(|_| !empty) else {
+                return Err(format!(
                     "`{part}` names no residues; a chain is needed, or residues as in H:12, H:52A or H:1-50"
-                )),
-            }
-        });
-        Ok(Self(parts.collect::<Result<_, _>>()?))
+                ));
+            };
+            let before = parts.last().and_then(Part::chain_of_residues);
+            let continued = (residues == Range::Chain)
+                .then(|| Some((before?.to_owned(), range(chain)?)))
+                .flatten();
+            parts.push(Part {
+                chain: chain.to_owned(),
+                residues,
+                continued,
+            });
+        }
+        Ok(Self(parts))
+    }
+}
+
+impl Part {
+    /// The chain whose residues a number after this part may be of.
+    fn chain_of_residues(&self) -> Option<&str> {
+        match (&self.continued, self.residues) {
+            (Some((chain, _)), _) => Some(chain),
+            (None, Range::Chain) => None,
+            (None, _) => Some(&self.chain),
+        }
+    }
+
+    /// The chain, and which of its residues, in a molecule of these chains.
+    fn read_among(&self, chains: &BTreeSet<&str>) -> Picked {
+        let name = |chain: &str| match chain {
+            // Where a chain has no name reports say `_`.
+            "_" if !chains.contains("_") => String::new(),
+            chain => chain.to_owned(),
+        };
+        let (chain, residues) = match &self.continued {
+            Some((chain, residues)) if !chains.contains(self.chain.as_str()) => (chain, *residues),
+            _ => (&self.chain, self.residues),
+        };
+        Picked {
+            chain: name(chain),
+            residues,
+            written: format!("{chain}{residues}"),
+        }
+    }
+}
+
+/// A part of a selection as it is read in one molecule.
+pub(super) struct Picked {
+    pub(super) chain: String,
+    residues: Range,
+    /// As a user would write it in full.
+    pub(super) written: String,
+}
+
+impl Picked {
+    /// Whether a residue of the chain is among them.
+    pub(super) fn holds(&self, number: i64, insertion: Option<char>) -> bool {
+        self.residues.holds(number, insertion)
+    }
+}
+
+impl ResidueSelection {
+    /// Its parts as they are read in a molecule of these chains.
+    pub(super) fn read_among(&self, chains: &BTreeSet<&str>) -> Vec<Picked> {
+        self.0.iter().map(|part| part.read_among(chains)).collect()
     }
 }
 
@@ -104,28 +182,19 @@ impl Molecule {
     /// # Errors
     /// The first part that no atom belongs to, with the chains and numbers that there are.
     pub fn selected(&self, selection: &ResidueSelection) -> Result<Vec<bool>, UnknownResidues> {
+        let chains: BTreeSet<&str> = self.atoms.iter().map(|atom| atom.chain.as_str()).collect();
         let mut chosen = vec![false; self.atoms.len()];
-        for part in &selection.0 {
+        for picked in selection.read_among(&chains) {
             let mut found = false;
             for (atom, chosen) in self.atoms.iter().zip(&mut chosen) {
-                let number = atom.residue_number;
-                // Where a chain has no name reports say `_`.
-                let is_blank = part.chain == "_" && atom.chain.is_empty();
-                let meant = (atom.chain == part.chain || is_blank)
-                    && match part.residues {
-                        Range::Chain => true,
-                        Range::Plain(own) => (own, None) == (number, atom.insertion_code),
-                        Range::Numbers(first, last) => (first..=last).contains(&number),
-                        Range::Inserted(own, insertion) => {
-                            (own, Some(insertion)) == (number, atom.insertion_code)
-                        }
-                    };
+                let meant = atom.chain == picked.chain
+                    && picked.holds(atom.residue_number, atom.insertion_code);
                 found |= meant;
                 *chosen |= meant;
             }
             if !found {
                 return Err(UnknownResidues {
-                    part: part.to_string(),
+                    part: picked.written,
                     present: self.numbers_by_chain(),
                 });
             }
@@ -165,11 +234,34 @@ pub struct UnknownResidues {
 }
 
 impl UnknownResidues {
-    /// The chains and numbers that there are, in words.
+    /// The chains and numbers that there are, in words, and how to name a residue where a number stands without its chain.
     pub fn present(&self) -> String {
         let chains = self.present.iter();
-        let chains = chains.map(|(chain, [first, last])| format!("{chain}:{first}-{last}"));
-        chains.collect::<Vec<_>>().join(", ")
+        let chains = chains.map(|(chain, [first, last])| {
+            let chain = show_chain(chain);
+            format!("{chain}:{first}-{last}")
+        });
+        let mut text = chains.collect::<Vec<_>>().join(", ");
+        let (chain, residue) = match self.part.split_once(':') {
+            Some((chain, residue)) => (Some(chain), residue),
+            None => (None, self.part.as_str()),
+        };
+        // The chain is left out, or is another than the only one.
+        let is_elsewhere = chain.is_some_and(|chain| {
+            let is_there = self
+                .present
+                .keys()
+                .any(|name| show_chain(name) == show_chain(chain));
+            !is_there && self.present.len() == 1
+        });
+        if let Some((own, _)) = self.present.first_key_value()
+            && range(residue).is_some()
+            && (chain.is_none() || is_elsewhere)
+        {
+            let own = show_chain(own);
+            text += &format!("; for residue {residue} of chain {own} write {own}:{residue}");
+        }
+        text
     }
 }
 
@@ -225,11 +317,44 @@ mod tests {
         assert_eq!(chosen(":7"), Ok(vec![5]));
     }
 
+    /// Found by a user: numbers after a chain's residue were taken for chains, and the message named them in a form that looked right.
+    #[test]
+    fn the_chain_goes_on_where_its_name_is_left_out() {
+        assert_eq!(chosen("H:51,52,53"), Ok(vec![0, 1, 3]));
+        assert_eq!(chosen("H:51,52A"), Ok(vec![0, 2]));
+        assert_eq!(chosen("L:-2,H:40-51,52-60"), Ok(vec![0, 1, 2, 3, 4]));
+        assert_eq!(chosen("_:7"), Ok(vec![5]));
+        let said = chosen("H:51,99").unwrap_err();
+        assert!(said.starts_with("H:99 of "), "{said}");
+        // No chain went before.
+        let said = chosen("52").unwrap_err();
+        assert!(
+            said.contains("for residue 52 of chain _ write _:52"),
+            "{said}"
+        );
+        assert!(chosen("H,52").unwrap_err().starts_with("52 of "));
+        // Another chain than the only one.
+        let mut only = molecule();
+        only.atoms.truncate(4);
+        let unknown = |text: &str| only.selected(&text.parse().unwrap()).unwrap_err();
+        assert_eq!(
+            unknown("B:52").present(),
+            "H:51-53; for residue 52 of chain H write H:52"
+        );
+        assert_eq!(unknown("H:99").present(), "H:51-53");
+        // A chain of that name is meant.
+        let mut named = molecule();
+        named.atoms[4].chain = "52".to_owned();
+        let both = named.selected(&"H:51,52".parse().unwrap()).unwrap();
+        assert_eq!(both, [true, false, false, false, true, false]);
+    }
+
     #[test]
     fn what_is_not_there_is_named() {
-        let present = ":7-7, H:51-53, L:-2--2";
+        let present = "_:7-7, H:51-53, L:-2--2";
         assert_eq!(chosen("H:52B"), Err(format!("H:52B of {present}")));
         assert_eq!(chosen("H:51,K"), Err(format!("K of {present}")));
+        assert_eq!(chosen("_:9"), Err(format!("_:9 of {present}")));
         for bad in ["", "H:", "H:x", "H:5-3", "H:5-", "H:5A-7", "H,", "H:1é"] {
             assert!(bad.parse::<ResidueSelection>().is_err(), "{bad}");
         }

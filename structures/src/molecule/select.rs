@@ -4,6 +4,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use super::Atom;
 use super::additives::is_additive;
 use super::alternate::choose;
 use super::confidence::{Provenance, weigh};
@@ -12,10 +13,11 @@ use super::error::ReadError;
 use super::other_names::known_as;
 use super::parse::Parsed;
 use super::policy::{Hetatm, Hydrogens, ReadOptions, Waters};
+use super::pseudo_atoms;
 use super::report::{DropKind, ReadReport, show_chain};
 use super::residues::{is_amino_acid, is_water};
 use super::sieve::NameColumn;
-use super::{Atom, pseudo_atoms, report};
+use super::wanted::{Wanted, cut_ends};
 
 /// Applies all selections and notes in the report what they dropped.
 ///
@@ -30,7 +32,8 @@ pub(super) fn select(
     report: &mut ReadReport,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
-    let wanted = wanted_chains(file, &parsed, chains)?;
+    let wanted = chains.map(|chains| Wanted::new(file, &parsed, chains));
+    let wanted = wanted.transpose()?;
     let other_names = other_names(&parsed);
     let (aligned, pseudo_atoms) = {
         let names = parsed.iter().zip(&other_names);
@@ -47,6 +50,7 @@ pub(super) fn select(
         Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
     };
     let mut atoms = Vec::with_capacity(parsed.len());
+    let mut left_out = Vec::new();
     let facts = other_names.into_iter().zip(pseudo_atoms);
     for (record, (other_name, pseudo_atom)) in parsed.into_iter().zip(facts) {
         let carried = &record.carried;
@@ -59,9 +63,9 @@ pub(super) fn select(
         };
         let is_elsewhere = wanted
             .as_ref()
-            .is_some_and(|wanted| !wanted.contains(&carried.chain));
-        let unwanted = if is_elsewhere {
-            Some((DropKind::Chain, show_chain(&carried.chain)))
+            .and_then(|wanted| wanted.leaves_out(carried));
+        let unwanted = if let Some(kind) = is_elsewhere {
+            Some((kind, show_chain(&carried.chain)))
         } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
             Some((DropKind::Residue, name))
         } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
@@ -83,7 +87,11 @@ pub(super) fn select(
         if let Some((kind, of)) = unwanted {
             report.drop_atoms(kind, of, 1);
             let symbol = resolved().map_or("", |element| element.symbol);
-            dropped(atom(record, symbol), kind);
+            let atom = atom(record, symbol);
+            if kind == DropKind::OtherResidue {
+                left_out.push(atom.clone());
+            }
+            dropped(atom, kind);
             continue;
         }
         let element = resolved().ok_or_else(|| ReadError::UnknownElement {
@@ -108,8 +116,16 @@ pub(super) fn select(
         }
         atoms.push(atom(record, element.symbol));
     }
+    report.cut_ends = cut_ends(&atoms, &left_out);
     let atoms = choose(atoms, options.altloc, report, dropped);
-    let atoms = weigh(atoms, provenance, options.min_plddt, report, dropped);
+    let atoms = weigh(
+        atoms,
+        provenance,
+        options.min_plddt,
+        options.trust_plddt,
+        report,
+        dropped,
+    );
     if atoms.is_empty() {
         return Err(ReadError::EmptySelection {
             file: file.to_path_buf(),
@@ -196,39 +212,6 @@ fn modified_residues(parsed: &[Parsed]) -> HashSet<ResidueKey> {
     }
     let whole = found.into_iter().filter(|(_, seen)| *seen == [true; 3]);
     whole.map(|(key, _)| key).collect()
-}
-
-/// The chains to keep, or all of them.
-fn wanted_chains(
-    file: &Path,
-    parsed: &[Parsed],
-    chains: Option<&[String]>,
-) -> Result<Option<Vec<String>>, ReadError> {
-    let Some(chains) = chains else {
-        return Ok(None);
-    };
-    let mut present: Vec<String> = Vec::new();
-    for record in parsed {
-        if present.last() != Some(&record.carried.chain) && !present.contains(&record.carried.chain)
-        {
-            present.push(record.carried.chain.clone());
-        }
-    }
-    let mut wanted = Vec::with_capacity(chains.len());
-    for chain in chains {
-        if present.contains(chain) {
-            wanted.push(chain.clone());
-        } else if chain == report::show_chain("") && present.iter().any(String::is_empty) {
-            wanted.push(String::new());
-        } else {
-            return Err(ReadError::UnknownChain {
-                file: file.to_path_buf(),
-                chain: chain.clone(),
-                present,
-            });
-        }
-    }
-    Ok(Some(wanted))
 }
 
 /// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known` are the names under which the

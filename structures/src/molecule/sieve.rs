@@ -2,7 +2,7 @@
 //!
 //! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge columns,
 //! old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks. Only the atoms
-//! of one model pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
+//! of the models that are wanted pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
 //! number. Facts that pdbtbx would change travel beside it in a [`Carried`] of the same index:
 //!
 //! | fact | what pdbtbx 0.12 does with it |
@@ -18,11 +18,15 @@
 mod assembly_items;
 mod assembly_remark;
 mod atom_site;
+mod displaced;
+mod element_column;
 pub(super) mod mmcif;
 pub(super) mod pdb;
 mod provenance;
 mod residue_columns;
 pub(super) mod tokens;
+
+pub(super) use displaced::{Displaced, displaced};
 
 use std::path::Path;
 
@@ -48,6 +52,8 @@ pub(super) enum NameColumn {
 #[derive(Clone, Debug)]
 pub(super) struct Carried {
     pub(super) line: usize,
+    /// Its model, counted from 1 in the order of the file.
+    pub(super) model: usize,
     pub(super) chain: String,
     /// What the archive calls the chain (`label_asym_id`), where that is another name.
     pub(super) archive_chain: Option<String>,
@@ -71,7 +77,7 @@ pub(super) struct Exact {
     pub(super) b_factor: f64,
 }
 
-/// The atoms of one model: text for pdbtbx, and what travels past it, by serial number.
+/// The atoms of the models that are read: text for pdbtbx, and what travels past it, by serial number.
 #[derive(Debug, Default)]
 pub(super) struct Sieved {
     /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
@@ -80,8 +86,12 @@ pub(super) struct Sieved {
     pub(super) carried: Vec<Carried>,
     /// Models in the file.
     pub(super) models: usize,
-    /// Atom records in the other models.
+    /// Atom records in the models that are not read.
     pub(super) atoms_ignored: usize,
+    /// Model and position (Å) of those among them whose coordinates can be read.
+    pub(super) ignored: Vec<(usize, [f64; 3])>,
+    /// Lines of atom records that stood out of their columns and were moved.
+    pub(super) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(super) defaults_filled: usize,
     /// Lines at which further data blocks of an mmCIF file begin that have atoms, too.
@@ -92,6 +102,15 @@ pub(super) struct Sieved {
     pub(super) provenance: Provenance,
     /// What the file says of its biological assemblies.
     pub(super) assemblies: Assemblies,
+}
+
+impl Sieved {
+    /// Notes an atom of a model that is not read.
+    fn ignore(&mut self, model: usize, position: Option<[f64; 3]>) {
+        self.atoms_ignored += 1;
+        self.ignored
+            .extend(position.map(|position| (model, position)));
+    }
 }
 
 /// An error in one field of one line.

@@ -8,13 +8,18 @@ use flate2::read::MultiGzDecoder;
 
 use super::Format;
 use super::error::ReadError;
+use super::foreign::{Foreign, archive};
 use super::sieve::pdb::is_atom;
+use super::sieve::{Displaced, displaced};
 
 /// The first two bytes of every gzip stream (RFC 1952, section 2.3.1).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 
 /// Larger texts are refused: the largest entry of the PDB is about 0.6 GB as mmCIF (3J3Q, 2.4 million atoms).
 const LIMIT: u64 = 4 << 30;
+
+/// Bytes that show what is packed in a gzip stream: a block of a tar.
+const BLOCK: u64 = 512;
 
 /// A file as unpacked text.
 pub(super) struct Source {
@@ -61,7 +66,22 @@ fn within_limit(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ReadError> {
 /// Unpacks the bytes of a file, by its magic bytes whatever the name; `path` is for errors.
 pub(super) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadError> {
     let compressed = bytes.starts_with(&GZIP_MAGIC);
+    let refuse = |foreign: Option<Foreign>| match foreign {
+        Some(Foreign { what, remedy }) => Err(ReadError::Foreign {
+            file: path.to_path_buf(),
+            what,
+            remedy,
+        }),
+        None => Ok(()),
+    };
+    refuse(archive(&bytes))?;
     if compressed {
+        // Of an archive the first block is enough.
+        let mut head = Vec::new();
+        let first = MultiGzDecoder::new(bytes.as_slice())
+            .take(BLOCK)
+            .read_to_end(&mut head);
+        refuse(first.ok().and_then(|_| archive(&head)))?;
         let mut unpacked = Vec::with_capacity(bytes.len().saturating_mul(4));
         MultiGzDecoder::new(bytes.as_slice())
             .take(LIMIT + 1)
@@ -97,7 +117,7 @@ pub(super) fn format_of(path: &Path, text: &str) -> Option<Format> {
 
 fn by_content(text: &str) -> Option<Format> {
     for (_, line) in lines(text) {
-        if is_atom(line) {
+        if is_atom(line) || matches!(displaced(line), Some(Displaced::Moved(_))) {
             return Some(Format::Pdb);
         }
         let starts = |word: &str| {

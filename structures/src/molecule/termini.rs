@@ -1,8 +1,8 @@
 //! Ends of peptide chains, which are charged where nothing is bonded to them.
 //!
 //! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
-//! and begin another if the chain's name changes or the numbering has no gap; where numbers are missing, so are residues, and the
-//! loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
+//! and begin another if the chain's name changes, the first has its second carboxyl oxygen and the gap in the numbering does not fit, or there is none; else, where numbers are
+//! missing, so are residues, and the loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
 
 use super::cells::Cells;
 use super::charge_table::{
@@ -16,7 +16,7 @@ use super::{Atom, Molecule, squared_distance};
 pub(super) const BOND: f64 = 2.5;
 
 /// Longest distance in Å of a terminal atom from what is bonded to it.
-const LONGEST_CAP: f64 = 1.7;
+pub(super) const LONGEST_CAP: f64 = 1.7;
 
 /// An atom that may be bonded to the end of a chain.
 struct Cap<'a> {
@@ -42,16 +42,18 @@ impl Molecule {
         let caps = self.caps(groups);
         for (place, residue) in peptide.iter().enumerate() {
             let before = place.checked_sub(1).and_then(|place| peptide.get(place));
-            let after = peptide.get(place + 1);
-            let begins = before.is_none_or(|before| self.separate(before, residue));
+            let after = peptide.get(place + 1).copied();
+            let begins = before.is_none_or(|before| {
+                self.separate(before, residue) || self.follows_an_end(before, residue, after)
+            });
             let ends = after.is_none_or(|after| self.separate(residue, after));
             if begins && !self.capped(&caps, residue, "N") && ph < TERMINI_PKA[0] {
                 self.charge_amino(residue, labels);
             }
-            let last_oxygen = ["OXT", "OT2", "O2", "OC2"]
-                .iter()
-                .any(|name| self.atom(residue, name).is_some());
-            if (ends || last_oxygen) && !self.capped(&caps, residue, "C") && ph >= TERMINI_PKA[1] {
+            if (ends || self.has_last_oxygen(residue))
+                && !self.capped(&caps, residue, "C")
+                && ph >= TERMINI_PKA[1]
+            {
                 self.charge_carboxyl(residue, labels);
             }
             let broken = before.is_some_and(|before| {
@@ -77,12 +79,55 @@ impl Molecule {
         apart && (chain != next_chain || next_number <= number.saturating_add(1))
     }
 
-    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; or the other end of a residue that
-    /// stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
+    /// Whether a residue has the second oxygen of a carboxyl end.
+    pub(super) fn has_last_oxygen(&self, residue: &Residue<'_>) -> bool {
+        ["OXT", "OT2", "O2", "OC2"]
+            .iter()
+            .any(|name| self.atom(residue, name).is_some())
+    }
+
+    /// Whether a residue begins a chain because the one before it ended one: that has its second oxygen, and no residues that the numbers leave out
+    /// fit between. Some programs write such an oxygen before a gap. Ligands that have an amino acid's atoms follow chains, too; of these none but
+    /// standard residues in ATOM records and those bonded to the next are of a chain.
+    fn follows_an_end(
+        &self,
+        before: &Residue<'_>,
+        residue: &Residue<'_>,
+        after: Option<&Residue<'_>>,
+    ) -> bool {
+        let bonded = |from: &Residue<'_>, to: &Residue<'_>| {
+            self.distance(from, to)
+                .is_some_and(|distance| distance <= BOND)
+        };
+        let is_of_chain = || {
+            let first = residue
+                .atoms
+                .first()
+                .and_then(|&index| self.atoms.get(index));
+            residue.kind == GroupKind::AminoAcid && first.is_some_and(|atom| !atom.hetero)
+                || after.is_some_and(|after| bonded(residue, after))
+        };
+        self.has_last_oxygen(before)
+            && self.distance(before, residue).is_some_and(|distance| {
+                distance > BOND && !Self::may_be_gap(before, residue, distance)
+            })
+            && is_of_chain()
+    }
+
+    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; a residue that was not picked; or the
+    /// other end of a residue that stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
     pub(super) fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
         let Some(end) = self.atom(residue, name) else {
             return true;
         };
+        if self
+            .report
+            .cut_ends
+            .iter()
+            .any(|cut| cut.is(residue.key, name))
+        {
+            return true;
+        }
         caps.cells.around(end.position).any(|index| {
             let cap = &caps.atoms[index];
             let fits = cap

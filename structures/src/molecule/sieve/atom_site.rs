@@ -10,6 +10,7 @@ use std::path::Path;
 use super::tokens::Token;
 use super::{Carried, Exact, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::error::ReadError;
+use crate::molecule::policy::ModelChoice;
 
 /// Prefix of the tags of the atom table, in lower case; tags are case-insensitive.
 const CATEGORY: &str = "_atom_site.";
@@ -106,11 +107,11 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Passes on the rows of one model, counted from 1 by appearance.
+    /// Passes on the rows of the models that are wanted, counted from 1 by appearance.
     pub(super) fn sieve(
         &self,
         file: &Path,
-        wanted: usize,
+        wanted: ModelChoice,
         sieved: &mut Sieved,
     ) -> Result<(), ReadError> {
         if self.values.is_empty() {
@@ -136,11 +137,12 @@ impl<'a> Table<'a> {
             let row = Row { file, row };
             let model = columns.model.and_then(|column| row.value(column));
             let next = models.len() + 1;
-            if *models.entry(model).or_insert(next) != wanted {
-                sieved.atoms_ignored += 1;
+            let number = *models.entry(model).or_insert(next);
+            if !wanted.takes(number) {
+                sieved.ignore(number, row.position(&columns));
                 continue;
             }
-            row.sieve(&columns, sieved)?;
+            row.sieve(&columns, number, sieved)?;
         }
         sieved.models = models.len();
         Ok(())
@@ -206,7 +208,13 @@ impl<'a> Row<'_, 'a> {
         }
     }
 
-    fn sieve(&self, columns: &Columns, sieved: &mut Sieved) -> Result<(), ReadError> {
+    /// The coordinates, where they can be read.
+    fn position(&self, columns: &Columns) -> Option<[f64; 3]> {
+        let [x, y, z] = columns.position.map(|column| self.number(column));
+        Some([x?, y?, z?])
+    }
+
+    fn sieve(&self, columns: &Columns, model: usize, sieved: &mut Sieved) -> Result<(), ReadError> {
         let mut position = [0.0; 3];
         for (axis, name) in ["Cartn_x", "Cartn_y", "Cartn_z"].into_iter().enumerate() {
             let column = columns.position.get(axis).copied().unwrap_or_default();
@@ -265,6 +273,7 @@ impl<'a> Row<'_, 'a> {
         sieved.text.push_str("\"C\" 0 0 0\n");
         sieved.carried.push(Carried {
             line: self.line(),
+            model,
             chain: chain.to_string(),
             archive_chain: columns
                 .archive_chain

@@ -8,12 +8,13 @@ use super::atom_site::{Table, item};
 use super::provenance::Told;
 use super::tokens::{Kind, Token, tokens};
 use crate::molecule::error::ReadError;
+use crate::molecule::policy::ModelChoice;
 
-/// Sieves the text of an mmCIF file; `model` counts from 1.
+/// Sieves the text of an mmCIF file; of the models those that `model` takes.
 pub(in crate::molecule) fn sieve(
     file: &Path,
     text: &str,
-    model: usize,
+    model: ModelChoice,
 ) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut table = Table::default();

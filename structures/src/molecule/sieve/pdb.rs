@@ -2,15 +2,19 @@
 //!
 //! Columns in comments are 1-based, as in the format's description.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
 use super::assembly_remark::Remark;
+use super::displaced::{Displaced, displaced, shifted};
+use super::element_column::element;
 use super::provenance::is_measured;
 use super::residue_columns::{has_wide_chains, residue_and_chain, residue_number};
 use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::confidence::Provenance;
 use crate::molecule::error::ReadError;
+use crate::molecule::policy::ModelChoice;
 use crate::molecule::source::lines;
 
 /// Record names that show a file to be PDB even where it holds no atom.
@@ -19,28 +23,38 @@ const RECORDS: [&str; 14] = [
     "END", "CONECT", "MASTER", "EXPDTA",
 ];
 
-/// Sieves the text of a PDB file; `model` counts from 1.
+/// Sieves the text of a PDB file; of the models those that `model` takes.
 pub(in crate::molecule) fn sieve(
     file: &Path,
     text: &str,
-    model: usize,
+    model: ModelChoice,
 ) -> Result<Sieved, ReadError> {
     let mut sieved = Sieved::default();
     let mut models = Models::default();
     let mut assemblies = Remark::default();
     let wide_chains = has_wide_chains(text);
     for (line, record) in lines(text) {
-        if is_atom(record) {
+        if let Some(place) = AtomRecord::of(record) {
             sieved.recognised = true;
-            if models.of(record) == model {
-                atom(file, line, record, wide_chains, &mut sieved)?;
-            } else {
-                sieved.atoms_ignored += 1;
+            let number = models.of(place.text().unwrap_or(record));
+            if !model.takes(number) {
+                sieved.ignore(number, place.text().and_then(position));
+                continue;
             }
+            let Some(text) = place.text() else {
+                return Err(ReadError::MisplacedRecord {
+                    file: file.to_path_buf(),
+                    line,
+                });
+            };
+            if matches!(place, AtomRecord::Moved(_)) {
+                sieved.displaced.push(line);
+            }
+            atom(file, line, text, wide_chains, number, &mut sieved)?;
         } else {
-            let name = record.split_ascii_whitespace().next().unwrap_or("");
-            sieved.recognised |= RECORDS.contains(&name);
-            models.note(name);
+            let name = record_name(record);
+            sieved.recognised |= RECORDS.contains(&name.as_ref());
+            models.note(&name);
             assemblies.note(line, record);
             if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
                 sieved.provenance = Provenance::NoConfidence;
@@ -50,6 +64,55 @@ pub(in crate::molecule) fn sieve(
     sieved.models = models.count;
     sieved.assemblies = assemblies.assemblies();
     Ok(sieved)
+}
+
+/// An atom's record, and where it stands.
+enum AtomRecord<'a> {
+    /// In its columns, as far as can be seen.
+    InPlace(&'a str),
+    /// Moved to them.
+    Moved(String),
+    /// Anywhere.
+    Lost,
+}
+
+impl<'a> AtomRecord<'a> {
+    /// The atom record of a line, if it holds one.
+    fn of(line: &'a str) -> Option<Self> {
+        if is_atom(line) {
+            return Some(shifted(line).map_or(Self::InPlace(line), Self::Moved));
+        }
+        displaced(line).map(|found| match found {
+            Displaced::Moved(record) => Self::Moved(record),
+            Displaced::Lost => Self::Lost,
+        })
+    }
+
+    fn text(&self) -> Option<&str> {
+        match self {
+            Self::InPlace(text) => Some(text),
+            Self::Moved(text) => Some(text),
+            Self::Lost => None,
+        }
+    }
+}
+
+/// The name of another record: the first word of its line. Programs that write atoms in small letters do so here, too.
+fn record_name(record: &str) -> Cow<'_, str> {
+    let name = record.split_ascii_whitespace().next().unwrap_or("");
+    if name.bytes().any(|byte| byte.is_ascii_lowercase())
+        && !name.bytes().any(|byte| byte.is_ascii_uppercase())
+    {
+        Cow::Owned(name.to_ascii_uppercase())
+    } else {
+        Cow::Borrowed(name)
+    }
+}
+
+/// The coordinates of a record, where they can be read.
+fn position(record: &str) -> Option<[f64; 3]> {
+    let read = |from: usize| coordinate(record.get(from..from + 8)?);
+    Some([read(30)?, read(38)?, read(46)?])
 }
 
 /// Whether a record is an atom's.
@@ -121,6 +184,7 @@ fn atom(
     line: usize,
     record: &str,
     wide_chains: bool,
+    model: usize,
     sieved: &mut Sieved,
 ) -> Result<(), ReadError> {
     if record.len() < 54 {
@@ -216,13 +280,14 @@ fn atom(
     );
     sieved.carried.push(Carried {
         line,
+        model,
         chain: chain.to_string(),
         archive_chain: None,
         residue_name: residue_name.to_string(),
         residue_number,
         insertion_code: Some(insertion).filter(|code| *code != ' '),
         alternate_location: alternate,
-        element: slice(76, 78).trim().to_string(),
+        element: element(record).to_string(),
         name_column: if name.starts_with(' ') {
             NameColumn::Blank
         } else {
