@@ -123,14 +123,15 @@ fn read_telling(
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
-    if let Some(line) = sieved.other_blocks.first() {
+    if let Some((line, name)) = sieved.other_blocks.first() {
         report.warnings.push(format!(
-            "only the first structure is read: {} with atoms, the first at line {line}",
+            "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
             count(sieved.other_blocks.len(), "further data block")
         ));
     }
     let provenance = sieved.provenance;
     let assemblies = std::mem::take(&mut sieved.assemblies);
+    let chain_ends = std::mem::take(&mut sieved.chain_ends);
     let mut parsed = parse::parse(file, format, sieved)?;
     if let Some(wanted) = &options.assembly {
         parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
@@ -148,7 +149,10 @@ fn read_telling(
         &mut report,
         dropped,
     )?;
-    Ok(finish(format, atoms, report))
+    Ok(Molecule {
+        chain_ends,
+        ..finish(format, atoms, report)
+    })
 }
 
 /// Gives the atoms their radii and the report its counts.
@@ -176,9 +180,8 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         atom.radius = radius;
     }
     Molecule {
-        atoms,
-        format,
         report,
+        ..Molecule::new(atoms, format)
     }
 }
 

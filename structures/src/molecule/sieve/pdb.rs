@@ -19,6 +19,9 @@ const RECORDS: [&str; 14] = [
     "END", "CONECT", "MASTER", "EXPDTA",
 ];
 
+/// Records that end a chain.
+const ENDS: [&str; 4] = ["TER", "MODEL", "ENDMDL", "END"];
+
 /// Sieves the text of a PDB file; `model` counts from 1.
 pub(in crate::molecule) fn sieve(
     file: &Path,
@@ -41,6 +44,9 @@ pub(in crate::molecule) fn sieve(
             let name = record.split_ascii_whitespace().next().unwrap_or("");
             sieved.recognised |= RECORDS.contains(&name);
             models.note(name);
+            if ENDS.contains(&name) && !sieved.carried.is_empty() {
+                sieved.chain_ends.push(line);
+            }
             assemblies.note(line, record);
             if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
                 sieved.provenance = Provenance::NoConfidence;
