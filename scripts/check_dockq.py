@@ -14,9 +14,8 @@ differ, what that would change in its score is printed and does not count.
 
 Not for sides of several identical chains: knotdock gives each pose the best of their orders, of which merged chains know one.
 
-Compared for every pose: dockq, fnat, irmsd, and lrmsd where DockQ takes the ligand for the smaller side (elsewhere its LRMSD
-is another quantity, which only enters dockq). Exit code 0 when all differ by at most the tolerance, 1 when one does not,
-2 when the check could not be made.
+Compared for every pose: dockq, fnat, irmsd and lrmsd, whichever of the two files is called the receptor. Exit code 0 when all
+differ by at most the tolerance, 1 when one does not, 2 when the check could not be made.
 """
 
 import argparse
@@ -280,7 +279,7 @@ def main():
 
     columns = [("dockq", "DockQ"), ("fnat", "fnat"), ("irmsd", "iRMSD"), ("lrmsd", "LRMSD")]
     worst = dict.fromkeys((column for column, _ in columns), 0.0)
-    failed, compared, own_difference = [], [], 0.0
+    failed, own_difference = [], 0.0
     for row, (rotation, translation) in zip(rows, poses):
         for atom, place in zip(model["B"].get_atoms(), start @ rotation.T + translation):
             atom.set_coord(place.astype("f"))
@@ -288,9 +287,8 @@ def main():
         if others:
             own = dockq_values(model, native, own_alignments)
             own_difference = max(own_difference, abs(theirs["DockQ"] - own["DockQ"]))
-        compared = columns if theirs["class2"] == "ligand" else columns[:3]
         bad = False
-        for column, name in compared:
+        for column, name in columns:
             # DockQ superposes in single precision, so that a ligand 500 Å away is only known to five digits.
             difference = abs(row[column] - theirs[name])
             allowed = max(arguments.tolerance, 1e-5 * abs(theirs[name]))
@@ -302,13 +300,11 @@ def main():
 
     if failed:
         print(f"{len(failed)} of {len(poses)} poses differ by more than {arguments.tolerance}:")
-        print("rank  " + "  ".join(f"{column:>10} {'(DockQ)':>10}" for column, _ in compared))
+        print("rank  " + "  ".join(f"{column:>10} {'(DockQ)':>10}" for column, _ in columns))
         for row, theirs in failed:
-            print(f"{row['rank']:4d}  " + "  ".join(f"{row[c]:10.5f} {theirs[n]:10.5f}" for c, n in compared))
-    largest = ", ".join(f"{column} {worst[column]:.2e}" for column, _ in compared)
+            print(f"{row['rank']:4d}  " + "  ".join(f"{row[c]:10.5f} {theirs[n]:10.5f}" for c, n in columns))
+    largest = ", ".join(f"{column} {worst[column]:.2e}" for column, _ in columns)
     print(f"{len(poses)} poses, largest differences: {largest}")
-    if len(compared) < len(columns):
-        print("lrmsd not compared: DockQ takes the receptor, the smaller side here, for its ligand")
     if others:
         print(f"for information: DockQ's own alignment pairs {', '.join(others[:5])}{' ...' * (len(others) > 5)}")
         print(f"where the numbers say otherwise; with it DockQ's score would differ from its score here by up to {own_difference:.2e}")

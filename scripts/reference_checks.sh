@@ -19,9 +19,13 @@ python() {
 # The tests build the program; building it alone would compile some of its dependencies again with fewer features.
 cargo test --workspace --no-run --quiet --locked
 example=structures/examples/1ppe
-"$(python dockq)" scripts/check_dockq.py "$target/debug/knotdock" \
-    "${example}_receptor_unbound.pdb" "${example}_ligand_unbound.pdb" \
-    "${example}_receptor_bound.pdb" "${example}_ligand_bound.pdb"
+# Either may be called the receptor.
+for sides in "receptor ligand" "ligand receptor"; do
+    read -r first second <<<"$sides"
+    "$(python dockq)" scripts/check_dockq.py "$target/debug/knotdock" \
+        "${example}_${first}_unbound.pdb" "${example}_${second}_unbound.pdb" \
+        "${example}_${first}_bound.pdb" "${example}_${second}_bound.pdb"
+done
 "$(python dockq)" scripts/check_atom_pairs.py
 "$(python rdkit)" scripts/check_rdkit.py "$target/debug/knotdock" structures/examples
 # The full set of files, five times as many, goes without --few.

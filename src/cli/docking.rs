@@ -25,7 +25,7 @@ use super::dock_report::{
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
-use super::native::{NativeFiles, match_text, measure};
+use super::native::{NativeFiles, announce, measure};
 use super::request::Request;
 
 /// A run that is ready to go.
@@ -58,7 +58,7 @@ impl Docking {
         request.bodies.describe(symmetry, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
-            console.say(match_text(evaluator));
+            announce(evaluator, console);
         }
         let (prepared, chosen, deadline) = if wanted == Wanted::default() {
             (request.plan(console)?, None, None)

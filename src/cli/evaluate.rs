@@ -13,7 +13,7 @@ use serde_json::json;
 use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
-use super::native::{NativeArguments, NativeFiles, match_text, measure};
+use super::native::{NativeArguments, NativeFiles, announce, measure};
 use super::output_file::check_output;
 use super::reading_arguments::{READING_OPTIONS, ReadingArguments};
 
@@ -60,7 +60,7 @@ impl Evaluate {
             check_output(file, read.chain([run_path.as_path()]), self.force)?;
         }
         let evaluator = native.evaluator(&receptor.molecule, &ligand.molecule)?;
-        console.say(match_text(&evaluator));
+        announce(&evaluator, console);
 
         let qualities = measure(&evaluator, table.rows());
         if let Some(path) = &self.output {

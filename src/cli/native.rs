@@ -3,18 +3,21 @@
 use std::path::Path;
 
 use clap::Args;
-use knotdock::evaluate::{Evaluator, Native, PoseQuality};
+use knotdock::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
 use knotdock::output::input_record::NativeRecord;
 use knotdock::output::poses::PoseRow;
+use knotdock::output::report::counted;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
 
+use super::console::Console;
 use super::failure::Failure;
 use super::input::Input;
 
 /// Options that name the known complex.
 #[derive(Args, Debug)]
 pub struct NativeArguments {
-    /// Known complex with both partners in one file, to measure the poses against.
+    /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the largest
+    /// interface is taken, and FILE:A,B picks chains.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["native_receptor", "native_ligand"], help_heading = HEADING)]
     native: Option<String>,
     /// Receptor of the known complex; FILE:H,L picks chains.
@@ -112,11 +115,37 @@ impl NativeFiles {
             ),
         };
         Evaluator::new(receptor, ligand, native).map_err(|error| {
-            Failure::input(&error)
+            let mut message = error.to_string();
+            for input in self.inputs() {
+                for note in reading_notes(&input.molecule) {
+                    message += &format!("; {note}");
+                }
+            }
+            Failure::input(message)
                 .at(&file.record.path)
                 .remedy(error.remedy())
         })
     }
+}
+
+/// What reading a file left out or warned of: an error that follows may come of it.
+fn reading_notes(molecule: &Molecule) -> Vec<String> {
+    let report = &molecule.report;
+    let last = report.altered.models_ignored + 1;
+    let models = match last {
+        1 => None,
+        2 => Some("MODEL 2 of the native's file was not read".to_owned()),
+        last => Some(format!(
+            "MODEL 2 to {last} of the native's file were not read"
+        )),
+    };
+    let remedy = " (put both partners into one model, or name a file for each)";
+    let models = models.map(|models| models + remedy);
+    let warnings = report.warnings.iter();
+    models
+        .into_iter()
+        .chain(warnings.map(|warning| format!("reading the native's file: {warning}")))
+        .collect()
 }
 
 /// Every pose's quality.
@@ -126,49 +155,85 @@ pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
         .collect()
 }
 
+/// Says what was matched, and warns where little was.
+pub fn announce(evaluator: &Evaluator, console: Console) {
+    console.say(match_text(evaluator.report()));
+    for warning in &evaluator.report().warnings {
+        console.warn(warning);
+    }
+}
+
 /// What was matched, in a line for each side.
-pub fn match_text(evaluator: &Evaluator) -> String {
-    let report = evaluator.report();
-    let chains = |side: &knotdock::evaluate::SideMatch| {
-        let mut names: Vec<&str> = Vec::new();
-        for chain in &side.chains {
-            if !names.contains(&chain.native_chain.as_str()) {
-                names.push(&chain.native_chain);
-            }
-        }
-        names.join(", ")
-    };
-    let side = |name: &str, side: &knotdock::evaluate::SideMatch| {
-        let mut text = format!(
-            "  {name}, as the native's {}: {} of {} residues, {} of {} at the interface; the docked backbone lies {:.2} Å RMSD from it",
-            chains(side),
-            side.matched,
-            side.native_residues,
-            side.interface_matched,
-            side.interface_residues,
-            side.backbone_rmsd
-        );
-        for (whose, chains) in [
-            ("docked", &side.unmatched_chains),
-            ("native", &side.unmatched_native_chains),
-        ] {
-            if !chains.is_empty() {
-                text += &format!("; {whose} chains without a match: {}", chains.join(", "));
-            }
-        }
-        text
-    };
+fn match_text(report: &MatchReport) -> String {
     let mut text = format!(
         "Matched with the native ({:.0}% of its interface):\n{}\n{}",
         100.0 * report.interface_share,
-        side("receptor", &report.receptor),
-        side("ligand", &report.ligand)
+        side_text("receptor", &report.receptor),
+        side_text("ligand", &report.ligand)
     );
+    if let [taken, others @ ..] = report.complexes.as_slice()
+        && !others.is_empty()
+    {
+        let shown: Vec<String> = others.iter().take(OTHERS_SHOWN).map(complex_text).collect();
+        text += &format!(
+            "\n  taken of {} complexes in the native: {}; not taken: {}{}",
+            report.complexes.len(),
+            complex_text(taken),
+            shown.join(", "),
+            if others.len() > OTHERS_SHOWN {
+                ", ..."
+            } else {
+                ""
+            }
+        );
+    }
     if !report.unused_native_chains.is_empty() {
         text += &format!(
             "\n  left aside of the native: {}; if another copy is meant, name its chains, as in --native FILE:A,B",
             report.unused_native_chains.join(", ")
         );
+    }
+    text
+}
+
+/// Complexes that are shown beside the one taken.
+const OTHERS_SHOWN: usize = 3;
+
+fn complex_text(complex: &NativeComplex) -> String {
+    format!(
+        "{} with {} ({})",
+        complex.receptor.join("+"),
+        complex.ligand.join("+"),
+        counted(complex.contacts, "contact")
+    )
+}
+
+fn side_text(name: &str, side: &SideMatch) -> String {
+    let mut chains: Vec<&str> = Vec::new();
+    for chain in &side.chains {
+        if !chains.contains(&chain.native_chain.as_str()) {
+            chains.push(&chain.native_chain);
+        }
+    }
+    let mut text = format!(
+        "  {name}, as the native's {}: {} of {} residues ({:.0}% of the {} docked), {} of {} at the interface; the docked \
+         backbone lies {:.2} Å RMSD from it",
+        chains.join(", "),
+        side.matched,
+        side.native_residues,
+        100.0 * side.docked_share,
+        side.residues,
+        side.interface_matched,
+        side.interface_residues,
+        side.backbone_rmsd
+    );
+    for (whose, chains) in [
+        ("docked", &side.unmatched_chains),
+        ("native", &side.unmatched_native_chains),
+    ] {
+        if !chains.is_empty() {
+            text += &format!("; {whose} chains without a match: {}", chains.join(", "));
+        }
     }
     text
 }

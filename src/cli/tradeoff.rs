@@ -21,7 +21,7 @@ use super::bodies::Bodies;
 use super::console::{Console, ProgressLine};
 use super::failure::Failure;
 use super::machine_arguments::{MachineArguments, machine};
-use super::native::{NativeArguments, match_text};
+use super::native::{NativeArguments, announce};
 use super::reading_arguments::ReadingArguments;
 use super::request::Request;
 use super::search_arguments::SearchArguments;
@@ -90,7 +90,7 @@ impl TradeoffCommand {
         request.bodies.describe(None, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
-            console.say(match_text(evaluator));
+            announce(evaluator, console);
         }
         let first = request.plan(console)?;
         console.say(format!("\nThe default: {}\n", first.plan));

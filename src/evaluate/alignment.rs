@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::residues::Residue;
+use super::residues::{Number, Residue};
 
 const MATCH: f64 = 5.0;
 const MISMATCH: f64 = -2.0;
@@ -44,14 +44,11 @@ pub(super) fn align(first: &[&Residue], second: &[&Residue]) -> Alignment {
 }
 
 fn pair_by_number(first: &[&Residue], second: &[&Residue]) -> Alignment {
-    let places: HashMap<_, _> = second
-        .iter()
-        .enumerate()
-        .map(|(place, residue)| (residue.number, place))
-        .collect();
+    let (ours, places) = (places_by_number(first), places_by_number(second));
     let mut found = Alignment::default();
     for (place, residue) in first.iter().enumerate() {
-        if let Some(&other) = places.get(&residue.number) {
+        let is_single = ours.get(&residue.number) == Some(&Some(place));
+        if let Some(&Some(other)) = places.get(&residue.number).filter(|_| is_single) {
             found.aligned += 1;
             if residue.kind == second[other].kind {
                 found.pairs.push((place, other));
@@ -59,6 +56,18 @@ fn pair_by_number(first: &[&Residue], second: &[&Residue]) -> Alignment {
         }
     }
     found
+}
+
+/// The place of each number; nothing where several residues have it, as in files without insertion codes.
+fn places_by_number(residues: &[&Residue]) -> HashMap<Number, Option<usize>> {
+    let mut places = HashMap::new();
+    for (place, residue) in residues.iter().enumerate() {
+        let known = places.entry(residue.number).or_insert(Some(place));
+        if *known != Some(place) {
+            *known = None;
+        }
+    }
+    places
 }
 
 /// Where a cell's best score came from: the state before it.
@@ -237,6 +246,13 @@ mod tests {
         );
         assert_eq!(found[3], (4, 3));
         assert_eq!(found.len(), 12);
+    }
+
+    #[test]
+    fn no_residue_is_paired_twice_where_numbers_come_again() {
+        let numbers = &[1, 2, 2, 3, 4];
+        let found = pairs(("AGGVL", numbers), ("AGGVL", numbers));
+        assert_eq!(found, (0..5).map(|i| (i, i)).collect::<Vec<_>>());
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
-use super::residues::Residue;
+use super::residues::{Residue, Residues};
 
 /// Largest distance of a contact, in Å.
 pub(super) const CONTACT_DISTANCE: f64 = 5.0;
@@ -49,6 +49,23 @@ pub(super) fn pairs_across(receptor: &[Residue], ligand: &[Residue]) -> Vec<Acro
         }
     }
     found
+}
+
+/// Number of contacts between some residues of the receptor and some of the ligand.
+pub(super) fn contacts_between(
+    receptor: &Residues,
+    ours: &[usize],
+    ligand: &Residues,
+    theirs: &[usize],
+) -> usize {
+    let touching = |&i: &usize, &j: &usize| {
+        let (a, b) = (&receptor.residues[i], &ligand.residues[j]);
+        let reach = CONTACT_DISTANCE + a.radius + b.radius;
+        nalgebra::distance_squared(&a.center, &b.center) <= reach * reach
+            && touches(&a.heavy, &b.heavy)
+    };
+    let of_one = |i: &usize| theirs.iter().filter(|j| touching(i, j)).count();
+    ours.iter().map(of_one).sum()
 }
 
 fn least_distance_squared(a: &[Point3<f64>], b: &[Point3<f64>]) -> f64 {

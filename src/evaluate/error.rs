@@ -1,5 +1,7 @@
 //! Why poses cannot be judged by the native given.
 
+use super::placements::WORST_FIT;
+
 /// Why an [`Evaluator`](super::Evaluator) could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EvaluateError {
@@ -22,6 +24,49 @@ pub enum EvaluateError {
     Unmatched {
         /// "receptor" or "ligand".
         side: &'static str,
+    },
+    /// Receptor and ligand are the same chain, of which the native has one copy.
+    #[error(
+        "receptor and ligand match the same chain of the native, which has only one copy of it"
+    )]
+    OneCopy,
+    /// A docked chain is elsewhere in the native.
+    #[error(
+        "the docked {side} does not fit the native: chain {chain} is the native's {native_chain}, which stands {distance:.1} Å \
+         RMSD from where the rest of the {side} has it"
+    )]
+    Displaced {
+        /// "receptor" or "ligand".
+        side: &'static str,
+        /// The docked chain.
+        chain: String,
+        /// The native's.
+        native_chain: String,
+        /// How far the one is from where it should be, RMSD in Å.
+        distance: f64,
+    },
+    /// A docked side has another shape than the native's.
+    #[error(
+        "the docked {side} does not fit the native: its backbone lies {rmsd:.1} Å RMSD from the native's; at most \
+         {WORST_FIT:.0} Å mean anything"
+    )]
+    Misfit {
+        /// "receptor" or "ligand".
+        side: &'static str,
+        /// Backbone RMSD after superposing, in Å.
+        rmsd: f64,
+    },
+    /// Too little of a docked side has a match for the figures to mean anything.
+    #[error(
+        "only {matched} of the docked {side}'s {residues} residues are matched with the native; a quarter or 50 are needed"
+    )]
+    DockedShare {
+        /// "receptor" or "ligand".
+        side: &'static str,
+        /// Residues matched.
+        matched: usize,
+        /// Residues of the docked side.
+        residues: usize,
     },
     /// The native's two sides do not touch.
     #[error("the native's receptor and ligand have no heavy atoms within 5 Å of each other")]
@@ -73,6 +118,22 @@ impl EvaluateError {
                 "name the chains of the native that belong to each side with --native-receptor FILE:CHAINS and \
                  --native-ligand FILE:CHAINS, and check that they are the same proteins and that receptor and ligand are \
                  not exchanged"
+            }
+            Self::OneCopy => {
+                "give a native with both copies: of a crystal, `knotdock inspect FILE --assembly 1 --write COMPLEX.pdb` builds the \
+                 biological assembly"
+            }
+            Self::Displaced { .. } => {
+                "name the native's chains that belong together, as in --native FILE:A,B,C; or dock the chain apart, if it moves \
+                 when the complex forms"
+            }
+            Self::Misfit { .. } => {
+                "check that the native is of the same proteins, and name its chains, as in --native FILE:A,B; a molecule that \
+                 changes its shape that much is not docked as a rigid body"
+            }
+            Self::DockedShare { .. } => {
+                "check that the native's chain is that of the docked molecule and no fragment or other peptide. Where the native \
+                 has one domain of it, give --receptor and --ligand as docked, cut to that domain"
             }
             Self::NoContact => {
                 "check that the two are in one common frame and that the chains named are neighbours in the native; \

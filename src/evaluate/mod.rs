@@ -4,19 +4,22 @@
 //!
 //! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native may lie in any
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
-//! - **Residues** are matched by chain, number and insertion code where the names there agree, and by sequence
-//!   otherwise; chains by their sequences, whatever their names. Only equal residues are matched. Where identical chains
-//!   can be matched in several ways, each pose gets the one with the best DockQ.
+//! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
+//!   residues are matched.
+//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's chains, and
+//!   of the copies that the native holds those are taken that superpose, touch and have most contacts. Where identical
+//!   chains of that complex can be matched in several ways, each pose gets the one with the best DockQ.
 //! - **Backbone** is N, CA, C and O, and phosphate and sugar in nucleic acids, of matched residues, where both have the
 //!   atom. Hydrogens, waters, ions, cofactors and glycans play no part.
 //! - `irmsd`: backbone of the native's interface residues (any heavy atom within 10 Å across) after superposing them.
-//! - `lrmsd`: backbone of the user's ligand after superposing the user's *receptor* on the native's.
+//! - `lrmsd`: backbone of the smaller side after superposing the larger on the native's. As in DockQ 2.1.3 the smaller side
+//!   is the one of fewer native residues, and of two equal ones the receptor. So figures of unequal sides are the same
+//!   whichever is called the receptor.
 //! - `fnat`: share of the native's residue contacts (any heavy atoms within 5 Å) that the pose has too. Contacts of
 //!   residues without a match count as lost.
-//! - `dockq`: as DockQ 2.1.3 computes it, which takes the side with fewer residues for its ligand, so that its ligand
-//!   RMSD is not always `lrmsd`. DockQ pairs residues by sequence alone: where a residue is missing beside one of the
-//!   same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native), and
-//!   then our figures are those that it gives for the pairs that the numbers name.
+//! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside one of
+//!   the same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native),
+//!   and then our figures are those that it gives for the pairs that the numbers name.
 //! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
 //!
 //! # Cost
@@ -26,14 +29,19 @@
 
 mod alignment;
 mod contacts;
+mod copies;
+#[cfg(test)]
+mod copy_tests;
 mod dockq;
 mod error;
 mod matching;
 mod native;
-mod permutations;
+mod placement_builder;
+mod placements;
 mod report;
 mod residues;
 mod rmsd;
+mod segments;
 mod shared_chains;
 mod superposition;
 #[cfg(test)]
@@ -50,19 +58,17 @@ use serde::Serialize;
 pub use dockq::{Capri, dockq};
 pub use error::EvaluateError;
 pub use native::Native;
-pub use report::{ChainMatch, MatchMethod, MatchReport, SideMatch};
+pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
 use contacts::{AcrossPair, NativeContacts, pairs_across};
-use native::Groups;
-use permutations::{Assignment, assignments, residue_pairs};
+use native::{Groups, Way, check_docked_share};
+use placements::{Placement, WORST_FIT};
 use residues::Residues;
 use rmsd::{RmsdForms, Side, ligand_is_smaller};
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
 const LEAST_INTERFACE_SHARE: f64 = 0.5;
-/// Receptor and ligand are the same chains when, exchanged, they match this share of what they match as they are.
-const EXCHANGED_SHARE: f64 = 0.9;
 /// Fewest backbone atoms that fix a superposition.
 const LEAST_ATOMS: usize = 3;
 
@@ -71,7 +77,7 @@ const LEAST_ATOMS: usize = 3;
 pub struct PoseQuality {
     /// Interface RMSD, in Å.
     pub irmsd: f64,
-    /// Ligand RMSD with the user's receptor superposed, in Å.
+    /// RMSD of the smaller side with the larger superposed, in Å.
     pub lrmsd: f64,
     /// Share of native contacts kept, 0 to 1.
     pub fnat: f64,
@@ -96,7 +102,7 @@ impl Arrangement {
             irmsd: rmsds.interface,
             lrmsd: rmsds.ligand,
             fnat,
-            dockq: dockq(fnat, rmsds.interface, rmsds.smaller),
+            dockq: dockq(fnat, rmsds.interface, rmsds.ligand),
             capri: Capri::of(fnat, rmsds.interface, rmsds.ligand),
         }
     }
@@ -114,8 +120,8 @@ impl Evaluator {
     /// Matches the user's receptor and ligand, as docked, with the native.
     ///
     /// # Errors
-    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, the native no contacts, or too
-    /// little of the native's interface is matched.
+    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, the native no contacts, a side does not
+    /// fit the native's, or too little of the native's interface or of a docked side is matched.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,
@@ -123,33 +129,32 @@ impl Evaluator {
     ) -> Result<Self, EvaluateError> {
         let receptor = Residues::of(receptor, "receptor")?;
         let ligand = Residues::of(ligand, "ligand")?;
+        let found = native::ways(&receptor, &ligand, native)?;
+        let across: Vec<Vec<AcrossPair>> = found
+            .groups
+            .iter()
+            .map(|groups| pairs_across(&groups.receptor.residues, &groups.ligand.residues))
+            .collect();
         let mut prepared: Vec<(Arrangement, MatchReport)> = Vec::new();
-        for groups in &native::groups(&receptor, &ligand, native)? {
-            match (prepare(&receptor, &ligand, groups), prepared.first()) {
-                (Ok(found), None) => prepared = found,
-                (Err(error), None) => return Err(error),
-                // Exchanged sides count only where they match as well: paralogues would pass for each other.
-                (Ok(found), Some((_, first))) => {
-                    let least = EXCHANGED_SHARE * first.matched() as f64;
-                    prepared.extend(
-                        found
-                            .into_iter()
-                            .filter(|(_, report)| report.matched() as f64 >= least),
-                    );
-                }
-                (Err(_), Some(_)) => {}
+        let mut first_error = None;
+        for way in &found.ways {
+            let (groups, across) = (&found.groups[way.groups], &across[way.groups]);
+            match arrange(&receptor, &ligand, way, groups, across) {
+                Ok(arrangement) => prepared.push(arrangement),
+                Err(error) => first_error = first_error.or(Some(error)),
             }
         }
         let permutations = prepared.len();
         let mut prepared = prepared.into_iter();
         let Some((first, report)) = prepared.next() else {
-            return Err(EvaluateError::Unmatched { side: "receptor" });
+            return Err(first_error.unwrap_or(EvaluateError::Unmatched { side: "receptor" }));
         };
         Ok(Self {
             first,
             others: prepared.map(|(arrangement, _)| arrangement).collect(),
             report: MatchReport {
                 permutations,
+                complexes: found.complexes,
                 ..report
             },
         })
@@ -174,53 +179,21 @@ impl Evaluator {
     }
 }
 
-/// Every arrangement of the user's chains on these groups that covers enough of the interface; at least one.
-fn prepare(
+/// Prepares one way of matching; `across` are the groups' residue pairs.
+fn arrange(
     receptor: &Residues,
     ligand: &Residues,
-    groups: &Groups,
-) -> Result<Vec<(Arrangement, MatchReport)>, EvaluateError> {
-    let across = pairs_across(&groups.receptor.residues, &groups.ligand.residues);
-    if !across.iter().any(|pair| pair.contact) {
-        return Err(EvaluateError::NoContact);
-    }
-    let receptors = assignments(receptor, &groups.receptor);
-    let ligands = assignments(ligand, &groups.ligand);
-    for (side, found) in [("receptor", &receptors), ("ligand", &ligands)] {
-        if found.is_empty() {
-            return Err(EvaluateError::Unmatched { side });
-        }
-    }
-    let mut prepared = Vec::new();
-    let mut first_error = None;
-    for on_receptor in &receptors {
-        for on_ligand in &ligands {
-            match arrange(
-                (receptor, on_receptor),
-                (ligand, on_ligand),
-                groups,
-                &across,
-            ) {
-                Ok(arrangement) => prepared.push(arrangement),
-                Err(error) => first_error = first_error.or(Some(error)),
-            }
-        }
-    }
-    match first_error {
-        Some(error) if prepared.is_empty() => Err(error),
-        _ => Ok(prepared),
-    }
-}
-
-/// Prepares one arrangement, given each side's residues and assignment.
-fn arrange(
-    (receptor, on_receptor): (&Residues, &Assignment),
-    (ligand, on_ligand): (&Residues, &Assignment),
+    way: &Way,
     groups: &Groups,
     across: &[AcrossPair],
 ) -> Result<(Arrangement, MatchReport), EvaluateError> {
-    let receptor_pairs: Vec<_> = residue_pairs(on_receptor).collect();
-    let ligand_pairs: Vec<_> = residue_pairs(on_ligand).collect();
+    if !across.iter().any(|pair| pair.contact) {
+        return Err(EvaluateError::NoContact);
+    }
+    check_fit("receptor", &way.receptor)?;
+    check_fit("ligand", &way.ligand)?;
+    let receptor_pairs: Vec<_> = way.receptor.pairs().collect();
+    let ligand_pairs: Vec<_> = way.ligand.pairs().collect();
     let rmsds = RmsdForms::new(
         Side {
             user: receptor,
@@ -250,12 +223,17 @@ fn arrange(
     let receptor_match = report::SideMatch::new(
         receptor,
         &groups.receptor,
-        on_receptor,
+        &way.receptor.chains,
         &receptor_near,
         receptor_rmsd,
     );
-    let ligand_match =
-        report::SideMatch::new(ligand, &groups.ligand, on_ligand, &ligand_near, ligand_rmsd);
+    let ligand_match = report::SideMatch::new(
+        ligand,
+        &groups.ligand,
+        &way.ligand.chains,
+        &ligand_near,
+        ligand_rmsd,
+    );
     let (receptor_atoms, ligand_atoms) = rmsds.atoms();
     for (side, found, atoms) in [
         ("receptor", &receptor_match, receptor_atoms),
@@ -271,6 +249,7 @@ fn arrange(
         if atoms < LEAST_ATOMS {
             return Err(EvaluateError::Backbone { side, atoms });
         }
+        check_docked_share(side, found.matched, found.residues)?;
     }
     // Each side may have half of the interface and yet no place of it be matched on both.
     let across_atoms = rmsds.interface_atoms();
@@ -293,9 +272,31 @@ fn arrange(
             "receptor"
         },
         permutations: 1,
+        complexes: Vec::new(),
+        warnings: Vec::new(),
         unused_native_chains: groups.unused.clone(),
         receptor: receptor_match,
         ligand: ligand_match,
-    };
+    }
+    .warned();
     Ok((Arrangement { rmsds, contacts }, report))
+}
+
+/// Refuses a side that does not fit the native's as one rigid body.
+fn check_fit(side: &'static str, placement: &Placement) -> Result<(), EvaluateError> {
+    if let Some(displaced) = &placement.displaced {
+        return Err(EvaluateError::Displaced {
+            side,
+            chain: displaced.chain.clone(),
+            native_chain: displaced.native_chain.clone(),
+            distance: displaced.distance,
+        });
+    }
+    if placement.rmsd > WORST_FIT {
+        return Err(EvaluateError::Misfit {
+            side,
+            rmsd: placement.rmsd,
+        });
+    }
+    Ok(())
 }

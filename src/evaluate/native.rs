@@ -1,16 +1,21 @@
-//! The native complex, as two groups of chains.
+//! The native complex, as two groups of chains, and the ways in which the docked sides lie on it.
+
+use std::collections::HashMap;
 
 use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
-use super::matching::{align_all, pair_chains};
+use super::copies::{Combination, Placed, Uncombined, combinations};
+use super::placements::{Placement, placements};
+use super::report::NativeComplex;
 use super::residues::Residues;
 
 /// The known answer that poses are judged by.
 #[derive(Clone, Copy, Debug)]
 pub enum Native<'a> {
-    /// One file with the whole complex. Its chains go to the side whose chains they match; where receptor and ligand
-    /// are the same chain, both ways round are tried for every pose.
+    /// One file with the whole complex, perhaps in several copies. Its chains go to the side whose chains they match and
+    /// superpose on; of several complexes the one with the largest interface is taken. Where receptor and ligand are the
+    /// same chain, both ways round are tried for every pose.
     Complex(&'a Molecule),
     /// The two sides apart, in one common frame.
     Pair {
@@ -21,6 +26,14 @@ pub enum Native<'a> {
     },
 }
 
+/// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part in it.
+const LEAST_DOCKED_SHARE: f64 = 0.25;
+const ENOUGH_RESIDUES: usize = 50;
+/// Share of what the first way matches that another must match: paralogues would pass for each other.
+const LEAST_OF_FIRST: f64 = 0.9;
+/// Most placements kept of one side, the best-fitting ones: enough for every turn of an octahedral 24-mer.
+const MOST: usize = 24;
+
 /// The native's two sides.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
@@ -30,66 +43,292 @@ pub(super) struct Groups {
     pub unused: Vec<String>,
 }
 
-/// The ways to see the native as two sides, the likeliest first: one, or two where the sides may be exchanged.
+/// Part of a complex: segments, each with the residues of it that belong to the part.
+type Part = Vec<(usize, Vec<usize>)>;
+
+/// Receptor and ligand on the native's two sides; residues and segments of the native are those of the groups.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    /// Index into [`Ways::groups`].
+    pub groups: usize,
+    pub receptor: Placement,
+    pub ligand: Placement,
+}
+
+/// Every way to see the docked sides in the native, the likeliest first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ways {
+    pub groups: Vec<Groups>,
+    pub ways: Vec<Way>,
+    /// The complexes that the native holds, the one taken first.
+    pub complexes: Vec<NativeComplex>,
+}
+
+/// The ways to see the docked sides in the native: all of one complex, so that every pose may be given the best of them.
 ///
 /// # Errors
-/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`], and [`EvaluateError::Unmatched`] when no chain of a
-/// whole complex is the receptor's or none the ligand's.
-pub(super) fn groups(
+/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::Unmatched`] when no chain is the
+/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
+pub(super) fn ways(
     receptor: &Residues,
     ligand: &Residues,
     native: Native,
-) -> Result<Vec<Groups>, EvaluateError> {
+) -> Result<Ways, EvaluateError> {
     match native {
-        Native::Pair { receptor, ligand } => Ok(vec![Groups {
-            receptor: Residues::of(receptor, "native receptor")?,
-            ligand: Residues::of(ligand, "native ligand")?,
-            unused: Vec::new(),
-        }]),
-        Native::Complex(complex) => {
-            let found = split(receptor, ligand, &Residues::of(complex, "native")?)?;
-            let exchanged = Groups {
-                receptor: found.ligand.clone(),
-                ligand: found.receptor.clone(),
-                unused: found.unused.clone(),
+        Native::Pair {
+            receptor: native_receptor,
+            ligand: native_ligand,
+        } => {
+            let groups = Groups {
+                receptor: Residues::of(native_receptor, "native receptor")?,
+                ligand: Residues::of(native_ligand, "native ligand")?,
+                unused: Vec::new(),
             };
-            Ok(vec![found, exchanged])
+            of_pair(receptor, ligand, groups)
+        }
+        Native::Complex(complex) => of_complex(receptor, ligand, &Residues::of(complex, "native")?),
+    }
+}
+
+fn of_pair(receptor: &Residues, ligand: &Residues, groups: Groups) -> Result<Ways, EvaluateError> {
+    let on_receptor = placed(receptor, &groups.receptor, "receptor")?;
+    let on_ligand = placed(ligand, &groups.ligand, "ligand")?;
+    let [ours, theirs] = [
+        side(receptor, &groups.receptor, &on_receptor),
+        side(ligand, &groups.ligand, &on_ligand),
+    ];
+    // Chains that are not matched may touch all the same, and what is matched of the interface is judged by another.
+    let all = combinations(ours, theirs, false).unwrap_or_else(|_| {
+        vec![Combination {
+            receptor: 0,
+            ligand: 0,
+            contacts: 0,
+        }]
+    });
+    let complexes = complexes(ours, theirs, &all);
+    let ways = alternatives(ours, theirs, all).into_iter().map(|one| Way {
+        groups: 0,
+        receptor: on_receptor[one.receptor].clone(),
+        ligand: on_ligand[one.ligand].clone(),
+    });
+    Ok(Ways {
+        ways: ways.collect(),
+        complexes,
+        groups: vec![groups],
+    })
+}
+
+fn of_complex(
+    receptor: &Residues,
+    ligand: &Residues,
+    complex: &Residues,
+) -> Result<Ways, EvaluateError> {
+    let on_receptor = placed(receptor, complex, "receptor")?;
+    let on_ligand = placed(ligand, complex, "ligand")?;
+    let [ours, theirs] = [
+        side(receptor, complex, &on_receptor),
+        side(ligand, complex, &on_ligand),
+    ];
+    let mut all = combinations(ours, theirs, true).map_err(|reason| match reason {
+        Uncombined::OneCopy => EvaluateError::OneCopy,
+        Uncombined::NoContact => EvaluateError::NoContact,
+    })?;
+    let mut found = Ways {
+        complexes: complexes(ours, theirs, &all),
+        ..Ways::default()
+    };
+    let chains = |one: &Combination| {
+        let mut chains = on_receptor[one.receptor].native_segments();
+        chains.extend(on_ligand[one.ligand].native_segments());
+        chains.sort_unstable();
+        chains.dedup();
+        chains
+    };
+    if let Some(taken) = all.first().map(chains) {
+        all.retain(|one| chains(one) == taken);
+    }
+    let mut splits: Vec<[Part; 2]> = Vec::new();
+    for one in alternatives(ours, theirs, all) {
+        let (r, l) = (&on_receptor[one.receptor], &on_ligand[one.ligand]);
+        let split = split(complex, r, l);
+        let groups = match splits.iter().position(|known| *known == split) {
+            Some(groups) => groups,
+            None => {
+                found.groups.push(Groups {
+                    receptor: complex.only(&split[0]),
+                    ligand: complex.only(&split[1]),
+                    unused: unused(complex, &split),
+                });
+                splits.push(split.clone());
+                splits.len() - 1
+            }
+        };
+        found.ways.push(Way {
+            groups,
+            receptor: in_group(r, &split[0]),
+            ligand: in_group(l, &split[1]),
+        });
+    }
+    Ok(found)
+}
+
+fn side<'a>(user: &'a Residues, native: &'a Residues, placements: &'a [Placement]) -> Placed<'a> {
+    Placed {
+        user,
+        native,
+        placements,
+    }
+}
+
+/// The placements of one side, at least one that matches enough of it.
+fn placed(
+    user: &Residues,
+    native: &Residues,
+    side: &'static str,
+) -> Result<Vec<Placement>, EvaluateError> {
+    let found = placements(user, native);
+    match found.iter().map(Placement::matched).max() {
+        None => Err(EvaluateError::Unmatched { side }),
+        Some(matched) => {
+            check_docked_share(side, matched, user.residues.len())?;
+            Ok(found)
         }
     }
 }
 
-/// Gives each chain of the complex to the side with which it shares most residues.
-fn split(
-    receptor: &Residues,
-    ligand: &Residues,
-    complex: &Residues,
-) -> Result<Groups, EvaluateError> {
-    let user = receptor.followed_by(ligand);
-    let first_of_ligand = receptor.segments.len();
-    let pairs = pair_chains(&user, complex, &align_all(&user, complex));
-    let (mut receptors, mut ligands, mut unused) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, segment) in complex.segments.iter().enumerate() {
-        let shared = |of_ligand: bool| -> usize {
-            pairs
-                .iter()
-                .filter(|pair| pair.native == index && (pair.user >= first_of_ligand) == of_ligand)
-                .map(|pair| pair.pairs.len())
-                .sum()
+/// Refuses a side of which too little is matched for the figures to mean anything: some residues are equal by chance.
+pub(super) fn check_docked_share(
+    side: &'static str,
+    matched: usize,
+    residues: usize,
+) -> Result<(), EvaluateError> {
+    if matched < ENOUGH_RESIDUES && (matched as f64) < LEAST_DOCKED_SHARE * residues as f64 {
+        return Err(EvaluateError::DockedShare {
+            side,
+            matched,
+            residues,
+        });
+    }
+    Ok(())
+}
+
+/// The first of the combinations and those that match nearly as much, in the order given; of each side at most [`MOST`]
+/// placements, those that fit best.
+fn alternatives(receptor: Placed, ligand: Placed, mut all: Vec<Combination>) -> Vec<Combination> {
+    let matched = |one: &Combination| {
+        receptor.placements[one.receptor].matched() + ligand.placements[one.ligand].matched()
+    };
+    let Some(first) = all.first().copied() else {
+        return all;
+    };
+    let least = LEAST_OF_FIRST * matched(&first) as f64;
+    all.retain(|one| matched(one) as f64 >= least);
+    let best = |side: Placed, taken: usize, of: &dyn Fn(&Combination) -> usize| -> Vec<usize> {
+        let mut placements: Vec<usize> = all.iter().map(of).filter(|&one| one != taken).collect();
+        placements.sort_unstable();
+        placements.dedup();
+        placements.sort_by(|&a, &b| {
+            let rmsd = |placement: usize| side.placements[placement].rmsd;
+            rmsd(a).total_cmp(&rmsd(b))
+        });
+        std::iter::once(taken)
+            .chain(placements)
+            .take(MOST)
+            .collect()
+    };
+    let receptors = best(receptor, first.receptor, &|one| one.receptor);
+    let ligands = best(ligand, first.ligand, &|one| one.ligand);
+    all.retain(|one| receptors.contains(&one.receptor) && ligands.contains(&one.ligand));
+    all
+}
+
+/// The complexes among the combinations, by the names of their chains, in the order given.
+fn complexes(receptor: Placed, ligand: Placed, all: &[Combination]) -> Vec<NativeComplex> {
+    let mut found: Vec<NativeComplex> = Vec::new();
+    for one in all {
+        let names = |side: Placed, placement: usize| -> Vec<String> {
+            let segments = side.placements[placement].native_segments();
+            let names = segments
+                .into_iter()
+                .map(|segment| &side.native.segments[segment].name);
+            names.cloned().collect()
         };
-        match (shared(false), shared(true)) {
-            (0, 0) => unused.push(segment.name.clone()),
-            (with_receptor, with_ligand) if with_receptor >= with_ligand => receptors.push(index),
-            _ => ligands.push(index),
+        let next = NativeComplex {
+            receptor: names(receptor, one.receptor),
+            ligand: names(ligand, one.ligand),
+            contacts: one.contacts,
+        };
+        let is_known = |known: &NativeComplex| {
+            (&known.receptor, &known.ligand) == (&next.receptor, &next.ligand)
+                || (&known.receptor, &known.ligand) == (&next.ligand, &next.receptor)
+        };
+        if found.len() < MOST && !found.iter().any(is_known) {
+            found.push(next);
         }
     }
-    for (side, chains) in [("receptor", &receptors), ("ligand", &ligands)] {
-        if chains.is_empty() {
-            return Err(EvaluateError::Unmatched { side });
-        }
-    }
-    Ok(Groups {
-        receptor: complex.only(&receptors),
-        ligand: complex.only(&ligands),
-        unused,
+    found
+}
+
+/// The residues of the complex that belong to each side, segment by segment: of a segment of which both sides match a part,
+/// each residue goes to the side whose nearest matched residue is nearer in the sequence.
+fn split(complex: &Residues, receptor: &Placement, ligand: &Placement) -> [Part; 2] {
+    let placements = [receptor, ligand];
+    let segments = placements.map(Placement::native_segments);
+    let matched = placements.map(Placement::natives);
+    [0, 1].map(|this| {
+        let other = 1 - this;
+        let of_segment = |&segment: &usize| {
+            let members = complex.segments[segment].members.iter().copied();
+            let members = if segments[other].contains(&segment) {
+                let is_ours = |&member: &usize| {
+                    let (near, far) = (
+                        nearest(&matched[this], member),
+                        nearest(&matched[other], member),
+                    );
+                    near < far || (near == far && this == 0)
+                };
+                members.filter(is_ours).collect()
+            } else {
+                members.collect()
+            };
+            (segment, members)
+        };
+        segments[this].iter().map(of_segment).collect()
     })
+}
+
+/// Distance to the nearest of some rising numbers.
+fn nearest(rising: &[usize], number: usize) -> usize {
+    let place = rising.partition_point(|&one| one < number);
+    let around = [place.checked_sub(1), Some(place)].into_iter().flatten();
+    let distances = around.filter_map(|place| rising.get(place).map(|one| one.abs_diff(number)));
+    distances.min().unwrap_or(usize::MAX)
+}
+
+fn unused(complex: &Residues, split: &[Part; 2]) -> Vec<String> {
+    let is_used = |index: usize| split.iter().flatten().any(|(segment, _)| *segment == index);
+    let segments = complex.segments.iter().enumerate();
+    segments
+        .filter(|&(index, _)| !is_used(index))
+        .map(|(_, segment)| segment.name.clone())
+        .collect()
+}
+
+/// A placement whose residues and segments of the native are those of a group, which holds the segments and members given.
+fn in_group(placement: &Placement, group: &[(usize, Vec<usize>)]) -> Placement {
+    let members = group.iter().flat_map(|(_, members)| members).copied();
+    let places: HashMap<usize, usize> = members.zip(0..).collect();
+    let mut placement = placement.clone();
+    for chain in &mut placement.chains {
+        chain.native = group
+            .iter()
+            .position(|(segment, _)| *segment == chain.native)
+            .unwrap_or_default();
+        chain.pairs = chain
+            .pairs
+            .iter()
+            .filter_map(|&(user, native)| Some((user, *places.get(&native)?)))
+            .collect();
+    }
+    placement
 }

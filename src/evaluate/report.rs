@@ -2,8 +2,13 @@
 
 use serde::Serialize;
 
-use super::permutations::Assignment;
+use super::matching::ChainPair;
 use super::residues::Residues;
+
+/// Share of a docked side's residues below which the match is worth a warning.
+const GOOD_DOCKED_SHARE: f64 = 0.7;
+/// Backbone RMSD in Å of a docked side with the native's above which it is.
+const GOOD_FIT: f64 = 5.0;
 
 /// How a chain's residues were matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -41,6 +46,8 @@ pub struct SideMatch {
     pub matched: usize,
     /// `matched` as a share, 0 to 1, of the native's residues.
     pub matched_share: f64,
+    /// `matched` as a share, 0 to 1, of the residues of the user's molecule.
+    pub docked_share: f64,
     /// Matched residues whose number and insertion code agree; the others were matched by sequence.
     pub matched_by_number: usize,
     /// Native residues within 10 Å of the other side.
@@ -57,6 +64,17 @@ pub struct SideMatch {
     pub unmatched_native_chains: Vec<String>,
 }
 
+/// Two groups of the native's chains that touch and that the docked sides superpose on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NativeComplex {
+    /// The native's chains on which the receptor lies.
+    pub receptor: Vec<String>,
+    /// Those on which the ligand lies.
+    pub ligand: Vec<String>,
+    /// Residue contacts (5 Å) between them.
+    pub contacts: usize,
+}
+
 /// The match of the user's molecules with the native.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MatchReport {
@@ -70,18 +88,41 @@ pub struct MatchReport {
     pub native_contacts: usize,
     /// Those of them whose two residues are matched: the most that a pose can keep.
     pub native_contacts_matched: usize,
-    /// The side that is the ligand in `dockq`: DockQ takes the one of fewer residues.
+    /// The side that is the ligand in `lrmsd`, `dockq` and `capri`: the one of fewer residues, as in DockQ.
     pub dockq_ligand: &'static str,
     /// Ways of matching identical chains; every pose is given the best of them by `dockq`. This report is of the first.
     pub permutations: usize,
     /// Chains of a native complex that belong to neither side.
     pub unused_native_chains: Vec<String>,
+    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by contacts.
+    pub complexes: Vec<NativeComplex>,
+    /// What the user should know before trusting the figures: a docked side of which less than 70% is matched, or whose
+    /// backbone lies more than 5 Å RMSD from the native's.
+    pub warnings: Vec<String>,
 }
 
 impl MatchReport {
-    /// Equal residues matched, of both sides.
-    pub fn matched(&self) -> usize {
-        self.receptor.matched + self.ligand.matched
+    /// The report with its warnings.
+    pub(super) fn warned(mut self) -> Self {
+        let mut warnings = Vec::new();
+        for (name, side) in [("receptor", &self.receptor), ("ligand", &self.ligand)] {
+            if side.docked_share < GOOD_DOCKED_SHARE {
+                warnings.push(format!(
+                    "only {} of the docked {name}'s {} residues ({:.0}%) are matched with the native",
+                    side.matched,
+                    side.residues,
+                    100.0 * side.docked_share
+                ));
+            }
+            if side.backbone_rmsd > GOOD_FIT {
+                warnings.push(format!(
+                    "the docked {name} has another shape than the native's: its backbone lies {:.1} Å RMSD from it",
+                    side.backbone_rmsd
+                ));
+            }
+        }
+        self.warnings = warnings;
+        self
     }
 }
 
@@ -90,7 +131,7 @@ impl SideMatch {
     pub(super) fn new(
         user: &Residues,
         native: &Residues,
-        assignment: &Assignment,
+        assignment: &[ChainPair],
         interface: &std::collections::HashSet<usize>,
         backbone_rmsd: f64,
     ) -> Self {
@@ -127,6 +168,7 @@ impl SideMatch {
             native_residues: native.residues.len(),
             matched,
             matched_share: matched as f64 / native.residues.len().max(1) as f64,
+            docked_share: matched as f64 / user.residues.len().max(1) as f64,
             matched_by_number: all().filter(same_number).count(),
             interface_residues: interface.len(),
             interface_matched: all().filter(|(_, j)| interface.contains(j)).count(),

@@ -1,12 +1,7 @@
 //! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
 //!
-//! A **segment** is what is matched as one chain: the residues of one chain name, in file order. Where a chain repeats a
-//! residue number that it has had before, several chains were written under one name (the H and L of an antibody, say),
-//! and a new segment begins there; likewise where its numbers leap by a hundred or more, which is how the makers of
-//! docking benchmark 5 keep merged chains apart (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS). A leap
-//! over a missing domain is cut too, which does no harm: both pieces are matched.
-
-use std::collections::HashSet;
+//! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several chains
+//! were written under one name ([`segments`](super::segments)).
 
 use knotdock_structures::molecule::{
     Atom, Molecule, plain_atom_name, plain_residue_name, standard_residue_name,
@@ -14,6 +9,7 @@ use knotdock_structures::molecule::{
 use nalgebra::Point3;
 
 use super::EvaluateError;
+use super::segments::{in_bonded_order, segments};
 
 /// Backbone atom names, those of DockQ 2.1.3 (`constants.py`): the first four for proteins, the rest for nucleic acids.
 pub(super) const BACKBONE_ATOMS: [&str; 16] = [
@@ -21,21 +17,16 @@ pub(super) const BACKBONE_ATOMS: [&str; 16] = [
     "C5'",
 ];
 
-/// Smallest step in residue numbers that begins a new segment.
-const LEAP: i64 = 100;
-/// Only if this many residues stand on both sides of it: shorter pieces stay with their chain.
-const LEAST_PIECE: usize = 20;
-
 /// What a residue is called in its file: number and insertion code.
 pub(super) type Number = (i64, Option<char>);
 
 /// How many of the [`BACKBONE_ATOMS`] are of proteins.
 const OF_PROTEINS: usize = 4;
 /// Places of P and O3' among the [`BACKBONE_ATOMS`].
-const PHOSPHORUS: usize = 4;
-const LINKING_OXYGEN: usize = 8;
+pub(super) const PHOSPHORUS: usize = 4;
+pub(super) const LINKING_OXYGEN: usize = 8;
 /// Longest distance in Å of O3' from the next nucleotide's P: a bond of 1.6 Å, with room for poor structures.
-const PHOSPHATE_BOND: f64 = 2.5;
+pub(super) const PHOSPHATE_BOND: f64 = 2.5;
 
 /// One residue with its heavy atoms.
 #[derive(Clone, Debug)]
@@ -48,6 +39,8 @@ pub(super) struct Residue {
     pub backbone: [Option<Point3<f64>>; BACKBONE_ATOMS.len()],
     /// Whether its records are HETATM.
     pub hetero: bool,
+    /// 1-based lines of its first and last atom in the file.
+    pub lines: (usize, usize),
     /// Coordinates of all heavy atoms, in Å; never empty.
     pub heavy: Vec<Point3<f64>>,
     /// Centre of a ball that holds all of `heavy`, in Å.
@@ -110,7 +103,7 @@ impl Residues {
         }
         let mut all = Self::default();
         for (name, atoms) in chains {
-            all.add_chain(name, &atoms);
+            all.add_chain(name, &atoms, &molecule.chain_ends);
         }
         if all.residues.is_empty() {
             return Err(EvaluateError::NoResidues { molecule: role });
@@ -118,76 +111,41 @@ impl Residues {
         Ok(all)
     }
 
-    /// Cuts one chain's atoms into residues and appends them as one or more segments.
-    fn add_chain(&mut self, name: &str, atoms: &[&Atom]) {
+    /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which the file
+    /// ends a chain.
+    fn add_chain(&mut self, name: &str, atoms: &[&Atom], ends: &[usize]) {
         let found = without_free_nucleotides(
             residue_runs(atoms)
                 .into_iter()
                 .filter_map(Residue::of)
                 .collect(),
         );
-        let mut left = found.len();
-        let mut seen: HashSet<Number> = HashSet::new();
-        let mut members: Vec<usize> = Vec::new();
-        let mut pieces = 1;
-        for residue in found {
-            let before = members.last().map(|&member| self.residues[member].number.0);
-            let leaps = before
-                .is_some_and(|before| residue.number.0.saturating_sub(before) >= LEAP)
-                && members.len().min(left) >= LEAST_PIECE;
-            if !seen.insert(residue.number) || leaps {
-                self.add_segment(name, pieces, std::mem::take(&mut members));
-                pieces += 1;
-                seen = HashSet::from([residue.number]);
-            }
-            members.push(self.residues.len());
-            self.residues.push(residue);
-            left -= 1;
-        }
-        self.add_segment(name, pieces, members);
-    }
-
-    fn add_segment(&mut self, name: &str, piece: usize, members: Vec<usize>) {
-        if members.is_empty() {
-            return;
-        }
-        let name = match piece {
-            1 => name.to_owned(),
-            later => format!("{name}/{later}"),
-        };
-        self.segments.push(Segment { name, members });
-    }
-
-    /// These residues and then those of `other`; the segments of `other` come after those of `self`.
-    pub fn followed_by(&self, other: &Self) -> Self {
-        let mut both = self.clone();
-        let shift = both.residues.len();
-        both.residues.extend(other.residues.iter().cloned());
-        both.segments.extend(other.segments.iter().map(|segment| {
-            Segment {
-                name: segment.name.clone(),
-                members: segment
-                    .members
-                    .iter()
-                    .map(|member| member + shift)
-                    .collect(),
-            }
-        }));
-        both
-    }
-
-    /// Only the segments with the given indices, in the order given.
-    pub fn only(&self, segments: &[usize]) -> Self {
-        let mut some = Self::default();
-        for segment in segments
-            .iter()
-            .filter_map(|&index| self.segments.get(index))
+        for (piece, residues) in segments(in_bonded_order(found), ends)
+            .into_iter()
+            .enumerate()
         {
+            let first = self.residues.len();
+            self.residues.extend(residues);
+            let name = match piece {
+                0 => name.to_owned(),
+                later => format!("{name}/{}", later + 1),
+            };
+            self.segments.push(Segment {
+                name,
+                members: (first..self.residues.len()).collect(),
+            });
+        }
+    }
+
+    /// Only the given residues of the segments with the given indices, in the order given; a segment keeps its name.
+    pub fn only(&self, segments: &[(usize, Vec<usize>)]) -> Self {
+        let mut some = Self::default();
+        for (segment, members) in segments {
             let first = some.residues.len();
             some.residues
-                .extend(segment.members.iter().map(|&m| self.residues[m].clone()));
+                .extend(members.iter().map(|&member| self.residues[member].clone()));
             some.segments.push(Segment {
-                name: segment.name.clone(),
+                name: self.segments[*segment].name.clone(),
                 members: (first..some.residues.len()).collect(),
             });
         }
@@ -248,7 +206,7 @@ fn without_free_nucleotides(found: Vec<Residue>) -> Vec<Residue> {
 
 impl Residue {
     /// Whether it has an amino acid's backbone.
-    fn is_amino_acid(&self) -> bool {
+    pub fn is_amino_acid(&self) -> bool {
         self.backbone[..3].iter().all(Option::is_some)
     }
 
@@ -292,6 +250,10 @@ impl Residue {
             )),
             backbone,
             hetero: first.hetero,
+            lines: (
+                first.line,
+                atoms.last().map_or(first.line, |last| last.line),
+            ),
             heavy,
             center,
             radius,
@@ -316,23 +278,8 @@ fn kind(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_molecules::{atom, chain_of, molecule};
+    use super::super::test_molecules::{atom, molecule};
     use super::*;
-
-    #[test]
-    fn repeated_number_begins_a_segment() {
-        // An antibody's two chains under one name: number 1 comes twice, with 2A an insertion that is no repeat.
-        let mut atoms = Vec::new();
-        for (number, code) in [(1, None), (2, None), (2, Some('A')), (1, None), (2, None)] {
-            let mut one = atom("A", number, "ALA", "CA", [0.0; 3]);
-            one.insertion_code = code;
-            atoms.push(one);
-        }
-        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
-        let sizes: Vec<_> = residues.segments.iter().map(|s| s.members.len()).collect();
-        assert_eq!(sizes, [3, 2]);
-        assert_eq!(residues.segments[1].name, "A/2");
-    }
 
     /// A phosphoserine's phosphate is no backbone; a nucleotide's is.
     #[test]
@@ -349,32 +296,6 @@ mod tests {
         let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
         let backbone = |place: usize| residues.residues[place].backbone.iter().flatten().count();
         assert_eq!([backbone(0), backbone(1)], [4, 6]);
-    }
-
-    #[test]
-    fn leaping_number_begins_a_segment() {
-        let sizes = |numbers: Vec<i64>| -> Vec<usize> {
-            let letters = "A".repeat(numbers.len());
-            let residues =
-                Residues::of(&molecule(chain_of("A", &letters, &numbers)), "receptor").unwrap();
-            let segments = residues.segments.iter();
-            segments.map(|segment| segment.members.len()).collect()
-        };
-        assert_eq!(sizes((1..=30).chain(1001..=1025).collect()), [30, 25]);
-        // A loop of 99 missing residues, and a tag of five: one chain.
-        assert_eq!(sizes((1..=30).chain(129..=150).collect()), [52]);
-        assert_eq!(sizes((1..=30).chain(501..=505).collect()), [35]);
-    }
-
-    #[test]
-    fn merged_chains_may_meet_at_the_same_number_and_name() {
-        let atoms = vec![
-            atom("A", 1, "GLY", "N", [0.0; 3]),
-            atom("A", 1, "GLY", "CA", [1.0; 3]),
-            atom("A", 1, "GLY", "N", [2.0; 3]),
-        ];
-        let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
-        assert_eq!(residues.segments.len(), 2);
     }
 
     #[test]

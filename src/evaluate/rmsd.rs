@@ -49,10 +49,8 @@ impl Side<'_> {
 pub(super) struct Rmsds {
     /// Backbone of the interface residues, superposed.
     pub interface: f64,
-    /// Backbone of the user's ligand, with the user's receptor superposed.
+    /// Backbone of the smaller group, with the larger superposed.
     pub ligand: f64,
-    /// The one that enters DockQ: backbone of the smaller group, with the larger superposed.
-    pub smaller: f64,
 }
 
 /// What the RMSDs of any pose are computed from.
@@ -113,9 +111,8 @@ impl RmsdForms {
         let (_, interface) = self
             .receptor_interface
             .superpose_with(&self.ligand_interface, pose);
-        let ligand = self.ligand.rmsd(&self.receptor.best.after(pose));
-        let smaller = if self.ligand_is_smaller {
-            ligand
+        let ligand = if self.ligand_is_smaller {
+            self.ligand.rmsd(&self.receptor.best.after(pose))
         } else {
             // Superposing the placed ligand means: back from the pose, then the ligand's own best fit.
             self.receptor.rmsd(&self.ligand.best.after(&pose.inverse()))
@@ -123,7 +120,6 @@ impl RmsdForms {
         Rmsds {
             interface: finite(interface),
             ligand: finite(ligand),
-            smaller: finite(smaller),
         }
     }
 }

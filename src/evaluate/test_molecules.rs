@@ -118,3 +118,35 @@ pub(super) fn renumbered(atoms: &[Atom], shift: i64) -> Vec<Atom> {
         })
         .collect()
 }
+
+/// Eleven base pairs about the z axis as two strands, numbers 1 to 11 and 12 to 22; backbone atoms only.
+pub(super) fn duplex(names: [&str; 2]) -> [Vec<Atom>; 2] {
+    let (letters, complements) = ("GCATTACGGAC", "CGTAATGCCTG");
+    let strand = |name: &str, letters: &str, first: i64| -> Vec<Atom> {
+        let mut atoms = Vec::new();
+        for (place, letter) in letters.chars().enumerate() {
+            for (own, radius, ahead, rise) in [
+                ("P", 8.9, 0.0, 0.0),
+                ("O5'", 8.5, 0.15, 0.5),
+                ("C3'", 8.2, 0.4, 1.3),
+                ("C1'", 5.8, 0.35, 0.7),
+                ("O3'", 8.8, 0.47, 2.3),
+            ] {
+                let angle = 0.628 * place as f64 + ahead;
+                let z = 3.4 * place as f64 + rise;
+                let position = [radius * f64::cos(angle), radius * f64::sin(angle), z];
+                let number = first + place as i64;
+                let residue = format!("D{letter}");
+                atoms.push(atom(name, number, &residue, own, position));
+            }
+        }
+        atoms
+    };
+    let reversed: String = complements.chars().rev().collect();
+    // The second strand is the first's image by half a turn across the axis.
+    let across = Pose::from_parts([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 36.0]);
+    [
+        strand(names[0], letters, 1),
+        moved(&strand(names[1], &reversed, 12), &across),
+    ]
+}

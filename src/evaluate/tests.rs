@@ -136,13 +136,15 @@ fn dockq_superposes_the_larger_side() {
         (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
     };
     let quality = evaluator.evaluate(&pose);
-    assert!((quality.lrmsd - backbone_shift(&ligand, &pose)).abs() < 1e-9);
     let smaller = backbone_shift(&receptor, &pose.inverse());
+    assert!((quality.lrmsd - smaller).abs() < 1e-9);
     assert!(
-        smaller - quality.lrmsd > 5.0,
+        smaller - backbone_shift(&ligand, &pose) > 5.0,
         "the case must tell the two apart"
     );
-    assert!((quality.dockq - dockq(quality.fnat, quality.irmsd, smaller)).abs() < 1e-12);
+    let (fnat, irmsd) = (quality.fnat, quality.irmsd);
+    assert!((quality.dockq - dockq(fnat, irmsd, smaller)).abs() < 1e-12);
+    assert_eq!(quality.capri, Capri::of(fnat, irmsd, smaller));
 }
 
 proptest! {

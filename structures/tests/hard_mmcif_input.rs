@@ -60,7 +60,7 @@ fn further_data_blocks_with_atoms_are_warned_of() {
     assert_eq!(molecule.atoms.len(), 1);
     let line = without.lines().count() + 1;
     let expected = format!(
-        "only the first structure is read: 2 further data blocks with atoms, the first at line {line}"
+        "only the first structure is read: 2 further data blocks with atoms, the first, data_X, at line {line}"
     );
     assert_eq!(molecule.report.warnings, [expected]);
 }

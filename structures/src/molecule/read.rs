@@ -140,9 +140,9 @@ fn read_telling(
     report.altered.defaults_filled = sieved.defaults_filled;
     report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
 
-    if let Some(line) = sieved.other_blocks.first() {
+    if let Some((line, name)) = sieved.other_blocks.first() {
         report.warnings.push(format!(
-            "only the first structure is read: {} with atoms, the first at line {line}",
+            "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
             count(sieved.other_blocks.len(), "further data block")
         ));
     }
@@ -155,6 +155,7 @@ fn read_telling(
     let provenance = sieved.provenance;
     let (models, ignored) = (sieved.models, std::mem::take(&mut sieved.ignored));
     let assemblies = std::mem::take(&mut sieved.assemblies);
+    let chain_ends = std::mem::take(&mut sieved.chain_ends);
     let mut parsed = parse::parse(file, format, sieved)?;
     let relation = match models {
         0 | 1 => models::Relation::Single,
@@ -198,7 +199,10 @@ fn read_telling(
         &mut report,
         dropped,
     )?;
-    Ok(finish(format, atoms, report))
+    Ok(Molecule {
+        chain_ends,
+        ..finish(format, atoms, report)
+    })
 }
 
 /// Gives the atoms their radii and the report its counts.
@@ -230,9 +234,8 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         atom.radius = radius;
     }
     Molecule {
-        atoms,
-        format,
         report,
+        ..Molecule::new(atoms, format)
     }
 }
 

@@ -94,8 +94,10 @@ pub(super) struct Sieved {
     pub(super) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(super) defaults_filled: usize,
-    /// Lines at which further data blocks of an mmCIF file begin that have atoms, too.
-    pub(super) other_blocks: Vec<usize>,
+    /// Lines at which the file itself ends a chain; see [`Molecule::chain_ends`](super::Molecule::chain_ends).
+    pub(super) chain_ends: Vec<usize>,
+    /// Lines and names of further data blocks of an mmCIF file that have atoms, too.
+    pub(super) other_blocks: Vec<(usize, String)>,
     /// Whether a record or item of the format was seen at all.
     pub(super) recognised: bool,
     /// What the file says of where its coordinates come from.

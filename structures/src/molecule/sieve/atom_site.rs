@@ -271,15 +271,21 @@ impl<'a> Row<'_, 'a> {
         }
         // Element and coordinates travel past pdbtbx.
         sieved.text.push_str("\"C\" 0 0 0\n");
+        let archive_chain = columns
+            .archive_chain
+            .and_then(|column| self.value(column))
+            .filter(|name| *name != chain);
+        let before = sieved.carried.last();
+        if before.is_some_and(|before| {
+            before.chain == chain && before.archive_chain.as_deref() != archive_chain
+        }) {
+            sieved.chain_ends.push(self.line());
+        }
         sieved.carried.push(Carried {
             line: self.line(),
             model,
             chain: chain.to_string(),
-            archive_chain: columns
-                .archive_chain
-                .and_then(|column| self.value(column))
-                .filter(|name| *name != chain)
-                .map(str::to_string),
+            archive_chain: archive_chain.map(str::to_string),
             residue_name: residue_name.to_string(),
             residue_number,
             insertion_code: insertion,

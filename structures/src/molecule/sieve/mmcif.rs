@@ -23,11 +23,11 @@ pub(in crate::molecule) fn sieve(
     let mut stream = tokens(text).peekable();
     while let Some(token) = stream.next() {
         match token.kind {
-            Kind::Data if !table.values.is_empty() => {
-                sieved.other_blocks = blocks_with_atoms(token.line, stream);
+            Kind::Data(name) if !table.values.is_empty() => {
+                sieved.other_blocks = blocks_with_atoms((token.line, name), stream);
                 break;
             }
-            Kind::Data => sieved.recognised = true,
+            Kind::Data(_) => sieved.recognised = true,
             Kind::Loop => {
                 let mut tags = Vec::new();
                 while let Some(Kind::Tag(tag)) = stream.peek().map(|next| next.kind) {
@@ -73,19 +73,24 @@ pub(in crate::molecule) fn sieve(
     Ok(sieved)
 }
 
-/// Lines of the data blocks that have an atom table, from one that starts at `first` on.
-fn blocks_with_atoms<'a>(first: usize, rest: impl Iterator<Item = Token<'a>>) -> Vec<usize> {
-    let (mut block, mut lines) = (first, Vec::new());
+/// Lines and names of the data blocks that have an atom table, from the one given on.
+fn blocks_with_atoms<'a>(
+    first: (usize, &'a str),
+    rest: impl Iterator<Item = Token<'a>>,
+) -> Vec<(usize, String)> {
+    let (mut block, mut found) = (first, Vec::<(usize, String)>::new());
     for token in rest {
         match token.kind {
-            Kind::Data => block = token.line,
-            Kind::Tag(tag) if item(tag).is_some() && lines.last() != Some(&block) => {
-                lines.push(block);
+            Kind::Data(name) => block = (token.line, name),
+            Kind::Tag(tag)
+                if item(tag).is_some() && found.last().is_none_or(|last| last.0 != block.0) =>
+            {
+                found.push((block.0, block.1.to_owned()));
             }
             _ => {}
         }
     }
-    lines
+    found
 }
 
 fn is_value(kind: Kind<'_>) -> bool {

@@ -23,6 +23,9 @@ const RECORDS: [&str; 14] = [
     "END", "CONECT", "MASTER", "EXPDTA",
 ];
 
+/// Records that end a chain.
+const ENDS: [&str; 4] = ["TER", "MODEL", "ENDMDL", "END"];
+
 /// Sieves the text of a PDB file; of the models those that `model` takes.
 pub(in crate::molecule) fn sieve(
     file: &Path,
@@ -55,6 +58,9 @@ pub(in crate::molecule) fn sieve(
             let name = record_name(record);
             sieved.recognised |= RECORDS.contains(&name.as_ref());
             models.note(&name);
+            if ENDS.contains(&name.as_ref()) && !sieved.carried.is_empty() {
+                sieved.chain_ends.push(line);
+            }
             assemblies.note(line, record);
             if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
                 sieved.provenance = Provenance::NoConfidence;

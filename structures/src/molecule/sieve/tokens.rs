@@ -13,8 +13,8 @@ pub(super) struct Token<'a> {
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind<'a> {
-    /// `data_NAME`.
-    Data,
+    /// `data_NAME`, with the name.
+    Data(&'a str),
     /// `loop_`.
     Loop,
     /// `_category.item`, with the underscore.
@@ -104,7 +104,7 @@ fn bare(start: &str) -> (Kind<'_>, &str) {
     let kind = if word.starts_with('_') {
         Kind::Tag(word)
     } else if starts("data_") {
-        Kind::Data
+        Kind::Data(word.get("data_".len()..).unwrap_or(""))
     } else if word.eq_ignore_ascii_case("loop_") {
         Kind::Loop
     } else {
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(
             found,
             [
-                (1, Kind::Data),
+                (1, Kind::Data("X")),
                 (2, Kind::Tag("_a.b")),
                 (2, Kind::Quoted("O5'")),
                 (2, Kind::Quoted("it's")),
