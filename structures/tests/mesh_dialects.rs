@@ -143,6 +143,8 @@ fn text_stl_of_many_kinds() {
     is_cube("upper.stl", stl.to_uppercase().as_bytes());
     is_cube("under_another_name.obj", stl.as_bytes());
     is_cube("none", stl.as_bytes());
+    let banner = format!("Exported by a program\nin mm\n{stl}");
+    is_cube_with_warning("banner.stl", banner.as_bytes(), &["2 lines before"]);
     // Names may be anything.
     for name in [
         "solid facet",

@@ -7,10 +7,30 @@ use super::grid::Grid;
 /// Stands for no vertex.
 pub const NONE: u32 = u32::MAX;
 
-/// Two open edges that may be one: whether they run the same way, how far their ends are apart, the two, and whether the
-/// first end of one is the second of the other.
+/// Two open edges that may be one, which are ordered by who goes first.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
-pub struct Pair(pub bool, pub f64, pub u32, pub u32, pub bool);
+pub struct Pair {
+    /// How many edges are within reach of that one of the two that has fewer: what has no choice goes first.
+    choices: u32,
+    /// Whether the two run the same way.
+    same_way: bool,
+    /// How far apart their ends are along an axis.
+    distance: f64,
+    /// The two edges.
+    pub edges: [u32; 2],
+}
+
+impl Pair {
+    /// The ends of the first edge, and which of the second each is joined with.
+    pub fn ends(&self, border: &Border) -> [[u32; 2]; 2] {
+        let [[a, b], [c, d]] = self.edges.map(|edge| border.edges[edge as usize]);
+        if self.same_way {
+            [[a, c], [b, d]]
+        } else {
+            [[a, d], [b, c]]
+        }
+    }
+}
 
 /// The open edges and their vertices, which are numbered by themselves, in the order of the mesh's.
 pub struct Border {
@@ -86,40 +106,53 @@ impl Border {
         })
     }
 
-    /// Open edges whose ends lie within reach of one another.
+    /// Open edges whose ends lie within reach of one another, in the order in which they are joined. Edges no longer than the
+    /// reach are left out: either end of one might be either end of another.
     pub fn pairs(&self, reach: f64) -> Vec<Pair> {
+        let between =
+            |p: u32, q: u32| apart(self.positions[p as usize], self.positions[q as usize]);
         let grid = Grid::new(&self.positions, reach);
         let mut near = Vec::new();
         let mut pairs = Vec::new();
         for (index, &[a, b]) in (0u32..).zip(&self.edges) {
+            if between(a, b) <= reach {
+                continue;
+            }
             // Many edges may meet at one end, as at the tip of a cone.
             let swapped = self.edges_of.of_one(b).len() < self.edges_of.of_one(a).len();
             let (start, end) = if swapped { (b, a) } else { (a, b) };
             grid.near(self.positions[start as usize], &mut near);
             for &beginning in &near {
                 for &other in self.edges_of.of_one(beginning) {
-                    if other <= index {
+                    let [c, d] = self.edges[other as usize];
+                    if other <= index || between(c, d) <= reach {
                         continue;
                     }
-                    let [c, d] = self.edges[other as usize];
-                    let (far_end, is_first) = if c == beginning {
-                        (d, true)
-                    } else {
-                        (c, false)
-                    };
-                    let apart = |p: u32, q: u32| {
-                        apart(self.positions[p as usize], self.positions[q as usize])
-                    };
-                    let far = apart(end, far_end);
-                    if far <= reach {
-                        // Both run away from the ends that are near, or both towards them.
-                        let same_way = is_first != swapped;
-                        let distance = far.max(apart(start, beginning));
-                        pairs.push(Pair(same_way, distance, index, other, !same_way));
+                    let is_first = c == beginning;
+                    let far_end = if is_first { d } else { c };
+                    let far = between(end, far_end);
+                    let may_join = |p, q| !self.beside.of_one(p).contains(&q);
+                    if far <= reach && may_join(start, beginning) && may_join(end, far_end) {
+                        pairs.push(Pair {
+                            choices: 0,
+                            same_way: is_first != swapped,
+                            distance: far.max(between(start, beginning)),
+                            edges: [index, other],
+                        });
                     }
                 }
             }
         }
+        let mut choices = vec![0; self.edges.len()];
+        for edge in pairs.iter().flat_map(|pair| pair.edges) {
+            choices[edge as usize] += 1;
+        }
+        for pair in &mut pairs {
+            let [one, other] = pair.edges.map(|edge| choices[edge as usize]);
+            pair.choices = one.min(other);
+        }
+        // No distance is NaN.
+        pairs.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
         pairs
     }
 }

@@ -4,8 +4,8 @@
 //! differently. The rule:
 //!
 //! - Only ends of **open edges** (of one face alone) are joined, so a closed mesh stays as it is, however thin.
-//! - Two open edges are joined when both their ends lie within reach of one another; edges that run opposite ways first,
-//!   then the closest, then by their place in the file.
+//! - Two open edges longer than the reach are joined when both their ends lie within reach of one another. What has the fewest
+//!   edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in the file.
 //! - All the vertices that become one lie in a cube as wide as the reach: no chain leads farther.
 //! - Two vertices that follow each other on a face are not joined, so no sliver is lost.
 //! - Where more than [`MOST_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and nothing is joined.
@@ -18,7 +18,7 @@ mod clusters;
 mod grid;
 
 use super::faces::Faces;
-use border::{Border, Pair};
+use border::Border;
 use clusters::Clusters;
 
 /// Open vertices within reach of one, at most. Numbers rounded to a unit allow 125 different ones within two units.
@@ -30,26 +30,22 @@ const MOST_NEAR: usize = 128;
 pub fn join(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u32>> {
     let border = Border::of(positions, faces)?;
     let mut clusters = Clusters::new(&border, reach);
-    let mut pairs = border.pairs(reach);
-    pairs.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     let mut is_joined = vec![false; border.edges.len()];
-    for &Pair(_, _, one, other, crossed) in &pairs {
-        let (one, other) = (one as usize, other as usize);
-        if is_joined[one] || is_joined[other] {
+    for pair in border.pairs(reach) {
+        let edges = pair.edges.map(|edge| edge as usize);
+        let ends = pair.ends(&border);
+        if edges.iter().any(|&edge| is_joined[edge])
+            || !ends.iter().all(|&[a, b]| clusters.may_join(&border, a, b))
+        {
             continue;
         }
-        let [a, b] = border.edges[one];
-        let [mut c, mut d] = border.edges[other];
-        if crossed {
-            (c, d) = (d, c);
+        for edge in edges {
+            is_joined[edge] = true;
         }
-        if clusters.may_join(&border, a, c) && clusters.may_join(&border, b, d) {
-            is_joined[one] = true;
-            is_joined[other] = true;
-            clusters.join(a, c);
+        for [a, b] in ends {
             // The first may have come in the way of the second.
-            if clusters.may_join(&border, b, d) {
-                clusters.join(b, d);
+            if clusters.may_join(&border, a, b) {
+                clusters.join(a, b);
             }
         }
     }

@@ -18,17 +18,26 @@ fn plain_lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
+/// Lines in which the first solid or facet must begin.
+const MOST_LINES_BEFORE: usize = 100;
+
+/// Whether a line begins a solid, with any name, or a facet.
+fn is_first(line: &Line<'_>) -> bool {
+    let mut words = line.words();
+    let mut is = |name: &str| {
+        let word = words.next();
+        word.is_some_and(|word| word.eq_ignore_ascii_case(name))
+    };
+    let word = line.words().next().unwrap_or_default();
+    if word.eq_ignore_ascii_case("solid") {
+        return true;
+    }
+    is("facet") && is("normal")
+}
+
 /// Whether a text begins as an STL file does, with or without its first line.
 pub fn begins(text: &str) -> bool {
-    let Some(first) = plain_lines(text).next() else {
-        return false;
-    };
-    let mut words = first.words();
-    let is =
-        |word: Option<&str>, name: &str| word.is_some_and(|word| word.eq_ignore_ascii_case(name));
-    let word = words.next();
-    // A line `solid` with any name, or a facet.
-    is(word, "solid") || is(word, "facet") && is(words.next(), "normal")
+    plain_lines(text).next().is_some_and(|line| is_first(&line))
 }
 
 /// Words of a line, of which some can be looked at ahead.
@@ -67,15 +76,21 @@ impl<'a> Words<'a> {
 
 /// Reads a text.
 pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
-    if !begins(text) {
+    let mut before = plain_lines(text).take(MOST_LINES_BEFORE);
+    let Some(before) = before.position(|line| is_first(&line)) else {
         return Err(not_stl(text));
-    }
+    };
     let mut soup = Soup::default();
+    if before > 0 {
+        soup.notes.say(format!(
+            "{before} lines before the first solid were not read"
+        ));
+    }
     // Corners of the facet with their lines, and where it begins.
     let mut corners: Vec<([f64; 3], usize)> = Vec::new();
     let mut vertices = Vec::new();
     let mut facet: Option<Line<'_>> = None;
-    for line in plain_lines(text) {
+    for line in plain_lines(text).skip(before) {
         let mut words = Words {
             line,
             rest: line.words().peekable(),
