@@ -102,7 +102,7 @@ fn off_in_other_lines() {
         );
     }
     // What does not fit is refused at its line, as before.
-    let cut = parse(off[..off.len() - 8].as_bytes(), MeshFormat::Off).unwrap_err();
+    let cut = parse(&off.as_bytes()[..off.len() - 8], MeshFormat::Off).unwrap_err();
     assert!(cut.to_string().contains("face 12 of 12"), "{cut}");
     for unread in ["4OFF\n", "nOFF\n3\n", "4nOFF\n"] {
         assert!(parse(format!("{unread}{body}").as_bytes(), MeshFormat::Off).is_err());
@@ -368,7 +368,8 @@ fn ply_dialects() {
 /// The same in binary: lists of every type, both orders of bytes, a header of other lines.
 #[test]
 fn binary_ply_dialects() {
-    let types: [(&str, usize, fn(f64) -> Vec<u8>); 8] = [
+    type Bytes = fn(f64) -> Vec<u8>;
+    let types: [(&str, usize, Bytes); 8] = [
         ("char", 1, |x| (x as i8).to_be_bytes().to_vec()),
         ("uint8", 1, |x| (x as u8).to_be_bytes().to_vec()),
         ("int16", 2, |x| (x as i16).to_be_bytes().to_vec()),

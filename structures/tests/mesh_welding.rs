@@ -196,7 +196,8 @@ fn seams_within_the_digits_written_are_closed() {
     let ball = sphere([100.0; 3], 10.0, 12);
     let whole = ball.mesh().0.volume();
     // Four decimals, and six digits with zeros dropped as `%g` does.
-    let written: [(f64, fn(f64) -> String); 2] = [
+    type Write = fn(f64) -> String;
+    let written: [(f64, Write); 2] = [
         (1e-4, |x| format!("{x:.4}")),
         (1e-3, |x| {
             let decimals = 5 - x.abs().log10().floor() as usize;

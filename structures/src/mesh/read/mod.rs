@@ -124,13 +124,13 @@ fn sure_format(bytes: &[u8]) -> Option<MeshFormat> {
         return Some(MeshFormat::Stl);
     }
     let text = text_of(bytes)?;
-    let begins: [(fn(&str) -> bool, MeshFormat); 3] = [
-        (stl::begins, MeshFormat::Stl),
-        (off::begins, MeshFormat::Off),
-        (obj::begins, MeshFormat::Obj),
-    ];
-    let found = begins.into_iter().find(|(begins, _)| begins(&text));
-    found.map(|(_, format)| format)
+    if stl::begins(&text) {
+        Some(MeshFormat::Stl)
+    } else if off::begins(&text) {
+        Some(MeshFormat::Off)
+    } else {
+        obj::begins(&text).then_some(MeshFormat::Obj)
+    }
 }
 
 /// Reads a mesh from the bytes of a file.
