@@ -143,6 +143,26 @@ fn a_mesh_becomes_a_table_of_balls_with_measured_bounds() {
     assert_eq!(files, ["knots.csv", "balls.obj", "box.svg"]);
 }
 
+/// One face of two vertices had the whole file refused; a STEP file by a mesh's name was a count of triangles that it did not have.
+#[test]
+fn what_is_left_out_is_a_warning_and_other_kinds_are_named() {
+    let place = Place::new();
+    fs::write(place.path("more.obj"), box_obj() + "f 1 2\n").unwrap();
+    let arguments = ["more.obj", "--grid", "2^9", "-o", "more.csv"];
+    let strict = [&arguments[..], &["--strict"]].concat();
+    let error = place.refused(&strict);
+    assert!(error["message"].as_str().unwrap().contains("line 15"));
+    let object = place.sample(&arguments);
+    let warnings = object["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].as_str().unwrap().contains("line 15"));
+    assert_eq!(object["mesh"]["reading_notes"][0], warnings[0]);
+    assert_eq!(object["mesh"]["seam_vertices"], 0);
+    fs::write(place.path("part.stl"), "ISO-10303-21;\nHEADER;\n").unwrap();
+    let error = place.refused(&["part.stl"]);
+    assert!(error["message"].as_str().unwrap().contains("STEP"));
+}
+
 /// A step half-way up lies in the picture's slice, where points are neither inside nor outside.
 #[test]
 fn a_face_in_the_plane_of_the_picture_is_no_hindrance() {

@@ -11,10 +11,10 @@ impl Reader {
             Self::Pdb => vec![pdb(), MODELS.to_owned()],
             Self::Mmcif => vec![mmcif(), SINGLE.to_owned()],
             Self::Gzip => return vec![gzip(&pdb()), gzip(&mmcif()), [gzip("REMARK\n"), gzip(&pdb())].concat()],
-            Self::Stl => return vec![STL.as_bytes().to_vec(), binary_stl()],
+            Self::Stl => return vec![STL.as_bytes().to_vec(), binary_stl(), STL.replace('\n', " ").into_bytes(), uncounted_stl()],
             Self::Obj => vec![OBJ.to_owned(), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -2 -3\nf 1/1 2/2 4/4\nf 1//1 4//4 3//3\nf 2 3 4\n".to_owned()],
-            Self::Ply => return vec![PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false)],
-            Self::Off => vec![OFF.to_owned(), format!("# a comment\n{OFF}")],
+            Self::Ply => return vec![PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false), STRIPS.as_bytes().to_vec()],
+            Self::Off => vec![OFF.to_owned(), format!("# a comment\n{OFF}"), WRAPPED_OFF.to_owned()],
             Self::Poses => vec!["rank,score,qw,qx,qy,qz,tx,ty,tz,note\n1,10.5,1,0,0,0,0.5,-1,2e1,\"a, b\"\n2,9,0.5,0.5,0.5,0.5,1,2,3,\n3,8,0,0,0,1,4,5,6,c\n".to_owned()],
             Self::Run => vec![RUN.to_owned()],
             Self::Contact => vec![include_str!("../../scoring/src/effect/contact_potential.csv").to_owned()],
@@ -202,6 +202,27 @@ end_header
 const OFF: &str =
     "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3 255 0 0\n3 0 3 2\n3 1 2 3\n";
 
+const STRIPS: &str = "\
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property float nx
+element tristrips 1
+property list int float vertex_index
+end_header
+
+0 0 0 nan
+1 0 0 nan
+0 1 0 nan
+0 0 1 nan
+9 0 2 1 3 0 2 -1 0 1
+";
+
+const WRAPPED_OFF: &str = "noff4 4\n6 0 0 0 1 0\n0 1 0 0 1 0 0\n0 1 0 1 0 0 0 0 1 1 0 0 3 0 2 1 3 0 1 3 3 0 3 2 3 1\n2 3\n";
+
 const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const FACES: [[i32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
@@ -216,6 +237,13 @@ fn binary_stl() -> Vec<u8> {
         }
         bytes.extend([0; 2]);
     }
+    bytes
+}
+
+/// As written to a pipe: the header counts no triangle.
+fn uncounted_stl() -> Vec<u8> {
+    let mut bytes = binary_stl();
+    bytes[80..84].fill(0);
     bytes
 }
 

@@ -42,7 +42,8 @@ pub struct Sample {
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
     set: Option<SetChoice>,
-    /// Refuse meshes that are not closed, have triangles that face the wrong way, or hold their surface several times.
+    /// Refuse meshes that are not closed, have triangles that face the wrong way, hold their surface several times, or of which
+    /// something was left out on reading.
     #[arg(long)]
     strict: bool,
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.

@@ -33,6 +33,14 @@ pub enum MeshErrorKind {
     /// Neither the name's ending nor the first bytes tell the format.
     #[error("the format is not known: neither STL, OBJ, PLY nor OFF")]
     UnknownFormat,
+    /// The file is of another kind.
+    #[error("this is {kind}, not a mesh that can be read")]
+    Foreign {
+        /// What it is.
+        kind: &'static str,
+        /// What to give in its place.
+        remedy: &'static str,
+    },
     /// The text or the bytes break the rules of the format.
     #[error("{what}")]
     Syntax {
@@ -119,6 +127,7 @@ impl MeshError {
             MeshErrorKind::UnknownFormat => {
                 "give an STL, OBJ, PLY or OFF file, with the ending .stl, .obj, .ply or .off, not compressed"
             }
+            MeshErrorKind::Foreign { remedy, .. } => remedy,
             MeshErrorKind::Syntax { .. } => {
                 "export the mesh again: the file may be cut short or written by hand"
             }

@@ -10,16 +10,20 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> `facing` (which way surfaces face) ->
+//! path -> `read` (bytes to polygons) -> `weld` (with `rounding`, `seams`; polygons to triangles) -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> `facing` (which way surfaces face) ->
 //! [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
 
 mod distance;
 mod error;
+mod faces;
 mod facing;
 mod figure;
+mod polygon;
 mod read;
 mod repeats;
 mod report;
+mod rounding;
+mod seams;
 mod solid;
 mod surface;
 mod topology;

@@ -25,6 +25,12 @@ pub struct MeshReport {
     pub triangles: usize,
     /// Triangles dropped because two of their corners are one vertex, and kept ones without area.
     pub degenerate_triangles: usize,
+    /// Vertices joined with another across a seam, both being one but for the rounding of the file's numbers.
+    pub seam_vertices: usize,
+    /// How far apart these may be along an axis, in the file's unit; 0 where none were joined.
+    pub weld_reach: f64,
+    /// What was left out of the file, or read otherwise than it says: a sentence each.
+    pub reading_notes: Vec<String>,
     /// How often the file holds each triangle, one way round or both; they are kept once. 1 but for surfaces that are there several times.
     pub times: usize,
     /// Edges of one triangle only.
@@ -54,12 +60,18 @@ pub struct MeshReport {
     pub high: [f64; 3],
 }
 
-/// What was dropped of a file's triangles.
-pub(super) struct Dropped {
-    /// Those with two corners in one place.
+/// What reading altered.
+pub(super) struct Altered {
+    /// Triangles dropped with two corners in one place.
     pub collapsed: usize,
     /// How often each of the others was there.
     pub times: usize,
+    /// As [`MeshReport::seam_vertices`].
+    pub seam_vertices: usize,
+    /// As [`MeshReport::weld_reach`].
+    pub weld_reach: f64,
+    /// As [`MeshReport::reading_notes`].
+    pub notes: Vec<String>,
 }
 
 impl MeshReport {
@@ -68,7 +80,7 @@ impl MeshReport {
         format: Option<MeshFormat>,
         file_vertices: usize,
         file_triangles: usize,
-        dropped: Dropped,
+        altered: Altered,
         topology: &Topology,
     ) -> Self {
         let slivers = mesh
@@ -89,8 +101,11 @@ impl MeshReport {
             file_triangles,
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            degenerate_triangles: dropped.collapsed + slivers,
-            times: dropped.times,
+            degenerate_triangles: altered.collapsed + slivers,
+            seam_vertices: altered.seam_vertices,
+            weld_reach: altered.weld_reach,
+            reading_notes: altered.notes,
+            times: altered.times,
             open_edges: topology.open_edges,
             open_length: topology.open_length,
             nonmanifold_edges: topology.nonmanifold_edges,
@@ -116,15 +131,16 @@ impl MeshReport {
         self.unbalanced_edges == 0
     }
 
-    /// Whether the file's surface was closed, faced outward and was there once as it came, which is what `--strict` asks for.
+    /// Whether the file's surface was closed, faced outward, was there once as it came and was read whole, which is what
+    /// `--strict` asks for.
     pub fn is_sound(&self) -> bool {
         let turned = self.turned_triangles > 0 || self.inverted_parts > 0;
-        self.is_closed() && !turned && self.times == 1
+        self.is_closed() && !turned && self.times == 1 && self.reading_notes.is_empty()
     }
 
     /// What a user has to know before trusting what is made of the mesh, a sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let mut warnings = self.reading_notes.clone();
         if self.times > 1 {
             warnings.push(format!(
                 "the file holds each triangle {} times, one way round or both; it is taken once",

@@ -1,8 +1,15 @@
 //! Vertices at one place made one vertex, so that triangles share edges.
+//!
+//! 1. Vertices within [`WELD_TOLERANCE`] become one: copies with the same digits.
+//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have the rules.
+//! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is one.
 
 use std::collections::HashMap;
 
 use super::error::MeshErrorKind;
+use super::faces::Faces;
+use super::rounding::{self, Digits};
+use super::{polygon, seams};
 
 /// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a vertex
 /// with the same digits, so this needs to take up no more than the rounding of one conversion of units.
@@ -14,18 +21,30 @@ pub struct Welded {
     pub positions: Vec<[f64; 3]>,
     /// Triangles with three different corners, in the order given.
     pub triangles: Vec<[u32; 3]>,
+    /// Vertices joined with others across seams, within the rounding.
+    pub seam_vertices: usize,
+    /// How far apart these may have been along an axis, in the file's unit.
+    pub reach: f64,
 }
 
 /// Lengths below which squared areas are lost.
 const SMALLEST_EXTENT: f64 = 1e-60;
 
-/// Merges vertices within [`WELD_TOLERANCE`] and drops triangles that lose a corner by it.
+/// Stands for a vertex that has no name yet.
+const NONE: u32 = u32::MAX;
+
+/// Merges vertices, cuts faces into triangles and drops those that have lost a corner.
 ///
 /// A vertex joins the earliest one within reach, so the outcome does not depend on anything but the order of the file.
-pub fn weld(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Welded, MeshErrorKind> {
+pub fn weld(
+    positions: Vec<[f64; 3]>,
+    mut faces: Faces,
+    digits: &Digits,
+) -> Result<Welded, MeshErrorKind> {
+    let count = faces.triangle_count();
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
-    for &corner in triangles.iter().flatten() {
+    for &corner in faces.corners() {
         let position = positions[corner as usize];
         for axis in 0..3 {
             low[axis] = low[axis].min(position[axis]);
@@ -36,82 +55,125 @@ pub fn weld(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Welded
         .map(|axis| high[axis] - low[axis])
         .fold(0.0, f64::max);
     if extent == 0.0 {
-        return Err(MeshErrorKind::Degenerate {
-            triangles: triangles.len(),
-        });
+        return Err(MeshErrorKind::Degenerate { triangles: count });
     }
     if extent < SMALLEST_EXTENT {
         return Err(MeshErrorKind::Tiny { extent });
     }
-    let reach = extent * WELD_TOLERANCE;
-    // Cells are twice the reach, so that what is within reach of a vertex lies in its cell or in one that it nearly
-    // touches: mostly one look-up a vertex.
-    let cell = 2.0 * reach;
-    let mut places: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(positions.len() / 2);
-    let mut names: Vec<Option<u32>> = vec![None; positions.len()];
-    let mut kept: Vec<[f64; 3]> = Vec::new();
-    let count = triangles.len();
-    let mut welded = Vec::with_capacity(count);
-    for triangle in triangles {
-        let corners = triangle.map(|corner| {
-            let slot = &mut names[corner as usize];
-            *slot.get_or_insert_with(|| {
-                place(
-                    positions[corner as usize],
-                    low,
-                    cell,
-                    reach,
-                    &mut places,
-                    &mut kept,
-                )
-            })
-        });
-        if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
-            welded.push(corners);
+    let mut places = Places::new(low, extent * WELD_TOLERANCE, positions.len());
+    let mut names = vec![NONE; positions.len()];
+    for corner in faces.corners_mut() {
+        let name = &mut names[*corner as usize];
+        if *name == NONE {
+            *name = places.name(positions[*corner as usize]);
+        }
+        *corner = *name;
+    }
+    drop((positions, names));
+    let kept = places.into_kept();
+
+    let reach = rounding::reach(&kept, digits, extent);
+    let mut seam_vertices = 0;
+    if reach > extent * WELD_TOLERANCE
+        && let Some(names) = seams::join(&kept, &faces, reach)
+    {
+        seam_vertices = (0..)
+            .zip(&names)
+            .filter(|&(own, &name)| own != name)
+            .count();
+        for corner in faces.corners_mut() {
+            *corner = names[*corner as usize];
         }
     }
-    if welded.is_empty() {
+
+    let mut triangles = Vec::with_capacity(count);
+    for face in faces.iter() {
+        polygon::triangulate(&kept, face, &mut triangles);
+    }
+    drop(faces);
+    let positions = number_by_appearance(kept, &mut triangles);
+    triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+    if triangles.is_empty() {
         return Err(MeshErrorKind::Degenerate { triangles: count });
     }
     Ok(Welded {
-        positions: kept,
-        triangles: welded,
+        positions,
+        triangles,
+        seam_vertices,
+        reach: if seam_vertices > 0 { reach } else { 0.0 },
     })
 }
 
-/// The vertex that stands for a position: the earliest within reach, else a new one.
-fn place(
-    position: [f64; 3],
+/// Numbers vertices in the order in which triangles name them, and leaves out the others.
+fn number_by_appearance(kept: Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -> Vec<[f64; 3]> {
+    let mut names = vec![NONE; kept.len()];
+    let mut positions = Vec::with_capacity(kept.len());
+    for corner in triangles.iter_mut().flatten() {
+        let name = &mut names[*corner as usize];
+        if *name == NONE {
+            *name = positions.len() as u32;
+            positions.push(kept[*corner as usize]);
+        }
+        *corner = *name;
+    }
+    positions
+}
+
+/// Vertices by their place.
+struct Places {
     low: [f64; 3],
-    cell: f64,
     reach: f64,
-    places: &mut HashMap<[i64; 3], Vec<u32>>,
-    kept: &mut Vec<[f64; 3]>,
-) -> u32 {
-    let along =
-        |axis: usize, shift: f64| ((position[axis] - low[axis] + shift) / cell).floor() as i64;
-    let mut found: Option<u32> = None;
-    for x in along(0, -reach)..=along(0, reach) {
-        for y in along(1, -reach)..=along(1, reach) {
-            for z in along(2, -reach)..=along(2, reach) {
-                for &other in places.get(&[x, y, z]).into_iter().flatten() {
-                    let near = super::vector::distance(kept[other as usize], position) <= reach;
-                    if near && found.is_none_or(|found| other < found) {
-                        found = Some(other);
+    /// Cells are twice the reach, so that what is within reach of a vertex lies in its cell or in one that it nearly
+    /// touches: mostly one look-up a vertex.
+    cell: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+    kept: Vec<[f64; 3]>,
+}
+
+impl Places {
+    fn new(low: [f64; 3], reach: f64, vertices: usize) -> Self {
+        Self {
+            low,
+            reach,
+            cell: 2.0 * reach,
+            cells: HashMap::with_capacity(vertices / 2),
+            kept: Vec::new(),
+        }
+    }
+
+    /// The vertex that stands for a position: the earliest within reach, else a new one.
+    fn name(&mut self, position: [f64; 3]) -> u32 {
+        let (low, reach, cell) = (self.low, self.reach, self.cell);
+        let along =
+            |axis: usize, shift: f64| ((position[axis] - low[axis] + shift) / cell).floor() as i64;
+        let mut found: Option<u32> = None;
+        for x in along(0, -reach)..=along(0, reach) {
+            for y in along(1, -reach)..=along(1, reach) {
+                for z in along(2, -reach)..=along(2, reach) {
+                    for &other in self.cells.get(&[x, y, z]).into_iter().flatten() {
+                        let apart = super::vector::distance(self.kept[other as usize], position);
+                        if apart <= reach && found.is_none_or(|found| other < found) {
+                            found = Some(other);
+                        }
                     }
                 }
             }
         }
+        found.unwrap_or_else(|| {
+            let name = self.kept.len() as u32;
+            self.kept.push(position);
+            self.cells
+                .entry([along(0, 0.0), along(1, 0.0), along(2, 0.0)])
+                .or_default()
+                .push(name);
+            name
+        })
     }
-    found.unwrap_or_else(|| {
-        let name = kept.len() as u32;
-        kept.push(position);
-        places
-            .entry([along(0, 0.0), along(1, 0.0), along(2, 0.0)])
-            .or_default()
-            .push(name);
-        name
-    })
+
+    /// One position for each name.
+    fn into_kept(self) -> Vec<[f64; 3]> {
+        self.kept
+    }
 }
 
 #[cfg(test)]
@@ -125,12 +187,14 @@ mod tests {
         let c = [0.0, 1.0, 0.0];
         let almost_b = [1.0 + 0.5e-12, -0.0, 0.2e-12];
         let apart = [1.0 + 1e-9, 0.0, 0.0];
-        let welded = weld(
-            vec![a, b, c, [5.0; 3], almost_b, apart, [-0.0; 3]],
-            vec![[0, 1, 2], [6, 4, 2], [1, 4, 2], [0, 5, 2]],
-        )
-        .unwrap();
+        let mut faces = Faces::default();
+        for triangle in [[0, 1, 2], [6, 4, 2], [1, 4, 2], [0, 5, 2]] {
+            faces.push(&triangle);
+        }
+        let positions = vec![a, b, c, [5.0; 3], almost_b, apart, [-0.0; 3]];
+        let welded = weld(positions, faces, &Digits::default()).unwrap();
         assert_eq!(welded.positions, [a, b, c, apart]);
         assert_eq!(welded.triangles, [[0, 1, 2], [0, 1, 2], [0, 3, 2]]);
+        assert_eq!(welded.seam_vertices, 0);
     }
 }

@@ -1,13 +1,17 @@
 //! From a file to a mesh: STL (text and binary), OBJ, PLY (text and binary) and OFF.
 //!
-//! PLY is read by the crate `ply-rs-bw`. The other three are read here, by a page each: the crates for STL take a binary
+//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each: the crates for STL take a binary
 //! file whose header begins with `solid` for text, keep only the first solid and 24 bits of a number, and neither they nor
 //! those for OBJ say on which line a file breaks.
+//!
+//! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
 
+mod encoding;
+mod foreign;
 mod obj;
 mod off;
 mod ply;
-mod polygon;
+mod soup;
 mod stl;
 mod words;
 
@@ -18,8 +22,10 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::error::{MeshError, MeshErrorKind};
-use super::report::{Dropped, MeshReport};
+use super::report::{Altered, MeshReport};
 use super::{Mesh, repeats, topology, weld};
+use encoding::{text_of, unified};
+use soup::{At, Soup};
 
 /// File format of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -37,51 +43,6 @@ pub enum MeshFormat {
 
 /// Largest file that is read, in bytes: 40 million triangles of binary STL.
 const LARGEST_FILE: u64 = 2 << 30;
-
-/// Largest magnitude of a coordinate: squares and cubes of lengths stay finite.
-const LARGEST_COORDINATE: f64 = 1e70;
-
-/// Polygons as a file lists them, cut into triangles.
-#[derive(Debug, Default)]
-struct Soup {
-    /// Vertices, in the file's order and unit.
-    positions: Vec<[f64; 3]>,
-    /// Triangles of vertex indices, each below the number of `positions`.
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Soup {
-    /// Adds a vertex, refusing what no distance can be computed from.
-    fn push_vertex(
-        &mut self,
-        position: [f64; 3],
-        line: Option<usize>,
-    ) -> Result<u32, MeshErrorKind> {
-        let index = self.positions.len();
-        for value in position {
-            if value.is_nan() || value.abs() > LARGEST_COORDINATE {
-                return Err(MeshErrorKind::Coordinate {
-                    line,
-                    what: format!("vertex {}", index + 1),
-                    value,
-                });
-            }
-        }
-        let Ok(name) = u32::try_from(index) else {
-            return Err(MeshErrorKind::TooLarge(format!(
-                "more than {} vertices",
-                u32::MAX
-            )));
-        };
-        self.positions.push(position);
-        Ok(name)
-    }
-
-    /// Adds a face of three or more vertices, cut into triangles.
-    fn push_face(&mut self, corners: &[u32]) {
-        polygon::triangulate(&self.positions, corners, &mut self.triangles);
-    }
-}
 
 /// Reads a mesh, welds its vertices, turns its triangles to face outward and reports what was found.
 ///
@@ -134,38 +95,42 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshError> {
     let at = |kind| MeshError::at(path, kind);
+    let bytes = unified(bytes);
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    let format =
-        tell_format(bytes, ending.as_deref()).ok_or_else(|| at(MeshErrorKind::UnknownFormat))?;
-    parse(bytes, format).map_err(at)
+    let named = || match ending.as_deref() {
+        Some("stl") => Some(MeshFormat::Stl),
+        Some("obj") => Some(MeshFormat::Obj),
+        Some("ply") => Some(MeshFormat::Ply),
+        Some("off") => Some(MeshFormat::Off),
+        _ => None,
+    };
+    match sure_format(&bytes).or_else(named) {
+        Some(format) => parse(&bytes, format).map_err(at),
+        None => {
+            foreign::refuse(&bytes).map_err(at)?;
+            Err(at(MeshErrorKind::UnknownFormat))
+        }
+    }
 }
 
-/// The format, by what the file begins with where that is sure, else by the ending.
-fn tell_format(bytes: &[u8], ending: Option<&str>) -> Option<MeshFormat> {
-    let start = bytes.trim_ascii_start();
-    if start.starts_with(b"ply") && start.get(3).is_some_and(u8::is_ascii_whitespace) {
+/// The format, where what the file begins with leaves no doubt.
+fn sure_format(bytes: &[u8]) -> Option<MeshFormat> {
+    if ply::begins(bytes) {
         return Some(MeshFormat::Ply);
     }
-    if stl::is_binary(bytes) {
+    if stl::has_records(bytes) {
         return Some(MeshFormat::Stl);
     }
-    match ending {
-        Some("stl") => return Some(MeshFormat::Stl),
-        Some("obj") => return Some(MeshFormat::Obj),
-        Some("ply") => return Some(MeshFormat::Ply),
-        Some("off") => return Some(MeshFormat::Off),
-        _ => {}
+    let text = text_of(bytes)?;
+    if stl::begins(&text) {
+        Some(MeshFormat::Stl)
+    } else if off::begins(&text) {
+        Some(MeshFormat::Off)
+    } else {
+        obj::begins(&text).then_some(MeshFormat::Obj)
     }
-    if start.starts_with(b"OFF") || start.starts_with(b"NOFF") || start.starts_with(b"COFF") {
-        return Some(MeshFormat::Off);
-    }
-    let is_solid = |word: &[u8]| word.eq_ignore_ascii_case(b"solid");
-    start
-        .get(..5)
-        .is_some_and(is_solid)
-        .then_some(MeshFormat::Stl)
 }
 
 /// Reads a mesh from the bytes of a file.
@@ -173,12 +138,23 @@ fn tell_format(bytes: &[u8], ending: Option<&str>) -> Option<MeshFormat> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], format: MeshFormat) -> Result<(Mesh, MeshReport), MeshErrorKind> {
-    let soup = match format {
-        MeshFormat::Stl => stl::parse(bytes),
-        MeshFormat::Obj => obj::parse(bytes),
-        MeshFormat::Ply => ply::parse(bytes),
-        MeshFormat::Off => off::parse(bytes),
+    let bytes = unified(bytes);
+    if sure_format(&bytes) != Some(format) {
+        foreign::refuse(&bytes)?;
+    }
+    let text = || {
+        text_of(&bytes).ok_or_else(|| MeshErrorKind::Syntax {
+            line: None,
+            what: "these are binary data, where the format is a text".to_owned(),
+        })
+    };
+    let mut soup = match format {
+        MeshFormat::Stl => stl::parse(&bytes),
+        MeshFormat::Obj => obj::parse(&text()?),
+        MeshFormat::Ply => ply::parse(&bytes),
+        MeshFormat::Off => off::parse(&text()?),
     }?;
+    soup.settle()?;
     assemble(soup, Some(format))
 }
 
@@ -203,19 +179,28 @@ pub fn from_triangles(
             });
         }
     }
-    soup.triangles = triangles.to_vec();
+    for triangle in triangles {
+        soup.push_face(triangle, At::Face(0));
+    }
+    soup.settle()?;
     assemble(soup, None)
 }
 
 /// Welds, checks and orients.
 fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport), MeshErrorKind> {
-    if soup.triangles.is_empty() {
+    if soup.faces.is_empty() {
         return Err(MeshErrorKind::Empty);
     }
     let read_vertices = soup.positions.len();
-    let read_triangles = soup.triangles.len();
-    let welded = weld::weld(soup.positions, soup.triangles)?;
-    let collapsed = read_triangles - welded.triangles.len();
+    let read_triangles = soup.faces.triangle_count();
+    let welded = weld::weld(soup.positions, soup.faces, &soup.digits)?;
+    let altered = Altered {
+        collapsed: read_triangles - welded.triangles.len(),
+        times: 1,
+        seam_vertices: welded.seam_vertices,
+        weld_reach: welded.reach,
+        notes: soup.notes.into_sentences(),
+    };
     let mut triangles = welded.triangles;
     let times = repeats::keep_first(&mut triangles);
     let mut mesh = Mesh {
@@ -242,7 +227,7 @@ fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport)
         format,
         read_vertices,
         read_triangles,
-        Dropped { collapsed, times },
+        Altered { times, ..altered },
         &topology,
     );
     Ok((mesh, report))

@@ -3,13 +3,31 @@
 use std::borrow::Cow;
 
 use super::super::error::MeshErrorKind;
-use super::Soup;
-use super::words::{lines, text_of};
+use super::soup::{At, Soup};
+use super::words::{lines, real, shortened};
+
+/// Keywords other than `v` that a line of an OBJ file may begin with.
+const KEYWORDS: [&str; 14] = [
+    "vn", "vt", "vp", "f", "fo", "l", "p", "g", "o", "s", "mtllib", "usemtl", "cstype", "lod",
+];
+
+/// Whether a text begins as an OBJ file does: lines of its keywords, up to a vertex.
+pub fn begins(text: &str) -> bool {
+    for line in lines(text, true) {
+        let mut words = line.words();
+        match words.next() {
+            Some("v") => return words.take(3).filter_map(real).count() == 3,
+            Some(word) if KEYWORDS.contains(&word) => {}
+            _ => return false,
+        }
+    }
+    false
+}
 
 /// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines counted.
-fn joined(text: Cow<'_, str>) -> Cow<'_, str> {
+fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
-        return text;
+        return Cow::Borrowed(text);
     }
     let mut joined = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
@@ -29,8 +47,8 @@ fn joined(text: Cow<'_, str>) -> Cow<'_, str> {
 }
 
 /// Reads a file.
-pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
-    let text = joined(text_of(bytes));
+pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
+    let text = joined(text);
     let mut soup = Soup::default();
     let mut corners = Vec::new();
     let mut continued = 0;
@@ -43,7 +61,7 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
             .filter(|w| !w.is_empty());
         match words.next() {
             Some("v") => {
-                let position = line.point(&mut words)?;
+                let position = line.point(&mut words, &mut soup.digits)?;
                 soup.push_vertex(position, Some(line.number))?;
             }
             Some("f" | "fo") => {
@@ -75,16 +93,16 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
                         }
                     }
                 }
-                if corners.len() < 3 {
-                    return Err(line.fault(format!(
-                        "a face of {} vertices; three are needed",
-                        corners.len()
-                    )));
-                }
-                soup.push_face(&corners);
+                soup.push_face(&corners, At::Line(line.number));
             }
             _ => {}
         }
     }
-    Ok(soup)
+    match lines(&text, true).next() {
+        Some(line) if soup.positions.is_empty() => Err(line.fault(format!(
+            "there is no vertex in the file, a line that begins with 'v'; its first line is '{}'",
+            shortened(line.text)
+        ))),
+        _ => Ok(soup),
+    }
 }

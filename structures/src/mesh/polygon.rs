@@ -3,9 +3,12 @@
 //! A fan from the first corner, which most readers use, lays triangles outside a face that is not convex: the distance to
 //! them is not the distance to the solid.
 
-use super::super::vector::{cross, dot, subtract};
+use super::vector::{cross, dot, subtract};
 
 /// Appends the triangles of a polygon with three or more corners, in its own orientation.
+///
+/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are told apart by
+/// their numbers, so those in one place must be one.
 ///
 /// A polygon that crosses itself, is far from plane or has no area gives a fan for what cannot be clipped.
 pub fn triangulate(positions: &[[f64; 3]], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
@@ -16,6 +19,11 @@ pub fn triangulate(positions: &[[f64; 3]], corners: &[u32], triangles: &mut Vec<
     let at = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
     let normal = newell(corners.iter().map(|&corner| at(corner)));
     let mut left = corners.to_vec();
+    // A corner that stands there twice in a row is one; as two it would be a tip without a turn.
+    left.dedup();
+    while left.len() > 1 && left.first() == left.last() {
+        left.pop();
+    }
     while left.len() > 3 {
         let count = left.len();
         let ear = (0..count).find(|&tip| {
@@ -104,7 +112,8 @@ mod tests {
         let positions = [[1.0; 3]; 5];
         let mut triangles = Vec::new();
         triangulate(&positions, &[0, 1, 2, 3, 4], &mut triangles);
+        assert_eq!(triangles.len(), 3);
         triangulate(&positions, &[0, 0, 0, 0], &mut triangles);
-        assert_eq!(triangles.len(), 5);
+        assert_eq!(triangles.len(), 3, "nothing is left of it");
     }
 }

@@ -1,0 +1,489 @@
+//! What other programs write: dialects that are read, files of other kinds that are named, and parts that are left out with a warning.
+
+#![cfg(feature = "mesh")]
+
+mod solids;
+
+use std::fs;
+
+use knotdock_structures::mesh::{
+    Mesh, MeshError, MeshErrorKind, MeshFormat, MeshReport, parse, read,
+};
+use solids::{Surface, cuboid};
+
+fn cube() -> Surface {
+    cuboid([0.0; 3], [10.0; 3])
+}
+
+fn named(name: &str, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    read(&path)
+}
+
+/// Reads what must be the cube, without a word.
+fn is_cube(name: &str, bytes: &[u8]) {
+    let (mesh, report) = named(name, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(report.is_sound(), "{name}: {:?}", report.warnings());
+    assert_eq!((report.vertices, report.triangles), (8, 12), "{name}");
+    assert!((mesh.volume() - 1000.0).abs() < 1e-9, "{name}: {report}");
+}
+
+/// Reads what must be the cube, with one warning that has each of `words`.
+fn is_cube_with_warning(name: &str, bytes: &[u8], words: &[&str]) {
+    let (mesh, report) = named(name, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!((mesh.volume() - 1000.0).abs() < 1e-9, "{name}: {report}");
+    assert!(report.is_closed() && !report.is_sound(), "{name}");
+    let warnings = report.warnings();
+    assert_eq!(warnings.len(), 1, "{name}: {warnings:?}");
+    for word in words {
+        assert!(warnings[0].contains(word), "{name}: {warnings:?}");
+    }
+}
+
+/// OFF is a stream of words by its definition, and ModelNet's files have the counts glued to the keyword; all of these were refused.
+#[test]
+fn off_in_other_lines() {
+    // Without the colours of faces, which are told by the ends of lines alone.
+    let off = cube().off().replace(" 255 0 0", "").replace("# test\n", "");
+    is_cube("plain.off", off.as_bytes());
+    let body = off.strip_prefix("OFF\n").unwrap();
+    for (name, text) in [
+        ("glued.off", format!("OFF{body}")),
+        ("lower.off", format!("off\n{body}")),
+        ("mixed.off", format!("Off {body}")),
+        ("same.off", format!("OFF {body}")),
+        (
+            "comments.off",
+            format!("# a\n\nOFF # b\n# c\n{}", body.replace('\n', " # d\n\n")),
+        ),
+        ("crlf.off", off.replace('\n', "\r\n")),
+        ("bare.off", body.to_owned()),
+        ("line.off", off.replace('\n', " ")),
+        ("word.off", off.replace(' ', "\n")),
+        (
+            "two.off",
+            format!("OFF 8 12 0\n{}", body[7..].replace('\n', " ")),
+        ),
+        ("no_edges.off", off.replacen("8 12 0", "8 12", 1)),
+        (
+            "no_edges_line.off",
+            off.replacen("8 12 0", "8 12", 1).replace('\n', " "),
+        ),
+        ("under_another_name.stl", off.clone()),
+        ("glued.obj", format!("OFF{body}")),
+    ] {
+        is_cube(name, text.as_bytes());
+    }
+    // Colours, normals and places in a picture, a line a vertex or not.
+    for (keyword, more) in [
+        ("COFF", " 0 0 0 0"),
+        ("COFF", " 255 0 0"),
+        ("NOFF", " 0 0 1"),
+        ("STOFF", " 0.5 0.5"),
+        ("CNOFF", " 0 0 1 1 0 0 1"),
+        ("STCNOFF", " 0 0 1 1 0 0 1 0.5 0.5"),
+        ("noff", " 0 0 1"),
+    ] {
+        let lines = body.lines().enumerate().map(|(index, line)| {
+            let is_vertex = (1..=8).contains(&index);
+            format!("{line}{}\n", if is_vertex { more } else { "" })
+        });
+        let text = format!("{keyword}\n{}", lines.collect::<String>());
+        is_cube(&format!("lines_{keyword}.off"), text.as_bytes());
+        is_cube(
+            &format!("words_{keyword}.off"),
+            text.replace(' ', "\n").as_bytes(),
+        );
+        is_cube(
+            &format!("line_{keyword}.off"),
+            text.replace('\n', " ").as_bytes(),
+        );
+    }
+    // What does not fit is refused at its line, as before.
+    let cut = parse(&off.as_bytes()[..off.len() - 8], MeshFormat::Off).unwrap_err();
+    assert!(cut.to_string().contains("face 12 of 12"), "{cut}");
+    for unread in ["4OFF\n", "nOFF\n3\n", "4nOFF\n"] {
+        assert!(parse(format!("{unread}{body}").as_bytes(), MeshFormat::Off).is_err());
+    }
+}
+
+/// A text STL with a zero at its end, in UTF-16, without its first line, after a comment or in one line was taken for a binary one of
+/// 1,684,234,849 triangles, or had none.
+#[test]
+fn text_stl_of_many_kinds() {
+    let stl = cube().stl_text();
+    let (first, rest) = stl.split_once('\n').unwrap();
+    let utf16 = |mark: &[u8], unit: fn(u16) -> [u8; 2]| {
+        let units = stl.encode_utf16().flat_map(unit);
+        mark.iter().copied().chain(units).collect::<Vec<u8>>()
+    };
+    is_cube("plain.stl", stl.as_bytes());
+    is_cube("nul.stl", format!("{stl}\0").as_bytes());
+    is_cube("block.stl", format!("{stl}{}", "\0".repeat(700)).as_bytes());
+    is_cube(
+        "dos.stl",
+        format!("{}\x1a", stl.replace('\n', "\r\n")).as_bytes(),
+    );
+    is_cube("marred.stl", stl.replacen('\n', "\0\n", 1).as_bytes());
+    is_cube("little.stl", &utf16(&[0xff, 0xfe], u16::to_le_bytes));
+    is_cube("big.stl", &utf16(&[0xfe, 0xff], u16::to_be_bytes));
+    is_cube("no_mark.stl", &utf16(&[], u16::to_le_bytes));
+    is_cube("no_first_line.stl", rest.as_bytes());
+    for comment in ["# exported by a program", "// a", "; a"] {
+        is_cube("comment.stl", format!("{comment}\n\n{stl}").as_bytes());
+    }
+    is_cube(
+        "between.stl",
+        stl.replace("endfacet", "endfacet\n# next").as_bytes(),
+    );
+    is_cube("line.stl", stl.replace('\n', " ").as_bytes());
+    is_cube("cr.stl", stl.replace('\n', "\r").as_bytes());
+    is_cube("upper.stl", stl.to_uppercase().as_bytes());
+    is_cube("under_another_name.obj", stl.as_bytes());
+    is_cube("none", stl.as_bytes());
+    let banner = format!("Exported by a program\nin mm\n{stl}");
+    is_cube_with_warning("banner.stl", banner.as_bytes(), &["2 lines before"]);
+    // Names may be anything.
+    for name in [
+        "solid facet",
+        "solid outer vertex",
+        "solid",
+        "solid solid of a facet",
+    ] {
+        is_cube("name.stl", format!("{name}\n{rest}").as_bytes());
+    }
+    let name = first.strip_prefix("solid ").unwrap();
+    is_cube(
+        "name_line.stl",
+        stl.replace(name, "facet vertex")
+            .replace('\n', " ")
+            .as_bytes(),
+    );
+    is_cube(
+        "nan_normals.stl",
+        stl.replace("normal 0 0 0", "normal nan -nan(ind) 0")
+            .as_bytes(),
+    );
+    // Bodies of OBJ and PLY under the name.
+    is_cube("obj.stl", cube().obj().as_bytes());
+    is_cube("ply.stl", cube().ply_text().as_bytes());
+}
+
+/// Files of other kinds are named, in place of a count of triangles that their first bytes make.
+#[test]
+fn other_kinds_are_named() {
+    let step = "ISO-10303-21;\nHEADER;\nENDSEC;\n".repeat(10);
+    let html = "<!DOCTYPE html><html><body>404 not found</body></html>".repeat(10);
+    let pointer = format!(
+        "version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 1234567\n",
+        "0123456789abcdef".repeat(4)
+    );
+    for (bytes, kind, remedy) in [
+        (step.as_bytes(), "STEP", "CAD"),
+        (html.as_bytes(), "HTML", "download"),
+        (pointer.as_bytes(), "Git LFS", "git lfs pull"),
+        (b"\x1f\x8b\x08\0\0\0\0\0\0\x03abc", "gzip", "unpack"),
+        (
+            b"PK\x03\x04\x14\0\0\0\x08\x003D/3dmodel.model",
+            "3MF",
+            "export",
+        ),
+        (b"<?xml version=\"1.0\"?>\n<COLLADA>", "COLLADA", "export"),
+        (b"{\"asset\":{\"version\":\"2.0\"}}", "glTF", "export"),
+        (b"%PDF-1.4\n", "PDF", "give"),
+    ] {
+        for name in ["a.stl", "a.obj", "a.ply", "a.off", "a.3mf", "a"] {
+            let error = named(name, bytes).unwrap_err();
+            assert!(
+                matches!(error.kind, MeshErrorKind::Foreign { .. }),
+                "{name}: {error}"
+            );
+            assert!(error.to_string().contains(kind), "{name}: {error}");
+            assert!(error.remedy().contains(remedy), "{}", error.remedy());
+        }
+    }
+    // Text of no known kind shows how it begins.
+    for name in ["letter.stl", "letter.ply", "letter.obj"] {
+        let error = named(name, b"Dear all,\nthe mesh is late.\n").unwrap_err();
+        assert!(
+            error.to_string().contains("Dear all") && error.line() == Some(1),
+            "{error}"
+        );
+    }
+    // Binary data where text is needed.
+    let random: Vec<u8> = (0..500u32).map(|i| (i * i % 251) as u8).collect();
+    for name in ["a.obj", "a.off"] {
+        assert!(
+            named(name, &random)
+                .unwrap_err()
+                .to_string()
+                .contains("binary")
+        );
+    }
+}
+
+/// A header that promised 12 triangles hid the other 12; one of none, as OpenSCAD writes to a pipe, hid all.
+#[test]
+fn binary_stl_whose_count_is_wrong() {
+    let two = cube().and(&cuboid([20.0; 3], [30.0; 3]));
+    let with_count = |surface: &Surface, count: u32| {
+        let mut bytes = surface.stl_binary();
+        bytes[80..84].copy_from_slice(&count.to_le_bytes());
+        bytes
+    };
+    for (count, words) in [
+        (12, "promises 12 triangles, but more records follow; 24"),
+        (1, "promises 1 triangles"),
+        (0, "promises 0 triangles"),
+        (25, "promises 25 triangles, but the file holds 24"),
+        (u32::MAX, "the file holds 24"),
+    ] {
+        let (mesh, report) = parse(&with_count(&two, count), MeshFormat::Stl).unwrap();
+        assert!((mesh.volume() - 2000.0).abs() < 1e-9, "{count}: {report}");
+        assert!(
+            report.warnings()[0].contains(words),
+            "{:?}",
+            report.warnings()
+        );
+        assert!(!report.is_sound() && report.is_closed());
+    }
+    // A second file behind the first.
+    let joined = [
+        cube().stl_binary(),
+        cuboid([20.0; 3], [30.0; 3]).stl_binary(),
+    ]
+    .concat();
+    let (mesh, report) = parse(&joined, MeshFormat::Stl).unwrap();
+    assert!(
+        (mesh.volume() - 2000.0).abs() < 1e-9 && report.warnings().len() == 1,
+        "{report}"
+    );
+    // What fills up a block, or is no triangle, is none.
+    let cube_bytes = cube().stl_binary();
+    for tail in [vec![0; 600], b"written by a program ".repeat(20)] {
+        let bytes = [&cube_bytes[..], &tail].concat();
+        is_cube_with_warning("tail.stl", &bytes, &["not read"]);
+    }
+    is_cube("short_tail.stl", &[&cube_bytes[..], b"\n"].concat());
+    // A file cut short inside a record is refused.
+    for end in [cube_bytes.len() - 1, cube_bytes.len() - 20, 100, 84] {
+        assert!(parse(&cube_bytes[..end], MeshFormat::Stl).is_err(), "{end}");
+    }
+}
+
+/// Numbers that are none in properties that no mesh needs, blank lines, strips of triangles, indices of other types: all were refused.
+#[test]
+fn ply_dialects() {
+    let ply = cube().ply_text();
+    let (head, body) = ply.split_once("end_header\n").unwrap();
+    is_cube("plain.ply", ply.as_bytes());
+    let (vertices, faces) = body.split_at(body.match_indices('\n').nth(7).unwrap().0 + 1);
+    // Properties between the coordinates, and numbers that are none.
+    let with_normals = head.replace(
+        "property double z\n",
+        "property float nx\nproperty double z\nproperty uchar red\n",
+    );
+    for word in [
+        "nan", "-nan", "NaN", "inf", "-inf", "1.#QNAN", "-1.#IND", "nan(ind)", "1.", ".5",
+    ] {
+        let lines = vertices.lines().map(|line| {
+            let (start, z) = line.rsplit_once(' ').unwrap();
+            format!("{start} {word} {z} 255\n")
+        });
+        let text = format!(
+            "{with_normals}end_header\n{}{faces}",
+            lines.collect::<String>()
+        );
+        is_cube("normals.ply", text.as_bytes());
+    }
+    for (name, text) in [
+        ("blank.ply", format!("{head}end_header\n\n{vertices}\n\n{faces}\n\n")),
+        ("blank_head.ply", ply.replace("comment test\n", "comment\n\n\ncomment\tx\nobj_info\nobj_info a b\n")),
+        ("crlf.ply", ply.replace('\n', "\r\n")),
+        ("cr.ply", ply.replace('\n', "\r")),
+        ("crlf_head.ply", format!("{}end_header\r\n{body}", head.replace('\n', "\r\n"))),
+        ("spaces.ply", ply.replace('\n', "  \n").replace("element ", "element  ")),
+        ("line.ply", format!("{head}end_header\n{}", body.replace('\n', " "))),
+        ("word.ply", format!("{head}end_header\n{}", body.replace(' ', "\n"))),
+        ("short.ply", ply.replace("double", "float64").replace("uchar int", "uint8 int32")),
+        ("index.ply", ply.replace("vertex_indices", "vertex_index")),
+        ("float.ply", ply.replace("uchar int", "uchar float")),
+        ("real.ply", ply.replace("uchar int", "int double")),
+        ("real_words.ply", format!("{head}end_header\n{vertices}{}", faces.replace("3 ", "3.0 "))
+            .replace("uchar int", "float double")),
+        ("list.ply", format!("{}property list uchar float texcoord\nend_header\n{vertices}{}", head,
+            faces.replace('\n', " 2 0.5 nan\n"))),
+        ("edges.ply", format!("{head}element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n{body}0 1\n1 2\n")),
+        ("first.ply", format!("{}end_header\n1 2.5 nan\n{body}",
+            head.replace("element vertex", "element camera 1\nproperty int a\nproperty float b\nproperty float c\nelement vertex"))),
+        ("faces_first.ply", {
+            let (vertex, face) = head.split_at(head.find("element face").unwrap());
+            let start = vertex.find("element vertex").unwrap();
+            format!("{}{face}{}end_header\n{faces}{vertices}", &vertex[..start], &vertex[start..])
+        }),
+    ] {
+        is_cube(name, text.as_bytes());
+    }
+    let latin = ply.replace("comment test", "comment Gr\u{1}e").into_bytes();
+    let latin: Vec<u8> = latin
+        .iter()
+        .map(|&b| if b == 1 { 0xdf } else { b })
+        .collect();
+    is_cube("latin.ply", &latin);
+    // Strips: each triangle by itself, and two to a strip, of which the second runs the other way in the file.
+    let strips = |lists: &[Vec<i32>]| {
+        let head = head.replace(
+            "element face 12",
+            &format!("element tristrips {}", lists.len()),
+        );
+        let lists = lists.iter().map(|list| {
+            let words: Vec<String> = list.iter().map(i32::to_string).collect();
+            format!("{} {}\n", list.len(), words.join(" "))
+        });
+        format!(
+            "{}end_header\n{vertices}{}",
+            head.replace("uchar int", "int int"),
+            lists.collect::<String>()
+        )
+    };
+    let triangles: Vec<[i32; 3]> = cube()
+        .triangles
+        .iter()
+        .map(|t| t.map(|corner| corner as i32))
+        .collect();
+    let each: Vec<i32> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [a, b, c, -1])
+        .collect();
+    is_cube("strip.ply", strips(&[each]).as_bytes());
+    let quads = triangles.chunks(2).map(|pair| {
+        let ([a, b, c], [_, _, d]) = (pair[0], pair[1]);
+        vec![b, c, a, d]
+    });
+    is_cube("strips.ply", strips(&quads.collect::<Vec<_>>()).as_bytes());
+}
+
+/// The same in binary: lists of every type, both orders of bytes, a header of other lines.
+#[test]
+fn binary_ply_dialects() {
+    type Bytes = fn(f64) -> Vec<u8>;
+    let types: [(&str, usize, Bytes); 8] = [
+        ("char", 1, |x| (x as i8).to_be_bytes().to_vec()),
+        ("uint8", 1, |x| (x as u8).to_be_bytes().to_vec()),
+        ("int16", 2, |x| (x as i16).to_be_bytes().to_vec()),
+        ("ushort", 2, |x| (x as u16).to_be_bytes().to_vec()),
+        ("int", 4, |x| (x as i32).to_be_bytes().to_vec()),
+        ("uint32", 4, |x| (x as u32).to_be_bytes().to_vec()),
+        ("float", 4, |x| (x as f32).to_be_bytes().to_vec()),
+        ("float64", 8, |x| x.to_be_bytes().to_vec()),
+    ];
+    for (name, size, bytes_of) in types {
+        for big in [true, false] {
+            for end in ["\n", "\r\n", "\n\n"] {
+                let put = |x: f64| {
+                    let mut bytes = bytes_of(x);
+                    assert_eq!(bytes.len(), size);
+                    if !big {
+                        bytes.reverse();
+                    }
+                    bytes
+                };
+                let order = if big { "big" } else { "little" };
+                let head = format!(
+                    "ply\nformat binary_{order}_endian 1.0\ncomment\nelement vertex 8\nproperty {name} x\nproperty {name} y\n\
+                     property {name} z\nelement face 12\nproperty list uchar {name} vertex_indices\nend_header"
+                );
+                let line_end = end.trim_end_matches('\n').to_owned() + "\n";
+                let mut bytes = (head.replace('\n', &line_end) + end).into_bytes();
+                let cube = cube();
+                bytes.extend(cube.positions.iter().flatten().flat_map(|&x| put(x)));
+                for triangle in &cube.triangles {
+                    bytes.push(3);
+                    bytes.extend(triangle.iter().flat_map(|&corner| put(f64::from(corner))));
+                }
+                is_cube(&format!("{name}_{order}.ply"), &bytes);
+            }
+        }
+    }
+}
+
+/// One face of two vertices, a vertex without a place that no face uses, a facet with NaN: the whole file was refused.
+#[test]
+fn what_bounds_nothing_is_left_out() {
+    let cube = cube();
+    let obj = cube.obj();
+    let after = obj.lines().count();
+    let line = |more: usize| format!("line {}", after + more);
+    is_cube_with_warning(
+        "two.obj",
+        format!("{obj}f 1 2\n").as_bytes(),
+        &["face", &line(1)],
+    );
+    is_cube_with_warning(
+        "more.obj",
+        format!("{obj}f 1\nf\nf 2/1 3/1\n").as_bytes(),
+        &["3 faces", &line(1)],
+    );
+    for words in ["nan nan nan", "inf 0 0", "0 -nan(ind) 0", "1e300 0 0"] {
+        let text = format!("{obj}v {words}\n");
+        is_cube_with_warning("unused.obj", text.as_bytes(), &["a vertex", &line(1)]);
+    }
+    let off = cube.off().replace("8 12 0", "9 14 0").replacen(
+        "3 0 4 6",
+        "nan 0 0\n2 0 1\n1 5\n3 0 4 6",
+        1,
+    );
+    let (mesh, report) = named("a.off", off.as_bytes()).unwrap();
+    assert!(
+        (mesh.volume() - 1000.0).abs() < 1e-9 && report.warnings().len() == 2,
+        "{report}"
+    );
+    let ply = cube
+        .ply_text()
+        .replace("vertex 8", "vertex 9")
+        .replace("face 12", "face 13")
+        .replacen("3 0 4 6", "nan 0 0\n2 0 1\n3 0 4 6", 1);
+    let (mesh, report) = named("a.ply", ply.as_bytes()).unwrap();
+    assert!(
+        (mesh.volume() - 1000.0).abs() < 1e-9 && report.warnings().len() == 2,
+        "{report}"
+    );
+    // A vertex that a face uses is refused at its line.
+    let used = obj.replacen("v 10.0 10.0 0.0", "v 10.0 nan 0.0", 1);
+    let error = parse(used.as_bytes(), MeshFormat::Obj).unwrap_err();
+    assert!(
+        matches!(error, MeshErrorKind::Coordinate { line: Some(6), .. }),
+        "{error}"
+    );
+    // Facets of STL.
+    let stl = cube.stl_text();
+    for (facet, words) in [
+        (
+            "vertex nan nan nan\nvertex 0 0 0\nvertex 1 0 0\n",
+            "not finite",
+        ),
+        ("vertex 0 0 0\nvertex 1 0 0\nvertex 0 inf 0\n", "not finite"),
+        ("vertex 0 0 0\nvertex 1 0 0\n", "fewer than three"),
+    ] {
+        let facet = format!("facet normal 0 0 0\nouter loop\n{facet}endloop\nendfacet\n");
+        let text = stl.replacen("endfacet\n", &format!("endfacet\n{facet}"), 1);
+        is_cube_with_warning("facet.stl", text.as_bytes(), &[words, "on line "]);
+    }
+    let mut bytes = cube
+        .and(&Surface {
+            positions: vec![[0.0, f64::NAN, 0.0]; 3],
+            triangles: vec![[0, 1, 2]],
+        })
+        .stl_binary();
+    is_cube_with_warning("nan.stl", &bytes, &["in record 13"]);
+    // The first of two.
+    bytes[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let (_, report) = named("nan.stl", &bytes).unwrap();
+    assert!(
+        !report.is_closed() && report.warnings()[0].contains("the first in record 1"),
+        "{:?}",
+        report.warnings()
+    );
+}
