@@ -10,16 +10,28 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> `facing` (which way surfaces face) ->
-//! [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a whole surface that is there twice) -> `topology` (open and non-manifold edges,
+//! parts) -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//!
+//! `topology` calls `shells` where triangles meet at non-manifold edges or are there several times (`distinct` triangles -> `clusters` -> `cells`
+//! about their edges -> `labels`: which are solid), and `facing` for which way surfaces face, by their volume and their `nesting`.
 
+mod cells;
+mod clusters;
 mod distance;
+mod distinct;
+mod edges;
 mod error;
 mod facing;
 mod figure;
+mod labels;
+mod nesting;
+mod probe;
 mod read;
 mod repeats;
 mod report;
+mod shells;
+mod slivers;
 mod solid;
 mod surface;
 mod topology;
@@ -30,6 +42,7 @@ pub(crate) mod winding;
 
 pub use error::{MeshError, MeshErrorKind};
 pub use figure::Figure;
+pub(crate) use probe::{Probe, is_beside};
 pub use read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
 pub use report::MeshReport;
 pub use solid::{Frame, Solid};

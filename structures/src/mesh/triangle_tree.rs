@@ -47,14 +47,19 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl TriangleTree {
-    /// Builds the tree. Triangles without area have no solid angle and no share of any integral, so they are left out.
+    /// The tree over a mesh's triangles. Those without area have no solid angle and no share of any integral, so they are left out.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut triangles: Vec<[[f64; 3]; 3]> = mesh
-            .triangles
-            .iter()
-            .filter(|&&triangle| !mesh.is_sliver(triangle))
-            .map(|&triangle| mesh.corners(triangle))
-            .collect();
+        let triangles = mesh.triangles.iter().copied();
+        Self::of(
+            triangles
+                .filter(|&triangle| !mesh.is_sliver(triangle))
+                .map(|triangle| mesh.corners(triangle))
+                .collect(),
+        )
+    }
+
+    /// The tree over triangles that have an area.
+    pub fn of(mut triangles: Vec<[[f64; 3]; 3]>) -> Self {
         let mut nodes = Vec::with_capacity(4 * triangles.len() / LEAF + 1);
         build(&mut triangles, 0, &mut nodes);
         Self { triangles, nodes }
@@ -67,19 +72,44 @@ impl TriangleTree {
 
     /// Walks the clusters from the largest down; `enter` says whether to go on to those below.
     pub fn visit(&self, mut enter: impl FnMut(Cluster<'_>) -> bool) {
-        let mut at = 0;
-        while let Some(node) = self.nodes.get(at) {
+        self.visit_below(0, |cluster, _| enter(cluster));
+    }
+
+    /// As [`visit`](Self::visit), of the node `top` and those below it; `enter` gets the number of the cluster's first triangle, too.
+    pub fn visit_below(&self, top: usize, mut enter: impl FnMut(Cluster<'_>, usize) -> bool) {
+        let end = self
+            .nodes
+            .get(top)
+            .map_or(0, |node| top + node.below as usize + 1);
+        let mut at = top;
+        while at < end {
+            let node = &self.nodes[at];
             let triangles =
                 &self.triangles[node.first as usize..(node.first + node.count) as usize];
-            let down = enter(Cluster {
+            let cluster = Cluster {
                 center: node.center,
                 radius: node.radius,
                 area: node.area,
                 area_vector: node.area_vector,
                 leaf: (node.below == 0).then_some(triangles),
-            });
+            };
+            let down = enter(cluster, node.first as usize);
             at += 1 + if down { 0 } else { node.below as usize };
         }
+    }
+
+    /// Nodes of no more than `size` triangles that have all triangles below them, in the order of these.
+    pub fn blocks(&self, size: usize) -> Vec<usize> {
+        let mut blocks = Vec::new();
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            let whole = node.count as usize <= size || node.below == 0;
+            if whole {
+                blocks.push(at);
+            }
+            at += 1 + if whole { node.below as usize } else { 0 };
+        }
+        blocks
     }
 }
 
