@@ -84,6 +84,7 @@ pub(super) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) 
             .iter()
             .copied()
             .max_by_key(|&outer| (containers[outer].len(), std::cmp::Reverse(outer)));
+        let within_both_ways = innermost.is_some_and(|outer| surfaces[outer].reverse.is_some());
         let mut turn = innermost.is_some_and(|outer| turned[outer]);
         let filled = about.iter().map(|&outer| sides[outer]).sum::<i64>();
         if surface.is_flat() {
@@ -99,8 +100,8 @@ pub(super) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) 
         }
         turned[index] = turn;
         match &surface.reverse {
-            // Within the solid both sides are the walls of bodies that touch.
-            Some(_) if filled > 0 => continue,
+            // Within a body that is there once, both sides are the walls of bodies that touch.
+            Some(_) if filled > 0 && !within_both_ways => continue,
             Some(reverse) => {
                 facing
                     .repeated

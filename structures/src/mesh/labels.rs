@@ -151,6 +151,21 @@ impl Cluster<'_> {
             overlap: 0.0,
         };
         if let Some(numbers) = self.numbers(outside, 0, &facing) {
+            // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it is depends on what is about it.
+            let is_double = |cell: u32| {
+                all_walls(cell, &|triangle| {
+                    let beside = self.beside(triangle).into_iter().flatten();
+                    let mut others = beside.filter(|&other| other != cell);
+                    self.distinct.is_both_ways(triangle)
+                        || others.all(|other| self.cells.cells[other as usize].is_flat())
+                })
+            };
+            let mut pairs = self.names.iter().zip(&numbers);
+            if pairs.any(|(&name, number)| {
+                *number == 0 && is_region(name) && !both_ways(name) && is_double(name)
+            }) {
+                return None;
+            }
             for (&name, number) in self.names.iter().zip(numbers) {
                 let label = if !is_region(name) {
                     Label::Empty

@@ -50,7 +50,7 @@ pub struct MeshReport {
     pub one_sided_parts: usize,
     /// Triangles dropped because they were there before, one way round or the other, beside those that `times` counts.
     pub repeated_triangles: usize,
-    /// Triangles dropped because nothing of the solid is on either side of them.
+    /// Triangles dropped because they bound nothing, as those of a sheet without thickness.
     pub idle_triangles: usize,
     /// Volume, in the file's unit cubed: that of [`Mesh::volume`], nested parts left out. Parts that cross count twice where they do.
     pub volume: f64,
@@ -173,7 +173,7 @@ impl MeshReport {
         }
         if self.idle_triangles > 0 {
             warnings.push(format!(
-                "{} triangles bound nothing: outside lies on both sides of them, as of a sheet without thickness; they are left out",
+                "{} triangles bound nothing: the same lies on both sides of them, as of a sheet without thickness; they are left out",
                 self.idle_triangles
             ));
         }
