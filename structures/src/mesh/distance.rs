@@ -29,22 +29,6 @@ impl Surface {
             .copied()
             .filter(|&triangle| !mesh.is_sliver(triangle))
             .collect();
-        Self::over(positions, triangles)
-    }
-
-    /// The surface of triangles that each have an area.
-    pub fn of(triangles: &[[[f64; 3]; 3]]) -> Result<Self, MeshErrorKind> {
-        let positions = triangles
-            .iter()
-            .flatten()
-            .map(|&p| Vector::from_array(p))
-            .collect();
-        let corners =
-            (0..triangles.len() as u32).map(|place| [3 * place, 3 * place + 1, 3 * place + 2]);
-        Self::over(positions, corners.collect())
-    }
-
-    fn over(positions: Vec<Vector>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshErrorKind> {
         let count = triangles.len();
         // The builder refuses nothing but an empty list.
         let triangles = TriMesh::new(positions, triangles)

@@ -4,8 +4,7 @@
 //! each cluster reaches from end to end and no search leaves any out. The surface stays the same; only its pieces change.
 
 use super::Mesh;
-use super::surface::halved;
-use super::vector::distance;
+use super::vector::{along, distance, subtract};
 
 /// A triangle is a sliver if its longest side is more than this times its height.
 const ASPECT: f64 = 16.0;
@@ -13,11 +12,11 @@ const ASPECT: f64 = 16.0;
 /// Fewer slivers than this are no trouble.
 const FEWEST: usize = 512;
 
-/// Pieces for each sliver, on average, and for all together at most.
-const PIECES: usize = 8;
-const MOST_PIECES: usize = 1_000_000;
+/// Lengths into which a sliver is cut, on average, and all together at most.
+const LENGTHS: usize = 24;
+const MOST_LENGTHS: usize = 400_000;
 
-/// No piece is cut that is shorter than this share of the bounding box's longest edge.
+/// No sliver is cut into lengths shorter than this share of the bounding box's longest edge.
 const SHORTEST: f64 = 1.0 / 64.0;
 
 /// The triangles that have an area, slivers cut up; none where there are few slivers.
@@ -34,20 +33,43 @@ pub(super) fn cut(mesh: &Mesh) -> Option<Vec<[[f64; 3]; 3]>> {
     if count < FEWEST {
         return None;
     }
-    let limit = (length / (PIECES * count).min(MOST_PIECES) as f64).max(SHORTEST * mesh.extent());
-    let mut pieces = Vec::with_capacity(triangles.len() + 2 * PIECES * count);
-    let mut stack = Vec::new();
+    let limit = (length / (LENGTHS * count).min(MOST_LENGTHS) as f64).max(SHORTEST * mesh.extent());
+    let mut pieces = Vec::new();
     for corners in triangles {
-        stack.push(corners);
-        while let Some(corners) = stack.pop() {
-            if longest(&corners) <= limit || !is_thin(&corners) {
-                pieces.push(corners);
-            } else {
-                stack.extend(halved(corners));
-            }
+        match is_thin(&corners) {
+            true => cut_across(
+                corners,
+                (longest(&corners) / limit).ceil() as usize,
+                &mut pieces,
+            ),
+            false => pieces.push(corners),
         }
     }
     Some(pieces)
+}
+
+/// Cuts a triangle across its two longer sides into `count` strips, all as wide, of two triangles each but for the one at the tip.
+fn cut_across(corners: [[f64; 3]; 3], count: usize, pieces: &mut Vec<[[f64; 3]; 3]>) {
+    let [a, b, c] = corners;
+    let shortest = [distance(a, b), distance(b, c), distance(c, a)];
+    // The tip is opposite to the shortest side.
+    let [tip, left, right] = if shortest[1] <= shortest[0] && shortest[1] <= shortest[2] {
+        [a, b, c]
+    } else if shortest[2] <= shortest[0] {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    };
+    let at = |end: [f64; 3], step: usize| match step == count {
+        true => end,
+        false => along(tip, step as f64 / count as f64, subtract(end, tip)),
+    };
+    pieces.push([tip, at(left, 1), at(right, 1)]);
+    for step in 1..count {
+        let [p, q] = [at(left, step), at(left, step + 1)];
+        let [r, s] = [at(right, step), at(right, step + 1)];
+        pieces.extend([[p, q, s], [p, s, r]]);
+    }
 }
 
 fn longest(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {

@@ -66,13 +66,13 @@ impl Solid {
             closed: mesh.closed,
         };
         let (low, high) = mesh.bounds();
-        let (surface, tree) = match slivers::cut(&mesh) {
-            Some(pieces) => (Surface::of(&pieces)?, TriangleTree::of(pieces)),
-            None => (Surface::new(&mesh)?, TriangleTree::new(&mesh)),
+        let tree = match slivers::cut(&mesh) {
+            Some(pieces) => TriangleTree::of(pieces),
+            None => TriangleTree::new(&mesh),
         };
         Ok(Self {
             frame,
-            surface,
+            surface: Surface::new(&mesh)?,
             tree,
             half_sides: [0, 1, 2].map(|axis| high[axis].max(-low[axis])),
             mesh,

@@ -112,7 +112,7 @@ impl Searched<'_> {
 }
 
 /// The two halves of a triangle, cut at its longest side.
-pub(super) fn halved(corners: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 2] {
+fn halved(corners: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 2] {
     let [a, b, c] = turned_to_longest(corners);
     let halved = scale(add(a, b), 0.5);
     [[a, halved, c], [halved, b, c]]

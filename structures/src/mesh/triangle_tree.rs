@@ -59,9 +59,14 @@ impl TriangleTree {
     }
 
     /// The tree over triangles that have an area.
-    pub fn of(mut triangles: Vec<[[f64; 3]; 3]>) -> Self {
-        let mut nodes = Vec::with_capacity(4 * triangles.len() / LEAF + 1);
-        build(&mut triangles, 0, &mut nodes);
+    pub fn of(triangles: Vec<[[f64; 3]; 3]>) -> Self {
+        let mut placed: Vec<Placed> = triangles
+            .into_iter()
+            .map(|corners| (centroid(corners), corners))
+            .collect();
+        let mut nodes = Vec::with_capacity(4 * placed.len() / LEAF + 1);
+        build(&mut placed, 0, &mut nodes);
+        let triangles = placed.into_iter().map(|(_, corners)| corners).collect();
         Self { triangles, nodes }
     }
 
@@ -113,19 +118,21 @@ impl TriangleTree {
     }
 }
 
+/// A triangle after its middle.
+type Placed = ([f64; 3], [[f64; 3]; 3]);
+
 /// Puts the tree over `triangles`, which are numbers `first` and on, at the end of `nodes`.
-fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
+fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
     let mut area = 0.0;
     let mut area_vector = [0.0; 3];
     let mut moment = [0.0; 3];
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
-    for &corners in &*triangles {
+    for &(middle, corners) in &*triangles {
         let normal = scale(doubled_normal(corners), 0.5);
         let own = norm(normal);
         area += own;
         area_vector = add(area_vector, normal);
-        let middle = centroid(corners);
         moment = add(moment, scale(middle, own));
         for axis in 0..3 {
             low[axis] = low[axis].min(middle[axis]);
@@ -137,7 +144,7 @@ fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
     } else {
         scale(add(low, high), 0.5)
     };
-    let corners = triangles.iter().flatten();
+    let corners = triangles.iter().flat_map(|(_, corners)| corners);
     let radius = corners
         .map(|&corner| distance(corner, center))
         .fold(0.0, f64::max);
@@ -158,9 +165,7 @@ fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
         .max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b])))
         .unwrap_or(0);
     let middle = triangles.len() / 2;
-    triangles.select_nth_unstable_by(middle, |a, b| {
-        centroid(*a)[axis].total_cmp(&centroid(*b)[axis])
-    });
+    triangles.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
     let (left, right) = triangles.split_at_mut(middle);
     build(left, first, nodes);
     build(right, first + middle, nodes);

@@ -9,7 +9,7 @@
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
 
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
@@ -248,25 +248,28 @@ impl<'a> Referee<'a> {
         let epsilon = self.field.grid.epsilon();
         let spacing = epsilon * SAMPLE_SPACING;
         let closed = self.solid.mesh().is_closed();
-        let blocks = self.solid.search(|block| {
-            // A piece that cannot hold a farther sample is left out: the farthest of all is found whatever the order.
-            let farthest = Cell::new(0.0f64);
-            let distance = |point, enough| tree.distance(point, enough);
+        // What all threads have found. A piece that cannot hold a farther sample is left out: the farthest of all is found whatever the order.
+        let farthest = Farthest(AtomicU64::new(0));
+        let distance = |point, enough| tree.distance(point, enough);
+        self.solid.search(|block| {
             block.samples(
                 spacing,
-                |point, piece| distance(point, farthest.get() - piece) + piece <= farthest.get(),
+                |point, piece| {
+                    let farthest = farthest.get();
+                    distance(point, farthest - piece) + piece <= farthest
+                },
                 |_, sample| {
-                    let away = distance(sample.point, farthest.get());
+                    let seen = farthest.get();
+                    let away = distance(sample.point, seen);
                     // Only where a closed mesh breaks the bound may a sample be no point of the solid.
-                    let in_doubt = closed && away > farthest.get().max(epsilon);
-                    if !in_doubt || is_beside(self.solid, &sample, epsilon) {
-                        farthest.set(farthest.get().max(away));
+                    let in_doubt = closed && away > seen.max(epsilon);
+                    if away > seen && (!in_doubt || is_beside(self.solid, &sample, epsilon)) {
+                        farthest.raise(away);
                     }
                 },
             );
-            farthest.get()
         });
-        blocks.into_iter().fold(0.0, f64::max)
+        farthest.get()
     }
 
     /// How far a ball is seen to reach out of the solid, and how far it can.
@@ -291,6 +294,20 @@ impl<'a> Referee<'a> {
             self.solid.distance(point)
         };
         (seen, bound)
+    }
+}
+
+/// The largest of the lengths, zero or above, that threads have found.
+struct Farthest(AtomicU64);
+
+impl Farthest {
+    fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+
+    fn raise(&self, length: f64) {
+        // The bits of numbers above zero are in the order of the numbers.
+        self.0.fetch_max(length.to_bits(), Ordering::Relaxed);
     }
 }
 
