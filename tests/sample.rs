@@ -252,7 +252,8 @@ fn methods_sets_levels_and_weights() {
     assert!(share("volume_fitted") < share("volume_unit"));
 }
 
-/// A box about another, both facing outward, as some programs write cavities: the union, as documented, with a warning.
+/// A box about another, both facing outward, as some programs write cavities: the union, as documented, with a
+/// warning.
 #[test]
 fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
     let place = Place::new();
@@ -285,14 +286,14 @@ fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
     assert!(error["message"].as_str().unwrap().contains("cavity"));
 }
 
-/// A closed surface that crosses itself, so that half of what it bounds is inside out and lost: no word was said of that, though the balls end far
-/// from the surface there and the documented bounds fail.
+/// A closed surface that crosses itself, so that half of what it bounds is inside out and lost: no word was said of
+/// that, though the balls end far from the surface there and the documented bounds fail.
 #[test]
 fn a_closed_mesh_that_breaks_the_bounds_is_warned_of() {
     let place = Place::new();
     // A box whose top lies under its bottom at the far end.
-    let folded = "v 0 0 0\nv 4 0 2\nv 0 2 0\nv 4 2 2\nv 0 0 3\nv 4 0 0\nv 0 2 3\nv 4 2 0\nf 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\n\
-                  f 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+    let folded = "v 0 0 0\nv 4 0 2\nv 0 2 0\nv 4 2 2\nv 0 0 3\nv 4 0 0\nv 0 2 3\nv 4 2 0\n\
+                  f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
     fs::write(place.path("folded.obj"), folded).unwrap();
     let object = place.sample(&["folded.obj", "--grid", "2^12"]);
     assert!(

@@ -1,5 +1,5 @@
-//! Meshes that searches find hard, beside a ball of as many triangles: a cylinder of long thin triangles, straight and oblique, and a block with
-//! many pores.
+//! Meshes that searches find hard, beside a ball of as many triangles: a cylinder of long thin triangles, straight
+//! and oblique, and a block with many pores.
 //!
 //!     cargo bench -p knotdock-structures --bench slivers
 //!

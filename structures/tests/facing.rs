@@ -1,5 +1,5 @@
-//! Which way bodies face, alone, nested, touching and there several times. In each test the volume is known by hand, and must be both that of
-//! the report and the share of points that are inside.
+//! Which way bodies face, alone, nested, touching and there several times. In each test the volume is known by
+//! hand, and must be both that of the report and the share of points that are inside.
 
 #![cfg(feature = "mesh")]
 
@@ -64,8 +64,9 @@ fn recut(low: [f64; 3], edge: f64) -> Surface {
     surface
 }
 
-/// A half and its mirror image, made by a program that mirrors places but not the order of corners: the image faces inward. The two were one
-/// surface by their shared edges, of volume 0, and only half of the solid was sampled, without a warning.
+/// A half and its mirror image, made by a program that mirrors places but not the order of corners: the image faces
+/// inward. The two were one surface by their shared edges, of volume 0, and only half of the solid was sampled,
+/// without a warning.
 #[test]
 fn a_mirror_image_that_touches_its_original_is_turned() {
     let half = cube([-10.0, 0.0, 0.0], 10.0);
@@ -232,7 +233,8 @@ fn a_body_both_ways_round_is_taken_once() {
     );
 }
 
-/// A sheet without thickness bounds nothing: it was counted as a part of the solid that the balls miss by many times epsilon.
+/// A sheet without thickness bounds nothing: it was counted as a part of the solid that the balls miss by many
+/// times epsilon.
 #[test]
 fn a_fin_is_left_out() {
     let body = cube([0.0; 3], 10.0);
@@ -262,7 +264,8 @@ fn a_fin_is_left_out() {
     assert_eq!((report.idle_triangles, report.triangles), (4, 12));
 }
 
-/// A cube in a cube in a cube, each facing as it likes: from the outside in, walls that change from empty to solid and back.
+/// A cube in a cube in a cube, each facing as it likes: from the outside in, walls that change from empty to solid
+/// and back.
 #[test]
 fn nested_bodies_are_read_from_the_outside_in() {
     let (outer, middle, inner) = (1000.0, 216.0, 8.0);
@@ -297,7 +300,8 @@ fn nested_bodies_are_read_from_the_outside_in() {
     assert_eq!(report.inverted_parts, 0);
 }
 
-/// A cavity that touches the wall about it, at a face, an edge and a corner, with and without vertices in common, is one.
+/// A cavity that touches the wall about it, at a face, an edge and a corner, with and without vertices in common,
+/// is one.
 #[test]
 fn cavities_may_touch_the_walls_about_them() {
     let body = cube([0.0; 3], 10.0);
@@ -335,7 +339,8 @@ fn surfaces_of_one_side_are_warned_of() {
         for i in 0..turns {
             let t = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(turns);
             for j in 0..width {
-                // A figure of eight, or a line, turned by half while it goes round: the flat Klein bottle, or the Möbius strip.
+                // A figure of eight, or a line, turned by half while it goes round: the flat Klein bottle, or the
+                // Möbius strip.
                 let v = 2.0 * std::f64::consts::PI * f64::from(j) / f64::from(around);
                 let (p, q) = if closed {
                     (v.sin(), (2.0 * v).sin())

@@ -322,8 +322,8 @@ fn ring() -> Surface {
     surface
 }
 
-/// One ball about a ring, its centre in the hole. The outward distance was measured at the point opposite to the surface point nearest to the
-/// centre, where the ball is 14.9 from the ring; over its poles it is 22.4.
+/// One ball about a ring, its centre in the hole. The outward distance was measured at the point opposite to the
+/// surface point nearest to the centre, where the ball is 14.9 from the ring; over its poles it is 22.3.
 #[test]
 fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
     let surface = ring();
@@ -351,7 +351,7 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
             farthest = farthest.max((from_axis - 10.0).hypot(radius * z) - 3.0);
         }
     }
-    assert!((22.3..22.5).contains(&farthest), "{farthest}");
+    assert!((22.2..22.3).contains(&farthest), "{farthest}");
     let [found, bound] =
         [fit.hausdorff_outward, fit.outward_bound].map(|length| length * frame.unit);
     assert!((found - farthest).abs() < 0.05, "{found} for {farthest}");
@@ -366,7 +366,8 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
     );
 }
 
-/// A fin without thickness on a cube: no point of it is one of the solid. Its samples made the inward distance nine times epsilon.
+/// A fin without thickness on a cube: no point of it is one of the solid. Its samples made the inward distance nine
+/// times epsilon.
 #[test]
 fn sheets_have_no_part_in_the_inward_distance() {
     let body = cuboid([0.0; 3], [10.0; 3]);

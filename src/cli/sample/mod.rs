@@ -42,8 +42,9 @@ pub struct Sample {
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
     set: Option<SetChoice>,
-    /// Refuse meshes that are not closed, have triangles that face the wrong way, are there several times or bound nothing, or parts within
-    /// others that face outward; and closed ones that the balls do not come within epsilon of.
+    /// Refuse meshes that are not closed, have triangles that face the wrong way, are there several times or bound
+    /// nothing, or parts within others that face outward; and closed ones that the balls do not come within epsilon
+    /// of.
     #[arg(long)]
     strict: bool,
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.

@@ -28,7 +28,8 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// What contradicts the bounds that hold for every closed mesh, a sentence each. Other methods than Algorithm 1 promise none.
+    /// What contradicts the bounds that hold for every closed mesh, a sentence each. Other methods than Algorithm 1
+    /// promise none.
     pub fn doubts(&self) -> Vec<String> {
         let Some(covering) = self.sampling.covering else {
             return Vec::new();
@@ -36,8 +37,8 @@ impl<'a> Told<'a> {
         let mut doubts = Vec::new();
         if covering.unreachable > 0 {
             doubts.push(format!(
-                "the mesh is closed, yet {} samples of its surface have nothing of the solid under them: parts of it face the wrong way, \
-                 cross or bound nothing, so that volume and balls may be wrong",
+                "the mesh is closed, yet {} samples of its surface have nothing of the solid under them: \
+                 parts of it face the wrong way, cross or bound nothing, so that volume and balls may be wrong",
                 covering.unreachable
             ));
         }
@@ -46,8 +47,8 @@ impl<'a> Told<'a> {
         let farthest = inward.fold(0.0, f64::max);
         if farthest > epsilon * (1.0 + 1e-9) {
             doubts.push(format!(
-                "the mesh is closed, yet a point of the solid is {} from the balls, more than epsilon, {}: its surface contradicts itself, so \
-                 that volume and balls may be wrong",
+                "the mesh is closed, yet a point of the solid is {} from the balls, more than epsilon, {}: \
+                 its surface contradicts itself, so that volume and balls may be wrong",
                 Figure(farthest),
                 Figure(epsilon)
             ));
@@ -128,8 +129,8 @@ impl<'a> Told<'a> {
         };
         format!(
             "Grid: {n} x {n} x {n} nodes, {} inside, spacing {}, epsilon {}\n\n{}\n\
-             Inward: the farthest that a point of the solid is from the balls, as measured. Outward: that a point of the balls is from the \
-             solid, as measured, and a bound that it cannot exceed.\n\
+             Inward: the farthest that a point of the solid is from the balls, as measured.\n\
+             Outward: the farthest that a point of the balls is from the solid, as measured; and a bound that it cannot exceed.\n\
              {added}Time: {}",
             self.sampling.inside_nodes,
             Figure(grid.spacing() * self.unit),

@@ -1,8 +1,9 @@
 //! Cells: the regions into which triangles that meet at non-manifold edges cut the space about them.
 //!
-//! Each triangle has two sides. About an edge, the side of one triangle faces that of the next one round, and both are walls of one cell (Zhou,
-//! Grinspun, Zorin and Jacobson, ACM Transactions on Graphics 35:4, 2016, article 39, section 3.2). Where the sheets do not cross elsewhere, a
-//! cell is a closed surface that faces outward, and one cell, the one outside, has a volume below zero.
+//! Each triangle has two sides. About an edge, the side of one triangle faces that of the next one round, and both
+//! are walls of one cell (Zhou, Grinspun, Zorin and Jacobson, ACM Transactions on Graphics 35:4, 2016, article 39,
+//! section 3.2). Where the sheets do not cross elsewhere, a cell is a closed surface that faces outward, and one
+//! cell, the one outside, has a volume below zero.
 
 use std::collections::HashMap;
 
@@ -30,7 +31,8 @@ impl Cell {
     }
 }
 
-/// Sheets closer than this about an edge, in radians, are taken in one order along all edges that their patches share.
+/// Sheets closer than this about an edge, in radians, are taken in one order along all edges that their patches
+/// share.
 const NEAR: f64 = 0.05;
 
 /// The cells of clusters of triangles.
@@ -43,7 +45,8 @@ pub(super) struct Cells {
     pub unordered: Vec<u32>,
 }
 
-/// The triangles about an edge and the angles at which they stand, anticlockwise seen against the edge's direction from low to high.
+/// The triangles about an edge and the angles at which they stand, anticlockwise seen against the edge's direction
+/// from low to high.
 struct Fan {
     edges: Vec<HalfEdge>,
     angles: Vec<f64>,
@@ -109,7 +112,8 @@ impl Fan {
     }
 }
 
-/// For two patches that run close beside each other: how far the second stands from the first, seen along the first's own direction.
+/// For two patches that run close beside each other: how far the second stands from the first, seen along the
+/// first's own direction.
 struct Beside<'a> {
     patches: &'a Patches,
     sums: HashMap<(u32, u32), f64>,

@@ -1,4 +1,5 @@
-//! Clusters: patches that only together make closed surfaces, because they meet at non-manifold edges or are there several times.
+//! Clusters: patches that only together make closed surfaces, because they meet at non-manifold edges or are there
+//! several times.
 
 use super::Mesh;
 use super::distinct::Distinct;
@@ -9,8 +10,8 @@ const ROUNDS: usize = 8;
 
 /// The cluster of each distinct triangle, and the number of clusters.
 ///
-/// A patch that is closed by itself is in none, though it may touch others along an edge: it has a volume of its own. Nor is one with a free
-/// edge, unless it is there both ways round.
+/// A patch that is closed by itself is in none, though it may touch others along an edge: it has a volume of its
+/// own. Nor is one with a free edge, unless it is there both ways round.
 pub(super) fn clusters(
     mesh: &Mesh,
     distinct: &Distinct,

@@ -1,11 +1,13 @@
 //! Which way surfaces face: what faces inward is turned, but for the walls of cavities.
 //!
-//! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another: a piece of a surface, such as a face
-//! whose seams a file did not close, has no inside of its own. From the outside in, a surface that lies
+//! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another: a piece of a
+//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a
+//! surface that lies
 //!
 //! - in no other faces outward; if it is turned, so is all that lies within it;
 //! - where the surfaces about it leave the space empty faces outward, too: an island in a cavity;
-//! - where they fill it is the wall of a cavity if it faces inward. If it faces outward, it bounds nothing: the solid is the union of both.
+//! - where they fill it is the wall of a cavity if it faces inward. If it faces outward, it bounds nothing: the
+//!   solid is the union of both.
 
 use std::collections::HashMap;
 
@@ -63,8 +65,8 @@ pub(super) struct Facing {
     pub idle: Vec<u32>,
 }
 
-/// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an edge of it is open or
-/// unbalanced.
+/// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an
+/// edge of it is open or unbalanced.
 pub(super) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) -> Facing {
     let surfaces: Vec<Surface> = surfaces(mesh, parts, at_border)
         .into_iter()

@@ -2,9 +2,9 @@
 //!
 //! What is asked, until something gives an answer without contradiction:
 //!
-//! 1. How triangles face. Through a triangle the winding number changes by the copies that face one way less those that face the other; a cell is
-//!    solid where it is not zero. A cell of winding number zero is solid, too, if each of its walls is there both ways round: a body as programs for
-//!    pictures write it.
+//! 1. How triangles face. Through a triangle the winding number changes by the copies that face one way less those
+//!    that face the other; a cell is solid where it is not zero. A cell of winding number zero is solid, too, if
+//!    each of its walls is there both ways round: a body as programs for pictures write it.
 //! 2. How often triangles are there: a cell is solid where a way out passes through an odd number.
 //! 3. The same, each triangle taken once.
 
@@ -85,8 +85,8 @@ impl Cluster<'_> {
         }
     }
 
-    /// Numbers of the cells, zero outside, of which that behind each triangle is that in front of it and the triangle's `step`, modulo `modulus`;
-    /// none if there are no such numbers.
+    /// Numbers of the cells, zero outside, of which that behind each triangle is that in front of it and the
+    /// triangle's `step`, modulo `modulus`; none if there are no such numbers.
     fn numbers(&self, outside: u32, modulus: i64, step: impl Fn(u32) -> i64) -> Option<Vec<i64>> {
         let wrap = |number: i64| {
             if modulus > 0 {
@@ -120,7 +120,8 @@ impl Cluster<'_> {
             .collect()
     }
 
-    /// Whether the walls of a body face inward, by `facing` or, where that is as often one way as the other, by the first copies.
+    /// Whether the walls of a body face inward, by `facing` or, where that is as often one way as the other, by the
+    /// first copies.
     fn is_inward(&self, cell: u32, facing: impl Fn(u32) -> i64) -> bool {
         let sum = |facing: &dyn Fn(u32) -> i64| -> i64 {
             let walls = self.cells.cells[cell as usize].walls.iter();
@@ -151,7 +152,8 @@ impl Cluster<'_> {
             overlap: 0.0,
         };
         if let Some(numbers) = self.numbers(outside, 0, &facing) {
-            // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it is depends on what is about it.
+            // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it
+            // is depends on what is about it.
             let is_double = |cell: u32| {
                 all_walls(cell, &|triangle| {
                     let beside = self.beside(triangle).into_iter().flatten();

@@ -3,18 +3,21 @@
 //! # Conventions
 //!
 //! - Lengths are in the file's own unit.
-//! - Triangles list their corners anticlockwise seen from outside, so normals point outward and volumes are positive.
+//! - Triangles list their corners anticlockwise seen from outside, so normals point outward and volumes are
+//!   positive.
 //! - Lines are counted from 1.
-//! - The **solid** S of a mesh is the set of points with a generalised winding number above one half: the inside of a closed
-//!   mesh, the union of overlapping parts, and a smooth guess at what an open mesh was meant to bound.
+//! - The **solid** S of a mesh is the set of points with a generalised winding number above one half: the inside of
+//!   a closed mesh, the union of overlapping parts, and a smooth guess at what an open mesh was meant to bound.
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a whole surface that is there twice) -> `topology` (open and non-manifold edges,
-//! parts) -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//! path -> `read` (bytes to triangles) -> `weld` -> `repeats` (a whole surface that is there twice) -> `topology`
+//! (open and non-manifold edges, parts) -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the
+//! surface, `winding` number, and the sign by it.
 //!
-//! `topology` calls `shells` where triangles meet at non-manifold edges or are there several times (`distinct` triangles -> `clusters` -> `cells`
-//! about their edges -> `labels`: which are solid), and `facing` for which way surfaces face, by their volume and their `nesting`.
+//! `topology` calls `shells` where triangles meet at non-manifold edges or are there several times (`distinct`
+//! triangles -> `clusters` -> `cells` about their edges -> `labels`: which are solid), and `facing` for which way
+//! surfaces face, by their volume and their `nesting`.
 
 mod cells;
 mod clusters;

@@ -6,7 +6,8 @@ use super::{Solid, SurfaceSample};
 /// Samples of one triangle that bound nothing, after which only every so many are looked at.
 const PATIENCE: usize = 32;
 
-/// Looks at samples of one triangle, in turn. Where many in a row bound nothing, most of those that follow are taken to bound nothing either.
+/// Looks at samples of one triangle, in turn. Where many in a row bound nothing, most of those that follow are
+/// taken to bound nothing either.
 #[derive(Default)]
 pub(crate) struct Probe {
     idle: usize,

@@ -48,11 +48,13 @@ pub struct MeshReport {
     pub nested_parts: usize,
     /// Parts whose triangles cannot all face one way, as those of a Möbius strip or a Klein bottle.
     pub one_sided_parts: usize,
-    /// Triangles dropped because they were there before, one way round or the other, beside those that `times` counts.
+    /// Triangles dropped because they were there before, one way round or the other, beside those that `times`
+    /// counts.
     pub repeated_triangles: usize,
     /// Triangles dropped because they bound nothing, as those of a sheet without thickness.
     pub idle_triangles: usize,
-    /// Volume, in the file's unit cubed: that of [`Mesh::volume`], nested parts left out. Parts that cross count twice where they do.
+    /// Volume, in the file's unit cubed: that of [`Mesh::volume`], nested parts left out. Parts that cross count
+    /// twice where they do.
     pub volume: f64,
     /// Area, in the file's unit squared.
     pub area: f64,
@@ -128,7 +130,8 @@ impl MeshReport {
         self.unbalanced_edges == 0
     }
 
-    /// Whether the file's surface was closed, faced outward and was there once as it came, which is what `--strict` requires.
+    /// Whether the file's surface was closed, faced outward and was there once as it came, which is what `--strict`
+    /// requires.
     pub fn is_sound(&self) -> bool {
         self.warnings().is_empty()
     }
@@ -173,19 +176,21 @@ impl MeshReport {
         }
         if self.idle_triangles > 0 {
             warnings.push(format!(
-                "{} triangles bound nothing: the same lies on both sides of them, as of a sheet without thickness; they are left out",
+                "{} triangles bound nothing: the same lies on both sides of them, as of a sheet without thickness; \
+                 they are left out",
                 self.idle_triangles
             ));
         }
         match self.nested_parts {
             0 => {}
             1 => warnings.push(
-                "a part lies within another and faces outward; is it a cavity? It is taken as solid: if it is a cavity, turn it to face inward"
+                "a part lies within another and faces outward; is it a cavity? It is taken as solid: \
+                 if it is a cavity, turn it to face inward"
                     .to_owned(),
             ),
             count => warnings.push(format!(
-                "{count} of {} parts lie within others and face outward; are they cavities? They are taken as solid: turn those that are \
-                 cavities to face inward",
+                "{count} of {} parts lie within others and face outward; are they cavities? They are taken as solid: \
+                 turn those that are cavities to face inward",
                 self.parts
             )),
         }

@@ -1,8 +1,9 @@
 //! Shells: closed surfaces of one body each, where triangles meet at non-manifold edges or are there several times.
 //!
-//! Clusters of such triangles are cut into [`cells`](super::cells), the cells [labelled](super::labels), and each body gets the triangles on its
-//! walls, all facing inward or all facing outward. Of a wall between two bodies each has its own copy. Copies that no body needs are dropped:
-//! repeats, and what has nothing of the solid on either side. A cluster that is not closed, or whose sheets cross, stays as it is.
+//! Clusters of such triangles are cut into [`cells`](super::cells), the cells [labelled](super::labels), and each
+//! body gets the triangles on its walls, all facing inward or all facing outward. Of a wall between two bodies each
+//! has its own copy. Copies that no body needs are dropped: repeats, and what has nothing of the solid on either
+//! side. A cluster that is not closed, or whose sheets cross, stays as it is.
 
 use super::Mesh;
 use super::cells::Cells;
@@ -144,7 +145,8 @@ impl Shells {
         let copies = |triangle: u32| &distinct.copies[triangle as usize];
         let mut triangles = cluster.triangles.iter();
         if triangles.any(|&triangle| needs(triangle).len() > copies(triangle).len()) {
-            // A single wall parts one body from another within it: to drop it would be to trust that the two cross nowhere else.
+            // A single wall parts one body from another within it: to drop it would be to trust that the two cross
+            // nowhere else.
             self.nested += labelled.nested;
             self.overlap += labelled.overlap;
             return;

@@ -1,7 +1,8 @@
 //! Long thin triangles cut into shorter pieces, so that trees over them have compact clusters.
 //!
-//! A cylinder of thousands of sides is as long at every side, whatever the number of sides; a tree can only part its triangles lengthwise, so that
-//! each cluster reaches from end to end and no search leaves any out. The surface stays the same; only its pieces change.
+//! A cylinder of thousands of sides is as long at every side, whatever the number of sides; a tree can only part
+//! its triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface
+//! stays the same; only its pieces change.
 
 use super::Mesh;
 use super::vector::{along, distance, subtract};
@@ -48,7 +49,8 @@ pub(super) fn cut(mesh: &Mesh) -> Option<Vec<[[f64; 3]; 3]>> {
     Some(pieces)
 }
 
-/// Cuts a triangle across its two longer sides into `count` strips, all as wide, of two triangles each but for the one at the tip.
+/// Cuts a triangle across its two longer sides into `count` strips, all as wide, of two triangles each but for the
+/// one at the tip.
 fn cut_across(corners: [[f64; 3]; 3], count: usize, pieces: &mut Vec<[[f64; 3]; 3]>) {
     let [a, b, c] = corners;
     let shortest = [distance(a, b), distance(b, c), distance(c, a)];

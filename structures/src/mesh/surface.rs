@@ -61,7 +61,8 @@ impl Solid {
         }
     }
 
-    /// Calls `search` with each of the clusters that the surface is searched by, in parallel, and puts together in turn what it returns.
+    /// Calls `search` with each of the clusters that the surface is searched by, in parallel, and puts together in
+    /// turn what it returns.
     ///
     /// They are clusters of triangles in the order of [`samples_of`](Self::samples_of).
     pub(crate) fn search<T: Send>(&self, search: impl Fn(Searched<'_>) -> T + Sync) -> Vec<T> {
@@ -84,8 +85,8 @@ pub(crate) struct Searched<'a> {
 }
 
 impl Searched<'_> {
-    /// The samples of its triangles, as by [`Solid::samples_of`], where whole clusters are left out for which `skip` says so; `visit` gets the
-    /// number of the triangle, too.
+    /// The samples of its triangles, as by [`Solid::samples_of`], where whole clusters are left out for which
+    /// `skip` says so; `visit` gets the number of the triangle, too.
     pub fn samples(
         &self,
         spacing: f64,

@@ -1,8 +1,8 @@
 //! How triangles hang together: open and non-manifold edges, parts, and which way they face.
 //!
-//! A **part** is a set of triangles connected across edges that exactly two of them share or, where more do, the walls of one body:
-//! [`shells`](super::shells). A mesh is **closed** when every edge is run through as often one way as the other; then its winding number is a
-//! whole number off the surface, whatever else is wrong with it.
+//! A **part** is a set of triangles connected across edges that exactly two of them share or, where more do, the
+//! walls of one body: [`shells`](super::shells). A mesh is **closed** when every edge is run through as often one
+//! way as the other; then its winding number is a whole number off the surface, whatever else is wrong with it.
 
 use super::Mesh;
 use super::edges::{HalfEdge, by_place, half_edges, patches};
@@ -39,7 +39,8 @@ pub struct Topology {
     pub overlap: f64,
 }
 
-/// Turns triangles to agree with their neighbours and parts to face outward, drops what bounds nothing, and counts what is amiss.
+/// Turns triangles to agree with their neighbours and parts to face outward, drops what bounds nothing, and counts
+/// what is amiss.
 ///
 /// In each part the majority decides. Then whole surfaces are turned that face inward: [`turn_outward`].
 pub fn orient(mesh: &mut Mesh) -> Topology {

@@ -47,7 +47,8 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl TriangleTree {
-    /// The tree over a mesh's triangles. Those without area have no solid angle and no share of any integral, so they are left out.
+    /// The tree over a mesh's triangles. Those without area have no solid angle and no share of any integral, so
+    /// they are left out.
     pub fn new(mesh: &Mesh) -> Self {
         let triangles = mesh.triangles.iter().copied();
         Self::of(
@@ -80,7 +81,8 @@ impl TriangleTree {
         self.visit_below(0, |cluster, _| enter(cluster));
     }
 
-    /// As [`visit`](Self::visit), of the node `top` and those below it; `enter` gets the number of the cluster's first triangle, too.
+    /// As [`visit`](Self::visit), of the node `top` and those below it; `enter` gets the number of the cluster's
+    /// first triangle, too.
     pub fn visit_below(&self, top: usize, mut enter: impl FnMut(Cluster<'_>, usize) -> bool) {
         let end = self
             .nodes

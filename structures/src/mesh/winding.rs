@@ -45,7 +45,8 @@ pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
         / (4.0 * PI)
 }
 
-/// The winding number at `point`, clusters farther than `far` times their radius as dipoles; `near` sees the triangles that are no part of these.
+/// The winding number at `point`, clusters farther than `far` times their radius as dipoles; `near` sees the
+/// triangles that are no part of these.
 fn fast(
     tree: &TriangleTree,
     point: [f64; 3],

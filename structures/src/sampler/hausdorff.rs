@@ -1,11 +1,13 @@
-//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and outside.
+//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
+//! outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface no
-//! farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter of the spacing
-//! in each of the eight directions). Samples with nothing of the solid on either side are no points of it. *Outward*, from S(A) to S: the
-//! farthest that a point of the balls is from the solid, over the same grid's points in the balls, over the point of each ball's sphere
-//! on the far side of the surface point nearest to its centre, and where that leaves room, over the whole sphere ([`super::outward`]); a ball
-//! of radius R at depth d reaches no farther out than R - d, which is reported as the bound.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface
+//! no farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter
+//! of the spacing in each of the eight directions). Samples with nothing of the solid on either side are no points
+//! of it. *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over the same grid's
+//! points in the balls, over the point of each ball's sphere on the far side of the surface point nearest to its
+//! centre, and where that leaves room, over the whole sphere ([`super::outward`]); a ball of radius R at depth d
+//! reaches no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
 
@@ -21,7 +23,7 @@ use super::outward::farthest;
 use crate::mesh::vector::{along, distance, subtract};
 use crate::mesh::{Solid, is_beside};
 
-/// How much farther out than measured a point of the balls may be, as a share of eps, unless it is nearer than a grid point to no sphere.
+/// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
 /// What [`Referee::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
@@ -248,7 +250,8 @@ impl<'a> Referee<'a> {
         let epsilon = self.field.grid.epsilon();
         let spacing = epsilon * SAMPLE_SPACING;
         let closed = self.solid.mesh().is_closed();
-        // What all threads have found. A piece that cannot hold a farther sample is left out: the farthest of all is found whatever the order.
+        // What all threads have found. A piece that cannot hold a farther sample is left out: the farthest of all
+        // is found whatever the order.
         let farthest = Farthest(AtomicU64::new(0));
         let distance = |point, enough| tree.distance(point, enough);
         self.solid.search(|block| {

@@ -1,8 +1,9 @@
 //! How far balls reach out of a solid: searched on their spheres.
 //!
-//! The distance to the solid changes along a sphere by no more than one walks on it. So a patch of the sphere whose middle is a distance d
-//! from the solid, and none of whose points is farther than s from the middle, holds no point farther than d + s: patches that can hold the
-//! farthest point are cut in four until they can better what is known by no more than a tolerance.
+//! The distance to the solid changes along a sphere by no more than one walks on it. So a patch of the sphere whose
+//! middle is a distance d from the solid, and none of whose points is farther than s from the middle, holds no
+//! point farther than d + s: patches that can hold the farthest point are cut in four until they can better what is
+//! known by no more than a tolerance.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -43,8 +44,9 @@ impl Ord for Patch {
     }
 }
 
-/// The farthest that a point of the balls' spheres is from the solid, to within `tolerance` of the true value unless there are very many balls
-/// alike; no less than `seen`. Each ball comes with a distance that no point of it exceeds.
+/// The farthest that a point of the balls' spheres is from the solid, to within `tolerance` of the true value
+/// unless there are very many balls alike; no less than `seen`. Each ball comes with a distance that no point of it
+/// exceeds.
 pub(super) fn farthest(
     solid: &Solid,
     mut balls: Vec<(f64, Ball)>,
@@ -66,7 +68,8 @@ pub(super) fn farthest(
     seen
 }
 
-/// Raises `seen` to the farthest that a point of one sphere is from the solid, by looking at no more than `points` of it.
+/// Raises `seen` to the farthest that a point of one sphere is from the solid, by looking at no more than `points`
+/// of it.
 fn farthest_of(solid: &Solid, ball: &Ball, seen: &mut f64, tolerance: f64, points: &mut usize) {
     let mut patches = BinaryHeap::new();
     let look = |corners: [[f64; 3]; 3], seen: &mut f64| {
