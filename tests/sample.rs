@@ -272,6 +272,108 @@ fn methods_sets_levels_and_weights() {
     assert!(share("volume_fitted") < share("volume_unit"));
 }
 
+/// A box about another, both facing outward, as some programs write cavities: the union, as documented, with a
+/// warning.
+#[test]
+fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
+    let place = Place::new();
+    let mut nested = box_obj();
+    for line in box_of(0.25).lines() {
+        nested += &match line.strip_prefix("v ") {
+            Some(numbers) => {
+                let moved = numbers
+                    .split(' ')
+                    .map(|number| number.parse::<f64>().unwrap() + 0.25);
+                moved.fold("v".to_owned(), |text, number| text + &format!(" {number}"))
+            }
+            None => line
+                .split(' ')
+                .skip(1)
+                .fold("f".to_owned(), |text, number| {
+                    text + &format!(" {}", number.parse::<u32>().unwrap() + 8)
+                }),
+        };
+        nested += "\n";
+    }
+    fs::write(place.path("nested.obj"), nested).unwrap();
+    let object = place.sample(&["nested.obj", "--grid", "2^12"]);
+    assert!((object["mesh"]["volume"].as_f64().unwrap() - 8.0).abs() < 1e-12);
+    assert!((object["volume"].as_f64().unwrap() - 8.0).abs() < 0.5);
+    let warnings = object["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].as_str().unwrap().contains("is it a cavity?"));
+    let error = place.refused(&["nested.obj", "--strict"]);
+    assert!(error["message"].as_str().unwrap().contains("cavity"));
+}
+
+/// A closed surface that crosses itself, so that half of what it bounds is inside out and lost: no word was said of
+/// that, though the balls end far from the surface there and the documented bounds fail.
+#[test]
+fn a_closed_mesh_that_breaks_the_bounds_is_warned_of() {
+    let place = Place::new();
+    // A box whose top lies under its bottom at the far end.
+    let folded = "v 0 0 0\nv 4 0 2\nv 0 2 0\nv 4 2 2\nv 0 0 3\nv 4 0 0\nv 0 2 3\nv 4 2 0\n\
+                  f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+    fs::write(place.path("folded.obj"), folded).unwrap();
+    let object = place.sample(&["folded.obj", "--grid", "2^12"]);
+    assert!(
+        object["added"]["unreachable_samples"].as_u64() > Some(0),
+        "{object}"
+    );
+    let warnings = object["warnings"].as_array().unwrap();
+    let has = |part: &str| {
+        warnings
+            .iter()
+            .any(|warning| warning.as_str().unwrap().contains(part))
+    };
+    assert!(has("nothing of the solid under them"), "{warnings:?}");
+    let error = place.refused(&["folded.obj", "--grid", "2^12", "--strict"]);
+    assert!(error["message"].as_str().unwrap().contains("closed"));
+}
+
+/// Walls between the planes of nodes: no node inside, and a volume that was off by half was printed all the same.
+#[test]
+fn no_node_inside_means_no_volume() {
+    let place = Place::new();
+    let mut plate = String::new();
+    for line in box_obj().lines() {
+        plate += &match line.strip_suffix(" 1") {
+            Some(start) if line.starts_with("v ") => format!("{start} 0.01\n"),
+            _ => format!("{line}\n"),
+        };
+    }
+    fs::write(place.path("plate.obj"), plate).unwrap();
+    let object = place.sample(&["plate.obj", "--grid", "2^12", "--level", "2"]);
+    assert_eq!(object["inside_nodes"], 0);
+    assert!(object["volume"].is_null());
+    for fit in object["sets"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .chain([&object["level"]])
+    {
+        assert!(fit["volume_missed"].is_null() && fit["volume_outside"].is_null());
+    }
+    assert!((object["mesh"]["volume"].as_f64().unwrap() - 0.08).abs() < 1e-12);
+}
+
+/// The bound of the outward distance was in the JSON object alone.
+#[test]
+fn a_level_of_detail_comes_with_its_bound() {
+    let place = Place::new();
+    let object = place.sample(&["box.obj", "--grid", "2^12", "--level", "1"]);
+    let length = |key: &str| object["level"][key].as_f64().unwrap();
+    let (seen, bound) = (length("hausdorff_outward"), length("outward_bound"));
+    assert!(seen > 0.9 && seen <= bound);
+    let output = place
+        .command(&["box.obj", "--grid", "2^12", "--level", "1", "--force"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap() + &String::from_utf8_lossy(&output.stderr);
+    let expected = format!("1 ball, {seen:.6} from the solid outward (at most {bound:.6})");
+    assert!(said.contains(&expected), "{said}");
+}
+
 #[test]
 fn files_that_are_there_stay_there() {
     let place = Place::new();

@@ -14,7 +14,7 @@ use knotdock_structures::sampler::grid::{DepthField, Grid};
 use knotdock_structures::sampler::hausdorff::Referee;
 use knotdock_structures::sampler::skeletal_density::{Priority, SHARE_WIDTH, share};
 use knotdock_structures::sampler::{Ball, Method, SetName, sample};
-use solids::{cuboid, scattered, sphere};
+use solids::{Surface, cuboid, scattered, sphere};
 
 /// Past a wall thinner than anything the surface is far, and still no ball fits into the wall.
 #[test]
@@ -299,6 +299,93 @@ fn hausdorff_distances_and_volumes_of_a_ball_in_a_cube() {
     // Nothing covers nothing.
     let none = referee.judge(&[]);
     assert!(none.hausdorff_inward == f64::INFINITY && (none.volume_missed - 1.0).abs() < 1e-12);
+}
+
+/// A ring of radius 10 and thickness 6, its triangles on the torus to a hundredth.
+fn ring() -> Surface {
+    let (around, across) = (96u32, 48u32);
+    let mut surface = Surface::default();
+    for i in 0..around {
+        let t = 2.0 * PI * f64::from(i) / f64::from(around);
+        for j in 0..across {
+            let p = 2.0 * PI * f64::from(j) / f64::from(across);
+            let r = 10.0 + 3.0 * p.cos();
+            surface
+                .positions
+                .push([r * t.cos(), r * t.sin(), 3.0 * p.sin()]);
+            let at = |i: u32, j: u32| i % around * across + j % across;
+            let [a, b] = [at(i, j), at(i + 1, j)];
+            let [c, d] = [at(i + 1, j + 1), at(i, j + 1)];
+            surface.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    surface
+}
+
+/// One ball about a ring, its centre in the hole. The outward distance was measured at the point opposite to the
+/// surface point nearest to the centre, where the ball is 14.9 from the ring; over its poles it is 22.3.
+#[test]
+fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
+    let surface = ring();
+    let (mesh, report) = surface.mesh();
+    assert!(report.is_sound());
+    let solid = Solid::new(&mesh).unwrap();
+    let frame = solid.frame();
+    let field = DepthField::new(&solid, Grid::new(&solid, 16));
+    let referee = Referee::new(&solid, &field);
+    let (center, radius) = ([0.434, -0.514, 0.0], 23.481);
+    let fit = referee.judge(&[Ball {
+        center: frame.inward(center),
+        radius: radius / frame.unit,
+    }]);
+    // Distances from a torus by hand, over the sphere.
+    let steps = 400;
+    let mut farthest = 0.0f64;
+    for i in 0..=steps {
+        let z = 2.0 * f64::from(i) / f64::from(steps) - 1.0;
+        for j in 0..steps {
+            let t = 2.0 * PI * f64::from(j) / f64::from(steps);
+            let across = (1.0 - z * z).sqrt();
+            let [x, y] = [t.cos(), t.sin()].map(|part| radius * across * part);
+            let from_axis = (x + center[0]).hypot(y + center[1]);
+            farthest = farthest.max((from_axis - 10.0).hypot(radius * z) - 3.0);
+        }
+    }
+    assert!((22.2..22.3).contains(&farthest), "{farthest}");
+    let [found, bound] =
+        [fit.hausdorff_outward, fit.outward_bound].map(|length| length * frame.unit);
+    assert!((found - farthest).abs() < 0.05, "{found} for {farthest}");
+    assert!((29.0..30.0).contains(&bound), "{bound}");
+    // Most of the ball lies beyond the grid's cube; its volume outside left that out.
+    let ball = 4.0 / 3.0 * PI * radius.powi(3);
+    let outside = fit.volume_outside * frame.unit.powi(3);
+    let expected = ball - 2.0 * PI * PI * 10.0 * 9.0;
+    assert!(
+        (outside / expected - 1.0).abs() < 0.01,
+        "{outside} for {expected}"
+    );
+}
+
+/// A fin without thickness on a cube: no point of it is one of the solid. Its samples made the inward distance nine
+/// times epsilon.
+#[test]
+fn sheets_have_no_part_in_the_inward_distance() {
+    let body = cuboid([0.0; 3], [10.0; 3]);
+    let mut front = cuboid([10.0, 5.0, 0.0], [20.0, 5.0, 10.0]);
+    front.triangles.drain(..4);
+    front.triangles.truncate(2);
+    let solid = body.and(&front).and(&front.clone().inverted()).solid();
+    let sampling = sample(
+        &solid,
+        16,
+        Method::BehandishIlies(DecompositionOptions::default()),
+    )
+    .unwrap();
+    assert_eq!(sampling.covering.unwrap().unreachable, 0);
+    for set in &sampling.sets {
+        let fit = Referee::new(&solid, &sampling.field).judge(&set.balls);
+        assert!(fit.hausdorff_inward <= sampling.field.grid.epsilon());
+    }
 }
 
 #[test]

@@ -42,8 +42,9 @@ pub struct Sample {
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
     set: Option<SetChoice>,
-    /// Refuse meshes that are not closed, have triangles that face the wrong way, hold their surface several times, or of which
-    /// something was left out on reading.
+    /// Refuse meshes that are not closed, have triangles that face the wrong way, are there several times or bound
+    /// nothing, parts within others that face outward, or of which something was left out on reading; and closed
+    /// ones that the balls do not come within epsilon of.
     #[arg(long)]
     strict: bool,
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.
@@ -143,6 +144,12 @@ impl Sample {
         sampling.steps.push(step);
 
         let mut warnings = report.warnings();
+        if report.is_closed() {
+            let told = Told::new(&sampling, &fits, &solid, &referee);
+            let doubts = told.doubts();
+            self.warn(doubts.clone(), &console)?;
+            warnings.extend(doubts);
+        }
         if sampling.inside_nodes == 0 {
             let unseen = "no node of the grid lies inside the mesh, so volumes are not measured; a finer --grid has some".to_owned();
             console.warn(&unseen);
@@ -157,12 +164,7 @@ impl Sample {
             .map_err(|error| Failure::input(error).at(&self.mesh))?;
         let written = self.write(&solid, &knots, &finished.balls, export)?;
 
-        let told = Told {
-            sampling: &sampling,
-            fits: &fits,
-            unit: frame.unit,
-            volume: referee.volume(),
-        };
+        let told = Told::new(&sampling, &fits, &solid, &referee);
         console.say(format!("\n{}", told.text()));
         if let Some(fitted) = fitted {
             console.say(format!("\n{}", weights_text(fitted)));
@@ -194,7 +196,7 @@ impl Sample {
             if self.strict {
                 return Err(Failure::input(warning)
                     .at(&self.mesh)
-                    .remedy("mend the mesh, or leave --strict out to sample what the winding number calls inside"));
+                    .remedy("repair the mesh, or leave --strict out to sample what the winding number calls inside"));
             }
             console.warn(warning);
         }

@@ -1,8 +1,8 @@
 //! What `knotdock sample` says of a sampled solid.
 
 use knotdock::output::report;
-use knotdock_structures::mesh::Figure;
-use knotdock_structures::sampler::hausdorff::Fit;
+use knotdock_structures::mesh::{Figure, Solid};
+use knotdock_structures::sampler::hausdorff::{Fit, Referee};
 use knotdock_structures::sampler::weights::FittedWeights;
 use knotdock_structures::sampler::{Sampling, SetName};
 use serde_json::{Value, json};
@@ -17,19 +17,62 @@ pub(super) struct Told<'a> {
     pub volume: f64,
 }
 
-impl Told<'_> {
+impl<'a> Told<'a> {
+    /// What is told of a sampling and its fits.
+    pub fn new(sampling: &'a Sampling, fits: &'a [Fit], solid: &Solid, referee: &Referee) -> Self {
+        Self {
+            sampling,
+            fits,
+            unit: solid.frame().unit,
+            volume: referee.volume(),
+        }
+    }
+
+    /// What contradicts the bounds that hold for every closed mesh, a sentence each. Other methods than Algorithm 1
+    /// promise none.
+    pub fn doubts(&self) -> Vec<String> {
+        let Some(covering) = self.sampling.covering else {
+            return Vec::new();
+        };
+        let mut doubts = Vec::new();
+        if covering.unreachable > 0 {
+            doubts.push(format!(
+                "the mesh is closed, yet {} samples of its surface have nothing of the solid under them: \
+                 parts of it face the wrong way, cross or bound nothing, so that volume and balls may be wrong",
+                covering.unreachable
+            ));
+        }
+        let epsilon = self.epsilon();
+        let inward = self.fits.iter().map(|fit| fit.hausdorff_inward * self.unit);
+        let farthest = inward.fold(0.0, f64::max);
+        if farthest > epsilon * (1.0 + 1e-9) {
+            doubts.push(format!(
+                "the mesh is closed, yet a point of the solid is {} from the balls, more than epsilon, {}: \
+                 its surface contradicts itself, so that volume and balls may be wrong",
+                Figure(farthest),
+                Figure(epsilon)
+            ));
+        }
+        doubts
+    }
+
     fn epsilon(&self) -> f64 {
         self.sampling.field.grid.epsilon() * self.unit
     }
 
+    /// Whether a node of the grid lies inside, so that volumes are counted.
+    fn counts(&self) -> bool {
+        self.sampling.inside_nodes > 0 && self.volume > 0.0
+    }
+
     /// A volume in the file's unit, if the grid sees the solid at all.
     fn measured(&self, volume: f64) -> Option<f64> {
-        (self.volume > 0.0).then(|| volume * self.unit.powi(3))
+        self.counts().then(|| volume * self.unit.powi(3))
     }
 
     /// A share of the solid's volume.
     fn percent(&self, volume: f64) -> String {
-        match self.volume > 0.0 {
+        match self.counts() {
             true => format!("{:.3}", 100.0 * volume / self.volume),
             false => "-".to_owned(),
         }
@@ -45,6 +88,7 @@ impl Told<'_> {
                 "balls",
                 "inward",
                 "outward",
+                "at most",
                 "missed, %",
                 "outside, %",
                 "seconds",
@@ -58,6 +102,7 @@ impl Told<'_> {
                 set.balls.len().to_string(),
                 Figure(fit.hausdorff_inward * self.unit).to_string(),
                 Figure(fit.hausdorff_outward * self.unit).to_string(),
+                Figure(fit.outward_bound * self.unit).to_string(),
                 self.percent(fit.volume_missed),
                 self.percent(fit.volume_outside),
                 format!("{:.2}", set.seconds),
@@ -84,7 +129,8 @@ impl Told<'_> {
         };
         format!(
             "Grid: {n} x {n} x {n} nodes, {} inside, spacing {}, epsilon {}\n\n{}\n\
-             Inward: the farthest that a point of the solid is from the balls; outward: that a point of the balls is from the solid.\n\
+             Inward: the farthest that a point of the solid is from the balls, as measured.\n\
+             Outward: the farthest that a point of the balls is from the solid, as measured; and a bound that it cannot exceed.\n\
              {added}Time: {}",
             self.sampling.inside_nodes,
             Figure(grid.spacing() * self.unit),
@@ -97,8 +143,10 @@ impl Told<'_> {
     /// How a level of detail fits, for a person.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
-            "Level of detail: {balls} balls, {} from the solid outward and {} inward",
+            "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward",
+            if balls == 1 { "ball" } else { "balls" },
             Figure(fit.hausdorff_outward * self.unit),
+            Figure(fit.outward_bound * self.unit),
             Figure(fit.hausdorff_inward * self.unit)
         )
     }

@@ -1,97 +1,157 @@
 //! Which way surfaces face: what faces inward is turned, but for the walls of cavities.
 //!
-//! A **surface** is a closed part, or all parts whose open or non-manifold edges come near one another: a piece of a surface, such as a face
-//! whose seams a file did not close, has no inside of its own.
+//! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another: a piece of a
+//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a
+//! surface that lies
+//!
+//! - in no other faces outward; if it is turned, so is all that lies within it;
+//! - where the surfaces about it leave the space empty faces outward, too: an island in a cavity;
+//! - where they fill it is the wall of a cavity if it faces inward. If it faces outward, it bounds nothing: the
+//!   solid is the union of both.
 
 use std::collections::HashMap;
 
 use super::Mesh;
-use super::vector::{add, cross, dot, scale, subtract};
-use super::winding::solid_angle;
+use super::edges::Sets;
+use super::nesting::containers;
+use super::vector::{add, cross, dot, norm, scale, subtract};
 
 /// How far apart the borders of two pieces of one surface are at most, about, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
 
-/// A surface, measured.
-struct Surface {
-    parts: usize,
-    triangles: Vec<u32>,
-    /// Six times its volume about the middle of its bounding box.
-    volume: f64,
-    low: [f64; 3],
-    high: [f64; 3],
-    /// Its outermost vertices either way along each axis.
-    outermost: Vec<[f64; 3]>,
+/// A closed surface of less volume than this times its area to the power 3/2 has no inside.
+const FLAT: f64 = 1e-14;
+
+/// A set of triangles that hang together.
+pub(super) struct Part {
+    /// Its triangles, in rising order.
+    pub triangles: Vec<u32>,
+    /// Whether it is the part before it, the other way round.
+    pub is_reverse: bool,
+    /// Whether each edge is run through as often one way as the other.
+    pub is_closed: bool,
 }
 
-/// Turns surfaces that face inward, unless they lie inside another: that makes them walls of a cavity. If the surface about one is turned, so is
-/// it. `at_border` says of each triangle whether an edge of it is open or non-manifold. Returns how many parts were turned.
-pub fn turn_outward(mesh: &mut Mesh, parts: &[Vec<u32>], at_border: &[bool]) -> usize {
+/// A surface, measured.
+pub(super) struct Surface {
+    parts: usize,
+    pub triangles: Vec<u32>,
+    /// The same surface the other way round, if it is there both ways.
+    reverse: Option<Vec<u32>>,
+    is_closed: bool,
+    /// Six times its volume about the middle of its bounding box.
+    volume: f64,
+    area: f64,
+    /// Whether a triangle of it has an area.
+    has_area: bool,
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+    /// Its outermost vertices either way along each axis.
+    pub outermost: Vec<[f64; 3]>,
+}
+
+/// What was found of the surfaces, and done to them.
+#[derive(Default)]
+pub(super) struct Facing {
+    /// Parts that faced inward and were turned.
+    pub turned: usize,
+    /// Parts that lie within others and face outward, so that they bound nothing.
+    pub nested: usize,
+    /// Volume that the divergence theorem counts of these beyond once, in the file's unit cubed.
+    pub overlap: f64,
+    /// Triangles to drop: those of a surface that is there the other way round, too.
+    pub repeated: Vec<u32>,
+    /// Triangles to drop: those of surfaces without a thickness, outside the solid.
+    pub idle: Vec<u32>,
+}
+
+/// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an
+/// edge of it is open or unbalanced.
+pub(super) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) -> Facing {
     let surfaces: Vec<Surface> = surfaces(mesh, parts, at_border)
         .into_iter()
         .map(|parts_of| Surface::new(mesh, parts, &parts_of))
         .collect();
-    let inward: Vec<bool> = surfaces.iter().map(|one| one.volume < 0.0).collect();
-    if !inward.contains(&true) {
-        return 0;
-    }
-    let about = |index: usize| -> Vec<usize> {
-        let others = (0..surfaces.len()).filter(|&other| other != index);
-        others
-            .filter(|&other| surfaces[other].holds(mesh, &surfaces[index]))
-            .collect()
-    };
-    // The surfaces about each inward one; the outermost decides.
-    let within: Vec<Vec<usize>> = (0..surfaces.len())
-        .map(|index| {
-            if inward[index] {
-                about(index)
-            } else {
-                Vec::new()
-            }
-        })
-        .collect();
-    let turned_whole: Vec<usize> = (0..surfaces.len())
-        .filter(|&index| inward[index] && within[index].is_empty())
-        .collect();
-    let turn = |index: usize| match inward[index] {
-        // A cavity of a surface that is turned is turned with it, or it would count as solid.
-        true => {
-            within[index].is_empty()
-                || within[index]
-                    .iter()
-                    .any(|outer| turned_whole.contains(outer))
-        }
-        // What faces outward inside one that is turned was the wall of a cavity in an inverted file.
-        false => turned_whole
+    let containers = containers(mesh, &surfaces);
+    let mut order: Vec<usize> = (0..surfaces.len()).collect();
+    order.sort_by_key(|&index| containers[index].len());
+    let mut facing = Facing::default();
+    // +1 for surfaces that face outward in the end, -1 inward, 0 for those that bound nothing.
+    let mut sides = vec![0i64; surfaces.len()];
+    let mut turned = vec![false; surfaces.len()];
+    for index in order {
+        let surface = &surfaces[index];
+        let about = &containers[index];
+        let innermost = about
             .iter()
-            .any(|&outer| surfaces[outer].holds(mesh, &surfaces[index])),
-    };
-    let turned: Vec<usize> = (0..surfaces.len()).filter(|&index| turn(index)).collect();
-    for &index in &turned {
-        for &triangle in &surfaces[index].triangles {
-            mesh.triangles[triangle as usize].swap(1, 2);
+            .copied()
+            .max_by_key(|&outer| (containers[outer].len(), std::cmp::Reverse(outer)));
+        let within_both_ways = innermost.is_some_and(|outer| surfaces[outer].reverse.is_some());
+        let mut turn = innermost.is_some_and(|outer| turned[outer]);
+        let filled = about.iter().map(|&outer| sides[outer]).sum::<i64>();
+        if surface.is_flat() {
+            if filled <= 0 && surface.has_area {
+                facing.idle.extend(&surface.triangles);
+            }
+            continue;
+        }
+        let mut inward = surface.is_inward() != turn;
+        if inward && filled <= 0 {
+            inward = false;
+            turn = !turn;
+        }
+        turned[index] = turn;
+        match &surface.reverse {
+            // Within a body that is there once, both sides are the walls of bodies that touch.
+            Some(_) if filled > 0 && !within_both_ways => continue,
+            Some(reverse) => {
+                facing
+                    .repeated
+                    .extend(if turn { &surface.triangles } else { reverse });
+            }
+            None if turn => {
+                facing.turned += surface.parts;
+                for &triangle in &surface.triangles {
+                    mesh.triangles[triangle as usize].swap(1, 2);
+                }
+            }
+            None => {}
+        }
+        sides[index] = if inward { -1 } else { 1 };
+        let closed = surface.is_closed && about.iter().all(|&outer| surfaces[outer].is_closed);
+        if closed && filled > i64::from(inward) {
+            facing.nested += surface.parts;
+            facing.overlap += surface.volume.abs() / 6.0 * sides[index] as f64;
         }
     }
-    turned.iter().map(|&index| surfaces[index].parts).sum()
+    // What is left of a mesh that bounds nothing at all stays what it was.
+    if facing.idle.len() + facing.repeated.len() == mesh.triangles.len() {
+        facing.idle.clear();
+    }
+    facing
 }
 
 /// The parts of each surface.
-fn surfaces(mesh: &Mesh, parts: &[Vec<u32>], at_border: &[bool]) -> Vec<Vec<usize>> {
+fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> {
     let cell = SEAM * mesh.extent();
     let mut surfaces = Vec::new();
-    // The parts with a border in each cell; `joined` leads from each part to the first of its surface.
+    // The parts with a border in each cell, and those that hang together.
     let mut borders: HashMap<[i64; 3], usize> = HashMap::new();
-    let mut joined: Vec<usize> = (0..parts.len()).collect();
+    let mut joined = Sets::new(parts.len());
     let mut open = Vec::new();
     for (index, part) in parts.iter().enumerate() {
+        if part.is_reverse {
+            continue;
+        }
         let border: Vec<u32> = part
+            .triangles
             .iter()
             .copied()
             .filter(|&triangle| at_border[triangle as usize])
             .collect();
         if border.is_empty() {
-            surfaces.push(vec![index]);
+            let reverse = parts.get(index + 1).is_some_and(|next| next.is_reverse);
+            surfaces.push((index..=index + usize::from(reverse)).collect());
             continue;
         }
         open.push(index);
@@ -99,7 +159,7 @@ fn surfaces(mesh: &Mesh, parts: &[Vec<u32>], at_border: &[bool]) -> Vec<Vec<usiz
             for corner in mesh.corners(mesh.triangles[triangle as usize]) {
                 let place = corner.map(|x| (x / cell).floor() as i64);
                 let first = *borders.entry(place).or_insert(index);
-                join(&mut joined, first, index);
+                joined.join(first, index);
             }
         }
     }
@@ -110,15 +170,13 @@ fn surfaces(mesh: &Mesh, parts: &[Vec<u32>], at_border: &[bool]) -> Vec<Vec<usiz
         for step in 0..27 {
             let near = std::array::from_fn(|axis| at[axis] + step / 3_i64.pow(axis as u32) % 3 - 1);
             if let Some(&other) = borders.get(&near) {
-                join(&mut joined, part, other);
+                joined.join(part, other);
             }
         }
     }
     let mut places: HashMap<usize, usize> = HashMap::new();
     for index in open {
-        let place = *places
-            .entry(root(&mut joined, index))
-            .or_insert(surfaces.len());
+        let place = *places.entry(joined.root(index)).or_insert(surfaces.len());
         if place == surfaces.len() {
             surfaces.push(Vec::new());
         }
@@ -127,26 +185,14 @@ fn surfaces(mesh: &Mesh, parts: &[Vec<u32>], at_border: &[bool]) -> Vec<Vec<usiz
     surfaces
 }
 
-/// The first of the parts that one hangs together with.
-fn root(joined: &mut [usize], mut part: usize) -> usize {
-    while joined[part] != part {
-        joined[part] = joined[joined[part]];
-        part = joined[part];
-    }
-    part
-}
-
-fn join(joined: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(joined, a), root(joined, b));
-    joined[a.max(b)] = a.min(b);
-}
-
 impl Surface {
-    fn new(mesh: &Mesh, parts: &[Vec<u32>], parts_of: &[usize]) -> Self {
-        let triangles: Vec<u32> = parts_of
-            .iter()
-            .flat_map(|&part| parts[part].iter().copied())
+    fn new(mesh: &Mesh, parts: &[Part], parts_of: &[usize]) -> Self {
+        let own = || parts_of.iter().map(|&part| &parts[part]);
+        let triangles: Vec<u32> = own()
+            .filter(|part| !part.is_reverse)
+            .flat_map(|part| part.triangles.iter().copied())
             .collect();
+        let reverse = own().find(|part| part.is_reverse);
         let corners = || {
             triangles
                 .iter()
@@ -182,28 +228,38 @@ impl Surface {
                 dot(a, cross(b, c))
             })
             .sum();
+        let has_area = triangles
+            .iter()
+            .any(|&triangle| !mesh.is_sliver(mesh.triangles[triangle as usize]));
+        let area = corners()
+            .map(|corners| 0.5 * norm(super::doubled_normal(corners)))
+            .sum();
         Self {
-            parts: parts_of.len(),
+            parts: own().filter(|part| !part.is_reverse).count(),
+            is_closed: own().all(|part| part.is_closed),
+            reverse: reverse.map(|part| part.triangles.clone()),
             triangles,
             volume,
+            area,
+            has_area,
             low,
             high,
             outermost,
         }
     }
 
-    /// Whether another lies inside, as far as its outermost vertices tell.
-    fn holds(&self, mesh: &Mesh, other: &Self) -> bool {
-        let in_box = |point: &[f64; 3]| {
-            (0..3).all(|axis| self.low[axis] < point[axis] && point[axis] < self.high[axis])
-        };
-        let encloses = |point: &[f64; 3]| {
-            let angles = self
-                .triangles
-                .iter()
-                .map(|&t| solid_angle(mesh.corners(mesh.triangles[t as usize]), *point));
-            angles.sum::<f64>().abs() > std::f64::consts::TAU
-        };
-        other.outermost.iter().all(in_box) && other.outermost.iter().all(encloses)
+    /// Whether it faces inward as the file has it.
+    pub fn is_inward(&self) -> bool {
+        self.volume < 0.0
+    }
+
+    /// Whether it is closed and all in one plane, or folded onto itself.
+    fn is_flat(&self) -> bool {
+        self.is_closed && self.volume.abs() <= FLAT * self.area.powf(1.5)
+    }
+
+    /// Whether another's bounding box lies within this one's.
+    pub fn can_hold(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 }

@@ -3,27 +3,42 @@
 //! # Conventions
 //!
 //! - Lengths are in the file's own unit.
-//! - Triangles list their corners anticlockwise seen from outside, so normals point outward and volumes are positive.
+//! - Triangles list their corners anticlockwise seen from outside, so normals point outward and volumes are
+//!   positive.
 //! - Lines are counted from 1.
-//! - The **solid** S of a mesh is the set of points with a generalised winding number above one half: the inside of a closed
-//!   mesh, the union of overlapping parts, and a smooth guess at what an open mesh was meant to bound.
+//! - The **solid** S of a mesh is the set of points with a generalised winding number above one half: the inside of
+//!   a closed mesh, the union of overlapping parts, and a smooth guess at what an open mesh was meant to bound.
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to polygons) -> `weld` (with `rounding`, `seams`; polygons to triangles) -> `repeats` (a surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> `facing` (which way surfaces face) ->
-//! [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//! path -> `read` (bytes to polygons) -> `weld` (with `rounding`, `seams`; polygons to triangles) -> `repeats` (a whole
+//! surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> [`Mesh`] with its [`MeshReport`]
+//! -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//!
+//! `topology` calls `shells` where triangles meet at non-manifold edges or are there several times (`distinct`
+//! triangles -> `clusters` -> `cells` about their edges -> `labels`: which are solid), and `facing` for which way
+//! surfaces face, by their volume and their `nesting`.
 
+mod cells;
+mod clusters;
 mod distance;
+mod distinct;
+mod edges;
 mod error;
 mod faces;
 mod facing;
 mod figure;
+mod labels;
+mod nesting;
 mod polygon;
+mod probe;
 mod read;
 mod repeats;
 mod report;
 mod rounding;
 mod seams;
+mod shells;
+mod slivers;
 mod solid;
 mod surface;
 mod topology;
@@ -34,6 +49,7 @@ pub(crate) mod winding;
 
 pub use error::{MeshError, MeshErrorKind};
 pub use figure::Figure;
+pub(crate) use probe::{Probe, is_beside};
 pub use read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
 pub use report::MeshReport;
 pub use solid::{Frame, Solid};

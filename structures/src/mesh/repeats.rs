@@ -32,7 +32,7 @@ pub(super) fn keep_first(triangles: &mut Vec<[u32; 3]>) -> usize {
 }
 
 /// A triangle's corners by number, and which way round it runs through them.
-fn sorted(triangle: [u32; 3]) -> ([u32; 3], usize) {
+pub(super) fn sorted(triangle: [u32; 3]) -> ([u32; 3], usize) {
     let mut corners = triangle;
     corners.sort_unstable();
     let next = corners

@@ -44,13 +44,23 @@ pub struct MeshReport {
     /// Area that is missing at least, as a share of the area that is there: the length of the sum of area vectors, which is
     /// zero for a closed surface.
     pub missing_share: f64,
-    /// Sets of triangles connected across edges of two.
+    /// Sets of triangles connected across edges of two or, where more than two meet, walls of one body.
     pub parts: usize,
     /// Triangles that were turned to agree with their neighbours.
     pub turned_triangles: usize,
     /// Parts that faced inward and were turned.
     pub inverted_parts: usize,
-    /// Volume, in the file's unit cubed; see [`Mesh::volume`].
+    /// Parts that lie within others and face outward: the solid is the union, so they add nothing to it.
+    pub nested_parts: usize,
+    /// Parts whose triangles cannot all face one way, as those of a Möbius strip or a Klein bottle.
+    pub one_sided_parts: usize,
+    /// Triangles dropped because they were there before, one way round or the other, beside those that `times`
+    /// counts.
+    pub repeated_triangles: usize,
+    /// Triangles dropped because they bound nothing, as those of a sheet without thickness.
+    pub idle_triangles: usize,
+    /// Volume, in the file's unit cubed: that of [`Mesh::volume`], nested parts left out. Parts that cross count
+    /// twice where they do.
     pub volume: f64,
     /// Area, in the file's unit squared.
     pub area: f64,
@@ -119,7 +129,11 @@ impl MeshReport {
             parts: topology.parts,
             turned_triangles: topology.turned_triangles,
             inverted_parts: topology.inverted_parts,
-            volume: mesh.volume(),
+            nested_parts: topology.nested_parts,
+            one_sided_parts: topology.one_sided_parts,
+            repeated_triangles: topology.repeated_triangles,
+            idle_triangles: topology.idle_triangles,
+            volume: mesh.volume() - topology.overlap,
             area,
             low,
             high,
@@ -132,10 +146,9 @@ impl MeshReport {
     }
 
     /// Whether the file's surface was closed, faced outward, was there once as it came and was read whole, which is what
-    /// `--strict` asks for.
+    /// `--strict` requires.
     pub fn is_sound(&self) -> bool {
-        let turned = self.turned_triangles > 0 || self.inverted_parts > 0;
-        self.is_closed() && !turned && self.times == 1 && self.reading_notes.is_empty()
+        self.warnings().is_empty()
     }
 
     /// What a user has to know before trusting what is made of the mesh, a sentence each.
@@ -168,6 +181,38 @@ impl MeshReport {
             warnings.push(format!(
                 "{} of {} parts faced inward and were turned",
                 self.inverted_parts, self.parts
+            ));
+        }
+        if self.repeated_triangles > 0 {
+            warnings.push(format!(
+                "{} triangles repeat others of the file, one way round or the other; each body has its walls once",
+                self.repeated_triangles
+            ));
+        }
+        if self.idle_triangles > 0 {
+            warnings.push(format!(
+                "{} triangles bound nothing: the same lies on both sides of them, as of a sheet without thickness; \
+                 they are left out",
+                self.idle_triangles
+            ));
+        }
+        match self.nested_parts {
+            0 => {}
+            1 => warnings.push(
+                "a part lies within another and faces outward; is it a cavity? It is taken as solid: \
+                 if it is a cavity, turn it to face inward"
+                    .to_owned(),
+            ),
+            count => warnings.push(format!(
+                "{count} of {} parts lie within others and face outward; are they cavities? They are taken as solid: \
+                 turn those that are cavities to face inward",
+                self.parts
+            )),
+        }
+        if self.one_sided_parts > 0 {
+            warnings.push(format!(
+                "{} of {} parts have one side only, as a Möbius strip or a Klein bottle: they bound no solid",
+                self.one_sided_parts, self.parts
             ));
         }
         warnings

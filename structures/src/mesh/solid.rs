@@ -4,7 +4,7 @@ use super::distance::Surface;
 use super::error::MeshErrorKind;
 use super::triangle_tree::TriangleTree;
 use super::vector::{along, scale, subtract};
-use super::{Mesh, winding};
+use super::{Mesh, slivers, winding};
 
 /// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
 ///
@@ -66,10 +66,14 @@ impl Solid {
             closed: mesh.closed,
         };
         let (low, high) = mesh.bounds();
+        let tree = match slivers::cut(&mesh) {
+            Some(pieces) => TriangleTree::of(pieces),
+            None => TriangleTree::new(&mesh),
+        };
         Ok(Self {
             frame,
             surface: Surface::new(&mesh)?,
-            tree: TriangleTree::new(&mesh),
+            tree,
             half_sides: [0, 1, 2].map(|axis| high[axis].max(-low[axis])),
             mesh,
         })

@@ -1,5 +1,7 @@
 //! Samples of a surface, as dense as one asks.
 
+use rayon::prelude::*;
+
 use super::triangle_tree::centroid;
 use super::vector::{add, norm, scale, subtract};
 use super::{Solid, doubled_normal};
@@ -55,12 +57,66 @@ impl Solid {
             if skip(middle, reach) {
                 continue;
             }
-            let [a, b, c] = turned_to_longest(corners);
-            let halved = scale(add(a, b), 0.5);
-            stack.push(([a, halved, c], 0.5 * area));
-            stack.push(([halved, b, c], 0.5 * area));
+            stack.extend(halved(corners).map(|half| (half, 0.5 * area)));
         }
     }
+
+    /// Calls `search` with each of the clusters that the surface is searched by, in parallel, and puts together in
+    /// turn what it returns.
+    ///
+    /// They are clusters of triangles in the order of [`samples_of`](Self::samples_of).
+    pub(crate) fn search<T: Send>(&self, search: impl Fn(Searched<'_>) -> T + Sync) -> Vec<T> {
+        self.tree()
+            .blocks((self.sampled_triangles() / BLOCKS).clamp(1, LARGEST_BLOCK))
+            .into_par_iter()
+            .map(|block| search(Searched { solid: self, block }))
+            .collect()
+    }
+}
+
+/// Blocks that a surface is searched by, about, and triangles in one of them at most.
+const BLOCKS: usize = 64;
+const LARGEST_BLOCK: usize = 512;
+
+/// A block of the surface.
+pub(crate) struct Searched<'a> {
+    solid: &'a Solid,
+    block: usize,
+}
+
+impl Searched<'_> {
+    /// The samples of its triangles, as by [`Solid::samples_of`], where whole clusters are left out for which
+    /// `skip` says so; `visit` gets the number of the triangle, too.
+    pub fn samples(
+        &self,
+        spacing: f64,
+        mut skip: impl FnMut([f64; 3], f64) -> bool,
+        mut visit: impl FnMut(usize, SurfaceSample),
+    ) {
+        self.solid.tree().visit_below(self.block, |cluster, first| {
+            // Rounding of the radius must not leave out what is not meant.
+            if cluster.radius > spacing && skip(cluster.center, cluster.radius * (1.0 + 1e-9)) {
+                return false;
+            }
+            let Some(triangles) = cluster.leaf else {
+                return true;
+            };
+            for triangle in first..first + triangles.len() {
+                self.solid
+                    .samples_of(triangle, spacing, &mut skip, |sample| {
+                        visit(triangle, sample)
+                    });
+            }
+            false
+        });
+    }
+}
+
+/// The two halves of a triangle, cut at its longest side.
+fn halved(corners: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 2] {
+    let [a, b, c] = turned_to_longest(corners);
+    let halved = scale(add(a, b), 0.5);
+    [[a, halved, c], [halved, b, c]]
 }
 
 /// The corners in the same order, the longest side first.

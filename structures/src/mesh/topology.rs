@@ -1,11 +1,13 @@
 //! How triangles hang together: open and non-manifold edges, parts, and which way they face.
 //!
-//! A **part** is a set of triangles connected across edges that exactly two of them share. A mesh is **closed** when every
-//! edge is run through as often one way as the other; then its winding number is a whole number off the surface, whatever
-//! else is wrong with it.
+//! A **part** is a set of triangles connected across edges that exactly two of them share or, where more do, the
+//! walls of one body: [`shells`](super::shells). A mesh is **closed** when every edge is run through as often one
+//! way as the other; then its winding number is a whole number off the surface, whatever else is wrong with it.
 
 use super::Mesh;
-use super::facing::turn_outward;
+use super::edges::{HalfEdge, by_place, half_edges, patches};
+use super::facing::{Part, turn_outward};
+use super::shells::{self, Shells};
 use super::vector::{norm, subtract};
 
 /// What [`orient`] found and did.
@@ -25,125 +27,191 @@ pub struct Topology {
     pub turned_triangles: usize,
     /// Parts turned whole because they faced inward.
     pub inverted_parts: usize,
+    /// Parts that lie within others and face outward.
+    pub nested_parts: usize,
+    /// Parts whose triangles cannot all agree, as those of a Möbius strip.
+    pub one_sided_parts: usize,
+    /// Triangles dropped because they were there before, one way round or the other.
+    pub repeated_triangles: usize,
+    /// Triangles dropped because nothing of the solid is on either side of them.
+    pub idle_triangles: usize,
+    /// Volume of nested parts, which the divergence theorem counts twice, in the file's unit cubed.
+    pub overlap: f64,
 }
 
-/// An edge as one triangle has it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct HalfEdge {
-    low: u32,
-    high: u32,
-    triangle: u32,
-    /// Whether the triangle runs from `low` to `high`.
-    forward: bool,
-}
-
-/// The edges of all triangles, those of one place together.
-fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let mut edges = Vec::with_capacity(3 * triangles.len());
-    for (triangle, corners) in (0u32..).zip(triangles) {
-        for side in 0..3 {
-            let (from, to) = (corners[side], corners[(side + 1) % 3]);
-            edges.push(HalfEdge {
-                low: from.min(to),
-                high: from.max(to),
-                triangle,
-                forward: from < to,
-            });
-        }
-    }
-    edges.sort_unstable();
-    edges
-}
-
-/// Turns triangles to agree with their neighbours and parts to face outward, and counts what is amiss.
+/// Turns triangles to agree with their neighbours and parts to face outward, drops what bounds nothing, and counts
+/// what is amiss.
 ///
 /// In each part the majority decides. Then whole surfaces are turned that face inward: [`turn_outward`].
 pub fn orient(mesh: &mut Mesh) -> Topology {
     let mut edges = half_edges(&mesh.triangles);
-    let mut topology = Topology::default();
-    // Neighbour across each side of each triangle, and whether both run the side the same way, which is amiss.
-    let mut neighbours: Vec<[Option<(u32, bool)>; 3]> = vec![[None; 3]; mesh.triangles.len()];
-    let mut degree = vec![0u8; mesh.triangles.len()];
-    let mut at_border = vec![false; mesh.triangles.len()];
-    for group in edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
+    let mut shells = Shells::default();
+    let count = mesh.triangles.len();
+    if is_tangled(mesh, &edges) {
+        shells = shells::resolve(mesh);
+        edges = half_edges(&mesh.triangles);
+    } else {
+        shells.of = vec![None; count];
+    }
+    let mut topology = Topology {
+        turned_triangles: shells.turned,
+        repeated_triangles: shells.repeated,
+        idle_triangles: shells.idle,
+        nested_parts: shells.nested,
+        overlap: shells.overlap,
+        ..Topology::default()
+    };
+    let turned_before = topology.turned_triangles;
+    let (mut parts, part_of) = parts(mesh, &edges, &shells, &mut topology);
+    if topology.turned_triangles > turned_before {
+        edges = half_edges(&mesh.triangles);
+    }
+    let at_border = borders(&edges, &mut parts, &part_of);
+    let facing = turn_outward(mesh, &parts, &at_border);
+    topology.inverted_parts = facing.turned;
+    topology.nested_parts += facing.nested;
+    topology.overlap += facing.overlap;
+    topology.repeated_triangles += facing.repeated.len();
+    topology.idle_triangles += facing.idle.len();
+    let mut dropped = vec![false; mesh.triangles.len()];
+    for &triangle in facing.repeated.iter().chain(&facing.idle) {
+        dropped[triangle as usize] = true;
+    }
+    let is_left = |part: &&Part| part.triangles.iter().any(|&t| !dropped[t as usize]);
+    topology.parts = parts.iter().filter(is_left).count();
+    if topology.repeated_triangles + topology.idle_triangles > 0 {
+        drop_triangles(mesh, &dropped);
+    }
+    if topology.inverted_parts + topology.repeated_triangles + topology.idle_triangles > 0 {
+        edges = half_edges(&mesh.triangles);
+    }
+    count_edges(mesh, &edges, &mut topology);
+    topology
+}
+
+/// Whether more than two triangles share an edge, or a triangle is there several times.
+fn is_tangled(mesh: &Mesh, edges: &[HalfEdge]) -> bool {
+    let tip = |edge: &HalfEdge| {
+        let corners = mesh.triangles[edge.triangle as usize];
+        corners
+            .into_iter()
+            .find(|c| *c != edge.low && *c != edge.high)
+    };
+    by_place(edges).any(|group| match group {
+        [_] => false,
+        [a, b] => tip(a) == tip(b),
+        _ => true,
+    })
+}
+
+/// Turns triangles until neighbours agree, the fewer of each patch; returns the parts, and the part of each triangle.
+fn parts(
+    mesh: &mut Mesh,
+    edges: &[HalfEdge],
+    shells: &Shells,
+    topology: &mut Topology,
+) -> (Vec<Part>, Vec<u32>) {
+    let patches = patches(mesh.triangles.len(), edges);
+    let mut parts = Vec::new();
+    let mut part_of = vec![0; mesh.triangles.len()];
+    for (patch, one_sided) in patches.members.into_iter().zip(patches.one_sided) {
+        if patch
+            .iter()
+            .any(|&triangle| shells.of[triangle as usize].is_some())
+        {
+            continue;
+        }
+        topology.one_sided_parts += usize::from(one_sided);
+        let turned = |&&triangle: &&u32| patches.turned[triangle as usize];
+        let most = 2 * patch.iter().filter(turned).count() > patch.len();
+        for triangle in &patch {
+            part_of[*triangle as usize] = parts.len() as u32;
+            if turned(&triangle) != most {
+                mesh.triangles[*triangle as usize].swap(1, 2);
+                topology.turned_triangles += 1;
+            }
+        }
+        parts.push(Part {
+            triangles: patch,
+            is_reverse: false,
+            is_closed: !one_sided,
+        });
+    }
+    let first = parts.len();
+    for &is_reverse in &shells.is_reverse {
+        parts.push(Part {
+            triangles: Vec::new(),
+            is_reverse,
+            is_closed: true,
+        });
+    }
+    for (triangle, shell) in shells.of.iter().enumerate() {
+        if let Some(shell) = shell {
+            let part = first + *shell as usize;
+            parts[part].triangles.push(triangle as u32);
+            part_of[triangle] = part as u32;
+        }
+    }
+    (parts, part_of)
+}
+
+/// Whether each triangle has an edge that its own part runs through more often one way than the other.
+fn borders(edges: &[HalfEdge], parts: &mut [Part], part_of: &[u32]) -> Vec<bool> {
+    let mut at_border = vec![false; part_of.len()];
+    let part = |edge: &HalfEdge| part_of[edge.triangle as usize];
+    for group in by_place(edges) {
+        // Of the two triangles at most edges both are of one part, which agrees unless it is one-sided.
+        if group.len() == 2 {
+            continue;
+        }
+        for edge in group {
+            let own = group.iter().filter(|other| part(other) == part(edge));
+            let balance: i64 = own.map(|other| if other.forward { 1 } else { -1 }).sum();
+            if balance != 0 {
+                at_border[edge.triangle as usize] = true;
+                parts[part(edge) as usize].is_closed = false;
+            }
+        }
+    }
+    at_border
+}
+
+/// Drops triangles, and the vertices that none uses any longer.
+fn drop_triangles(mesh: &mut Mesh, dropped: &[bool]) {
+    let mut places = dropped.iter();
+    mesh.triangles.retain(|_| places.next() != Some(&true));
+    let mut names: Vec<Option<u32>> = vec![None; mesh.positions.len()];
+    for &corner in mesh.triangles.iter().flatten() {
+        names[corner as usize] = Some(0);
+    }
+    let mut kept = Vec::with_capacity(mesh.positions.len());
+    for (name, position) in names.iter_mut().zip(&mesh.positions) {
+        if let Some(name) = name {
+            *name = kept.len() as u32;
+            kept.push(*position);
+        }
+    }
+    mesh.positions = kept;
+    for corner in mesh.triangles.iter_mut().flatten() {
+        *corner = names[*corner as usize].unwrap_or_default();
+    }
+}
+
+fn count_edges(mesh: &Mesh, edges: &[HalfEdge], topology: &mut Topology) {
+    for group in by_place(edges) {
         match group {
             [one] => {
                 topology.open_edges += 1;
-                at_border[one.triangle as usize] = true;
                 let along = subtract(
                     mesh.positions[one.high as usize],
                     mesh.positions[one.low as usize],
                 );
                 topology.open_length += norm(along);
             }
-            [a, b] => {
-                for (own, other) in [(a, b), (b, a)] {
-                    let place = &mut degree[own.triangle as usize];
-                    neighbours[own.triangle as usize][usize::from(*place)] =
-                        Some((other.triangle, a.forward == b.forward));
-                    *place += 1;
-                }
-            }
-            several => {
-                topology.nonmanifold_edges += 1;
-                for edge in several {
-                    at_border[edge.triangle as usize] = true;
-                }
-            }
+            [_, _] => {}
+            _ => topology.nonmanifold_edges += 1,
         }
+        let forward = group.iter().filter(|edge| edge.forward).count();
+        topology.unbalanced_edges += usize::from(2 * forward != group.len());
     }
-    let parts = agree(mesh, &neighbours, &mut topology);
-    topology.parts = parts.len();
-    topology.inverted_parts = turn_outward(mesh, &parts, &at_border);
-    if topology.turned_triangles + topology.inverted_parts > 0 {
-        edges = half_edges(&mesh.triangles);
-    }
-    topology.unbalanced_edges = edges
-        .chunk_by(|a, b| (a.low, a.high) == (b.low, b.high))
-        .filter(|group| 2 * group.iter().filter(|edge| edge.forward).count() != group.len())
-        .count();
-    topology
-}
-
-/// Turns triangles until neighbours agree, the fewer of each part; returns the parts.
-fn agree(
-    mesh: &mut Mesh,
-    neighbours: &[[Option<(u32, bool)>; 3]],
-    topology: &mut Topology,
-) -> Vec<Vec<u32>> {
-    let mut turned: Vec<Option<bool>> = vec![None; mesh.triangles.len()];
-    let mut parts = Vec::new();
-    for seed in 0..mesh.triangles.len() {
-        if turned[seed].is_some() {
-            continue;
-        }
-        turned[seed] = Some(false);
-        let mut part = vec![seed as u32];
-        let mut next = 0;
-        while let Some(&triangle) = part.get(next) {
-            next += 1;
-            let own = turned[triangle as usize] == Some(true);
-            for &(other, amiss) in neighbours[triangle as usize].iter().flatten() {
-                let slot = &mut turned[other as usize];
-                if slot.is_none() {
-                    *slot = Some(own != amiss);
-                    part.push(other);
-                }
-            }
-        }
-        let count = part
-            .iter()
-            .filter(|&&t| turned[t as usize] == Some(true))
-            .count();
-        let most = 2 * count > part.len();
-        for &triangle in &part {
-            if (turned[triangle as usize] == Some(true)) != most {
-                mesh.triangles[triangle as usize].swap(1, 2);
-                topology.turned_triangles += 1;
-            }
-        }
-        part.sort_unstable();
-        parts.push(part);
-    }
-    parts
 }

@@ -47,16 +47,27 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl TriangleTree {
-    /// Builds the tree. Triangles without area have no solid angle and no share of any integral, so they are left out.
+    /// The tree over a mesh's triangles. Those without area have no solid angle and no share of any integral, so
+    /// they are left out.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut triangles: Vec<[[f64; 3]; 3]> = mesh
-            .triangles
-            .iter()
-            .filter(|&&triangle| !mesh.is_sliver(triangle))
-            .map(|&triangle| mesh.corners(triangle))
+        let triangles = mesh.triangles.iter().copied();
+        Self::of(
+            triangles
+                .filter(|&triangle| !mesh.is_sliver(triangle))
+                .map(|triangle| mesh.corners(triangle))
+                .collect(),
+        )
+    }
+
+    /// The tree over triangles that have an area.
+    pub fn of(triangles: Vec<[[f64; 3]; 3]>) -> Self {
+        let mut placed: Vec<Placed> = triangles
+            .into_iter()
+            .map(|corners| (centroid(corners), corners))
             .collect();
-        let mut nodes = Vec::with_capacity(4 * triangles.len() / LEAF + 1);
-        build(&mut triangles, 0, &mut nodes);
+        let mut nodes = Vec::with_capacity(4 * placed.len() / LEAF + 1);
+        build(&mut placed, 0, &mut nodes);
+        let triangles = placed.into_iter().map(|(_, corners)| corners).collect();
         Self { triangles, nodes }
     }
 
@@ -67,35 +78,63 @@ impl TriangleTree {
 
     /// Walks the clusters from the largest down; `enter` says whether to go on to those below.
     pub fn visit(&self, mut enter: impl FnMut(Cluster<'_>) -> bool) {
-        let mut at = 0;
-        while let Some(node) = self.nodes.get(at) {
+        self.visit_below(0, |cluster, _| enter(cluster));
+    }
+
+    /// As [`visit`](Self::visit), of the node `top` and those below it; `enter` gets the number of the cluster's
+    /// first triangle, too.
+    pub fn visit_below(&self, top: usize, mut enter: impl FnMut(Cluster<'_>, usize) -> bool) {
+        let end = self
+            .nodes
+            .get(top)
+            .map_or(0, |node| top + node.below as usize + 1);
+        let mut at = top;
+        while at < end {
+            let node = &self.nodes[at];
             let triangles =
                 &self.triangles[node.first as usize..(node.first + node.count) as usize];
-            let down = enter(Cluster {
+            let cluster = Cluster {
                 center: node.center,
                 radius: node.radius,
                 area: node.area,
                 area_vector: node.area_vector,
                 leaf: (node.below == 0).then_some(triangles),
-            });
+            };
+            let down = enter(cluster, node.first as usize);
             at += 1 + if down { 0 } else { node.below as usize };
         }
     }
+
+    /// Nodes of no more than `size` triangles that have all triangles below them, in the order of these.
+    pub fn blocks(&self, size: usize) -> Vec<usize> {
+        let mut blocks = Vec::new();
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            let whole = node.count as usize <= size || node.below == 0;
+            if whole {
+                blocks.push(at);
+            }
+            at += 1 + if whole { node.below as usize } else { 0 };
+        }
+        blocks
+    }
 }
 
+/// A triangle after its middle.
+type Placed = ([f64; 3], [[f64; 3]; 3]);
+
 /// Puts the tree over `triangles`, which are numbers `first` and on, at the end of `nodes`.
-fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
+fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
     let mut area = 0.0;
     let mut area_vector = [0.0; 3];
     let mut moment = [0.0; 3];
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
-    for &corners in &*triangles {
+    for &(middle, corners) in &*triangles {
         let normal = scale(doubled_normal(corners), 0.5);
         let own = norm(normal);
         area += own;
         area_vector = add(area_vector, normal);
-        let middle = centroid(corners);
         moment = add(moment, scale(middle, own));
         for axis in 0..3 {
             low[axis] = low[axis].min(middle[axis]);
@@ -107,7 +146,7 @@ fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
     } else {
         scale(add(low, high), 0.5)
     };
-    let corners = triangles.iter().flatten();
+    let corners = triangles.iter().flat_map(|(_, corners)| corners);
     let radius = corners
         .map(|&corner| distance(corner, center))
         .fold(0.0, f64::max);
@@ -128,9 +167,7 @@ fn build(triangles: &mut [[[f64; 3]; 3]], first: usize, nodes: &mut Vec<Node>) {
         .max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b])))
         .unwrap_or(0);
     let middle = triangles.len() / 2;
-    triangles.select_nth_unstable_by(middle, |a, b| {
-        centroid(*a)[axis].total_cmp(&centroid(*b)[axis])
-    });
+    triangles.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
     let (left, right) = triangles.split_at_mut(middle);
     build(left, first, nodes);
     build(right, first + middle, nodes);

@@ -20,6 +20,18 @@ pub(crate) fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
     2.0 * volume.atan2(below)
 }
 
+/// Nearer to a triangle's plane than this share of its distances, a point of the triangle is taken to lie on it.
+const ON_TRIANGLE: f64 = 1e-10;
+
+/// Whether a point lies on a triangle, to within rounding.
+fn is_on(corners: [[f64; 3]; 3], point: [f64; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| subtract(corner, point));
+    let (la, lb, lc) = (norm(a), norm(b), norm(c));
+    let rounding = ON_TRIANGLE * la * lb * lc;
+    let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    dot(a, cross(b, c)).abs() <= rounding && below <= rounding
+}
+
 /// Rounds of the inside test: a cluster counts as a dipole beyond this many times its radius, and the sum decides when it is
 /// farther than this from one half. A dipole's error falls with the square of the first number.
 const ROUNDS: [(f64, f64); 2] = [(3.0, 0.1), (10.0, 0.01)];
@@ -33,8 +45,14 @@ pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
         / (4.0 * PI)
 }
 
-/// The winding number at `point`, clusters farther than `far` times their radius as dipoles.
-fn fast(tree: &TriangleTree, point: [f64; 3], far: f64) -> f64 {
+/// The winding number at `point`, clusters farther than `far` times their radius as dipoles; `near` sees the
+/// triangles that are no part of these.
+fn fast(
+    tree: &TriangleTree,
+    point: [f64; 3],
+    far: f64,
+    mut near: impl FnMut(&[[[f64; 3]; 3]]),
+) -> f64 {
     let mut sum = 0.0;
     tree.visit(|node| {
         let away = subtract(node.center, point);
@@ -44,6 +62,7 @@ fn fast(tree: &TriangleTree, point: [f64; 3], far: f64) -> f64 {
             return false;
         }
         if let Some(corners) = node.leaf {
+            near(corners);
             sum += corners
                 .iter()
                 .map(|&corners| solid_angle(corners, point))
@@ -58,10 +77,27 @@ fn fast(tree: &TriangleTree, point: [f64; 3], far: f64) -> f64 {
 /// Whether `point` is inside: its winding number is above one half.
 pub(crate) fn is_inside(tree: &TriangleTree, point: [f64; 3]) -> bool {
     for (far, doubt) in ROUNDS {
-        let winding = fast(tree, point, far);
+        let winding = fast(tree, point, far, |_| ());
         if (winding - 0.5).abs() > doubt {
             return winding > 0.5;
         }
     }
     exact(tree, point) > 0.5
+}
+
+/// Whether the surface winds about `point`, either way round; none where the point lies on it.
+pub(crate) fn encloses(tree: &TriangleTree, point: [f64; 3]) -> Option<bool> {
+    let mut on = false;
+    for (far, doubt) in ROUNDS {
+        let winding = fast(tree, point, far, |triangles| {
+            on |= triangles.iter().any(|&corners| is_on(corners, point));
+        });
+        if on {
+            return None;
+        }
+        if (winding.abs() - 0.5).abs() > doubt {
+            return Some(winding.abs() > 0.5);
+        }
+    }
+    Some(exact(tree, point).abs() > 0.5)
 }

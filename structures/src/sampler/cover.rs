@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::ball_tree::{Ball, BallTree};
 use super::grid::DepthField;
 use crate::mesh::vector::{along, distance};
-use crate::mesh::{Solid, SurfaceSample};
+use crate::mesh::{Probe, Solid, SurfaceSample};
 
 /// Distance between a surface point and the nearest sample, as a share of eps.
 pub const SAMPLE_SPACING: f64 = 0.1;
@@ -34,27 +34,33 @@ pub fn cover(solid: &Solid, field: &DepthField, balls: &mut Vec<Ball>) -> Coveri
     let reach = epsilon * (1.0 - SAMPLE_SPACING);
     let mut covering = Covering::default();
     let tree = BallTree::new(balls);
-    let far: Vec<SurfaceSample> = (0..solid.sampled_triangles())
-        .into_par_iter()
-        .flat_map_iter(|triangle| {
-            let mut far = Vec::new();
-            let is_near = |point, reach| tree.distance(point, reach) <= reach;
-            solid.samples_of(
-                triangle,
-                epsilon * SAMPLE_SPACING,
-                |point, piece| piece < reach && is_near(point, reach - piece),
-                |sample| {
-                    if !is_near(sample.point, reach) {
-                        far.push(sample);
-                    }
-                },
-            );
-            far
-        })
-        .collect();
+    let far: Vec<Vec<(usize, SurfaceSample)>> = solid.search(|block| {
+        let mut far = Vec::new();
+        let is_near = |point, reach| tree.distance(point, reach) <= reach;
+        block.samples(
+            epsilon * SAMPLE_SPACING,
+            |point, piece| piece < reach && is_near(point, reach - piece),
+            |triangle, sample| {
+                if !is_near(sample.point, reach) {
+                    far.push((triangle, sample));
+                }
+            },
+        );
+        far
+    });
     let mut added = Added::new(2.0 * epsilon);
-    for sample in far {
+    let closed = solid.mesh().is_closed();
+    let mut probe = (0, Probe::default());
+    for (triangle, sample) in far.into_iter().flatten() {
         if added.is_near(sample.point, reach) {
+            continue;
+        }
+        if probe.0 != triangle {
+            probe = (triangle, Probe::default());
+        }
+        // Under the surface of a closed mesh that bounds a solid there is some of it at once.
+        if closed && !probe.1.is_under(solid, &sample, reach) {
+            covering.unreachable += 1;
             continue;
         }
         match deepest_under(solid, &sample, reach) {

@@ -1,22 +1,30 @@
-//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and outside.
+//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
+//! outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface no
-//! farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter of the spacing
-//! in each of the eight directions). *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over
-//! the same grid's points in the balls and over the point of each ball's sphere on the far side of the surface point nearest
-//! to its centre; a ball of radius R at depth d reaches no farther out than R - d, which is reported as the bound.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface
+//! no farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter
+//! of the spacing in each of the eight directions). Samples with nothing of the solid on either side are no points
+//! of it. *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over the same grid's
+//! points in the balls, over the point of each ball's sphere on the far side of the surface point nearest to its
+//! centre, and where that leaves room, over the whole sphere ([`super::outward`]); a ball of radius R at depth d
+//! reaches no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
 
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use super::ball_tree::{Ball, BallTree};
+use super::beyond::volume_beyond;
 use super::cover::SAMPLE_SPACING;
 use super::grid::DepthField;
-use crate::mesh::Solid;
+use super::outward::farthest;
 use crate::mesh::vector::{along, distance, subtract};
+use crate::mesh::{Solid, is_beside};
+
+/// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
+const OUTWARD_TOLERANCE: f64 = 0.01;
 
 /// What [`Referee::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -139,7 +147,7 @@ impl<'a> Referee<'a> {
         }
     }
 
-    /// Measures a set of balls. What of them reaches more than a spacing out of the grid's cube has no part in the volumes.
+    /// Measures a set of balls.
     pub fn judge(&self, balls: &[Ball]) -> Fit {
         let tree = BallTree::new(balls);
         let covered = self.covered(balls);
@@ -152,11 +160,21 @@ impl<'a> Referee<'a> {
                 |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
             );
         let surface = self.surface_distance(&tree);
-        let (touching, bound) = balls.par_iter().map(|ball| self.outward(ball)).reduce(
-            || (0.0, f64::NEG_INFINITY),
-            |a, b| (f64::max(a.0, b.0), f64::max(a.1, b.1)),
-        );
+        let touching: Vec<(f64, f64)> = balls.par_iter().map(|ball| self.outward(ball)).collect();
+        let (seen, bound) = touching.iter().fold((outer, 0.0), |a, b| {
+            (f64::max(a.0, b.0), f64::max(a.1, b.1))
+        });
+        let bounds = touching.iter().map(|(_, bound)| *bound);
+        let bounded: Vec<(f64, Ball)> = bounds.zip(balls.iter().copied()).collect();
         let grid = self.field.grid;
+        let seen = farthest(
+            self.solid,
+            bounded,
+            seen,
+            OUTWARD_TOLERANCE * grid.epsilon(),
+        );
+        let last = self.fine.coordinate(self.fine.per_axis - 1) + 0.5 * self.fine.step;
+        let beyond = volume_beyond(balls, -last, last, self.fine.step);
         let nodes_missed = (0..grid.nodes())
             .into_par_iter()
             .filter(|&node| {
@@ -165,10 +183,10 @@ impl<'a> Referee<'a> {
             .count();
         Fit {
             hausdorff_inward: f64::max(inner, surface),
-            hausdorff_outward: f64::max(outer, touching),
-            outward_bound: bound.max(0.0),
+            hausdorff_outward: seen,
+            outward_bound: bound,
             volume_missed: missed as f64 * cell,
-            volume_outside: outside as f64 * cell,
+            volume_outside: outside as f64 * cell + beyond,
             nodes_missed,
         }
     }
@@ -229,30 +247,32 @@ impl<'a> Referee<'a> {
 
     /// Farthest distance of a surface sample from the balls.
     fn surface_distance(&self, tree: &BallTree) -> f64 {
-        let spacing = self.field.grid.epsilon() * SAMPLE_SPACING;
-        (0..self.solid.sampled_triangles())
-            .into_par_iter()
-            .fold(
-                || 0.0f64,
-                |farthest, triangle| {
-                    // A piece that cannot hold a farther sample is left out, so the farthest of all samples is found
-                    // whatever each thread has seen before.
-                    let farthest = Cell::new(farthest);
-                    let distance = |point, enough| tree.distance(point, enough);
-                    self.solid.samples_of(
-                        triangle,
-                        spacing,
-                        |point, piece| {
-                            distance(point, farthest.get() - piece) + piece <= farthest.get()
-                        },
-                        |sample| {
-                            farthest.set(farthest.get().max(distance(sample.point, farthest.get())))
-                        },
-                    );
-                    farthest.get()
+        let epsilon = self.field.grid.epsilon();
+        let spacing = epsilon * SAMPLE_SPACING;
+        let closed = self.solid.mesh().is_closed();
+        // What all threads have found. A piece that cannot hold a farther sample is left out: the farthest of all
+        // is found whatever the order.
+        let farthest = Farthest(AtomicU64::new(0));
+        let distance = |point, enough| tree.distance(point, enough);
+        self.solid.search(|block| {
+            block.samples(
+                spacing,
+                |point, piece| {
+                    let farthest = farthest.get();
+                    distance(point, farthest - piece) + piece <= farthest
                 },
-            )
-            .reduce(|| 0.0, f64::max)
+                |_, sample| {
+                    let seen = farthest.get();
+                    let away = distance(sample.point, seen);
+                    // Only where a closed mesh breaks the bound may a sample be no point of the solid.
+                    let in_doubt = closed && away > seen.max(epsilon);
+                    if away > seen && (!in_doubt || is_beside(self.solid, &sample, epsilon)) {
+                        farthest.raise(away);
+                    }
+                },
+            );
+        });
+        farthest.get()
     }
 
     /// How far a ball is seen to reach out of the solid, and how far it can.
@@ -277,6 +297,20 @@ impl<'a> Referee<'a> {
             self.solid.distance(point)
         };
         (seen, bound)
+    }
+}
+
+/// The largest of the lengths, zero or above, that threads have found.
+struct Farthest(AtomicU64);
+
+impl Farthest {
+    fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+
+    fn raise(&self, length: f64) {
+        // The bits of numbers above zero are in the order of the numbers.
+        self.0.fetch_max(length.to_bits(), Ordering::Relaxed);
     }
 }
 

@@ -15,6 +15,7 @@
 //! resolution, and [`feature_size`] says how thick a solid is.
 
 pub mod ball_tree;
+mod beyond;
 pub mod cover;
 pub mod decomposition;
 pub mod feature_size;
@@ -22,6 +23,7 @@ pub mod grid;
 pub mod hausdorff;
 pub mod lattice;
 pub mod octree;
+mod outward;
 pub mod packing;
 pub mod sample;
 pub mod skeletal_density;

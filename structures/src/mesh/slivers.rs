@@ -1,0 +1,84 @@
+//! Long thin triangles cut into shorter pieces, so that trees over them have compact clusters.
+//!
+//! A cylinder of thousands of sides is as long at every side, whatever the number of sides; a tree can only part
+//! its triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface
+//! stays the same; only its pieces change.
+
+use super::Mesh;
+use super::vector::{along, distance, subtract};
+
+/// A triangle is a sliver if its longest side is more than this times its height.
+const ASPECT: f64 = 16.0;
+
+/// Fewer slivers than this are no trouble.
+const FEWEST: usize = 512;
+
+/// Lengths into which a sliver is cut, on average, and all together at most.
+const LENGTHS: usize = 24;
+const MOST_LENGTHS: usize = 400_000;
+
+/// No sliver is cut into lengths shorter than this share of the bounding box's longest edge.
+const SHORTEST: f64 = 1.0 / 64.0;
+
+/// The triangles that have an area, slivers cut up; none where there are few slivers.
+pub(super) fn cut(mesh: &Mesh) -> Option<Vec<[[f64; 3]; 3]>> {
+    let triangles = mesh.triangles.iter().copied();
+    let triangles: Vec<[[f64; 3]; 3]> = triangles
+        .filter(|&triangle| !mesh.is_sliver(triangle))
+        .map(|triangle| mesh.corners(triangle))
+        .collect();
+    let slivers = triangles.iter().filter(|corners| is_thin(corners));
+    let (count, length) = slivers.fold((0, 0.0), |(count, length), corners| {
+        (count + 1, length + longest(corners))
+    });
+    if count < FEWEST {
+        return None;
+    }
+    let limit = (length / (LENGTHS * count).min(MOST_LENGTHS) as f64).max(SHORTEST * mesh.extent());
+    let mut pieces = Vec::new();
+    for corners in triangles {
+        match is_thin(&corners) {
+            true => cut_across(
+                corners,
+                (longest(&corners) / limit).ceil() as usize,
+                &mut pieces,
+            ),
+            false => pieces.push(corners),
+        }
+    }
+    Some(pieces)
+}
+
+/// Cuts a triangle across its two longer sides into `count` strips, all as wide, of two triangles each but for the
+/// one at the tip.
+fn cut_across(corners: [[f64; 3]; 3], count: usize, pieces: &mut Vec<[[f64; 3]; 3]>) {
+    let [a, b, c] = corners;
+    let shortest = [distance(a, b), distance(b, c), distance(c, a)];
+    // The tip is opposite to the shortest side.
+    let [tip, left, right] = if shortest[1] <= shortest[0] && shortest[1] <= shortest[2] {
+        [a, b, c]
+    } else if shortest[2] <= shortest[0] {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    };
+    let at = |end: [f64; 3], step: usize| match step == count {
+        true => end,
+        false => along(tip, step as f64 / count as f64, subtract(end, tip)),
+    };
+    pieces.push([tip, at(left, 1), at(right, 1)]);
+    for step in 1..count {
+        let [p, q] = [at(left, step), at(left, step + 1)];
+        let [r, s] = [at(right, step), at(right, step + 1)];
+        pieces.extend([[p, q, s], [p, s, r]]);
+    }
+}
+
+fn longest(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
+    distance(a, b).max(distance(b, c)).max(distance(c, a))
+}
+
+fn is_thin(corners: &[[f64; 3]; 3]) -> bool {
+    let longest = longest(corners);
+    longest * longest > ASPECT * super::vector::norm(super::doubled_normal(*corners))
+}
