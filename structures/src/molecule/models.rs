@@ -161,7 +161,7 @@ mod tests {
         let first = block(1, 8, [0.0; 3]);
         let beside = block(2, 8, [20.0, 3.0, 1.0]);
         let on = block(3, 8, [0.7, -0.4, 0.9]);
-        assert_eq!(of(&[first.clone()]), Relation::Single);
+        assert_eq!(of(std::slice::from_ref(&first)), Relation::Single);
         assert_eq!(of(&[first.clone(), beside.clone()]), Relation::Parts);
         assert_eq!(of(&[first.clone(), on.clone()]), Relation::Alternatives);
         assert_eq!(

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 /// How to read.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ReadOptions {
     /// What becomes of waters.
@@ -33,23 +33,6 @@ pub struct ReadOptions {
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
     #[serde(skip)]
     pub keep: Vec<String>,
-}
-
-impl Default for ReadOptions {
-    fn default() -> Self {
-        Self {
-            waters: Waters::default(),
-            hetatm: Hetatm::default(),
-            hydrogens: Hydrogens::default(),
-            altloc: AlternateLocation::default(),
-            model: ModelChoice::default(),
-            assembly: None,
-            min_plddt: None,
-            drop_residue: Vec::new(),
-            trust_plddt: false,
-            keep: Vec::new(),
-        }
-    }
 }
 
 /// Which of a file's models are read.
