@@ -123,7 +123,8 @@ mod tests {
         let shown = |waters: usize| {
             let rows = (1..=waters).map(|number| format!("{number} O HOH W {number} 1 2 3\n"));
             let text = head.to_owned() + &rows.collect::<String>();
-            let sieved = sieve(Path::new("x.cif"), &text, 1).unwrap();
+            let model = ModelChoice::Number(1);
+            let sieved = sieve(Path::new("x.cif"), &text, model).unwrap();
             assert_eq!(sieved.carried.len(), waters);
             let numbers = sieved.text.lines().filter(|line| line.starts_with("ATOM"));
             let number = |line: &str| line.split_whitespace().nth(6).map(str::to_owned);
