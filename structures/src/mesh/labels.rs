@@ -213,7 +213,7 @@ impl Cluster<'_> {
             self.numbers(outside, 2, step)
         });
         let Some(numbers) = numbers else {
-            return self.all_solid(&is_region, &facing);
+            return self.all_solid(is_region, &facing);
         };
         for (&name, number) in self.names.iter().zip(numbers) {
             let doubled = all_walls(name, &|triangle| copies(triangle) > 1);
