@@ -302,7 +302,7 @@ fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
     let warnings = object["warnings"].as_array().unwrap();
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].as_str().unwrap().contains("is it a cavity?"));
-    let error = place.refused(&["nested.obj", "--strict"]);
+    let error = place.refused(&["nested.obj", "--strict", "-o", "strict.csv"]);
     assert!(error["message"].as_str().unwrap().contains("cavity"));
 }
 
@@ -327,7 +327,14 @@ fn a_closed_mesh_that_breaks_the_bounds_is_warned_of() {
             .any(|warning| warning.as_str().unwrap().contains(part))
     };
     assert!(has("nothing of the solid under them"), "{warnings:?}");
-    let error = place.refused(&["folded.obj", "--grid", "2^12", "--strict"]);
+    let error = place.refused(&[
+        "folded.obj",
+        "--grid",
+        "2^12",
+        "--strict",
+        "-o",
+        "strict.csv",
+    ]);
     assert!(error["message"].as_str().unwrap().contains("closed"));
 }
 

@@ -225,6 +225,18 @@ fn a_body_both_ways_round_is_taken_once() {
         assert!(report.is_closed() && !report.is_sound(), "{some}");
         assert_eq!(report.triangles, 12);
     }
+    // Some faces of bodies that touch, where facing contradicts itself; and a wall between two that is there once.
+    for some in [2, 5, 9] {
+        let mut surface = one.clone().and(&cube([10.0, 0.0, 0.0], 10.0));
+        let faces = surface.clone().inverted().triangles;
+        surface.triangles.extend(&faces[some..some + 7]);
+        with_volume(&surface, 2000.0);
+    }
+    let mut baffle = one.clone().and(&cube([10.0, 0.0, 0.0], 10.0));
+    baffle.triangles.drain(2..4);
+    let report = with_volume(&baffle, 2000.0);
+    assert!(report.is_closed() && !report.is_sound());
+    assert_eq!((report.idle_triangles, report.parts), (2, 1));
     // A hollow body whose walls are there both ways round.
     let hollow = one.clone().and(&cube([3.0; 3], 4.0).inverted());
     with_volume(

@@ -98,7 +98,7 @@ impl Fan {
             for place in 1..count {
                 let (a, b) = (places[place - 1], places[place]);
                 let apart = (self.angles[b] - self.angles[a]).rem_euclid(std::f64::consts::TAU);
-                let near = apart < NEAR || apart > std::f64::consts::TAU - NEAR;
+                let near = !(NEAR..=std::f64::consts::TAU - NEAR).contains(&apart);
                 if near && order(&self.edges[a], &self.edges[b]) < 0.0 {
                     places.swap(place - 1, place);
                     changed = true;

@@ -7,6 +7,7 @@
 //!    each of its walls is there both ways round: a body as programs for pictures write it.
 //! 2. How often triangles are there: a cell is solid where a way out passes through an odd number.
 //! 3. The same, each triangle taken once.
+//! 4. Nothing: every cell but the outside is solid, and cells merge where there is one copy of a wall between them.
 
 use std::collections::VecDeque;
 
@@ -23,6 +24,13 @@ pub(super) enum Label {
     Body { inward: bool, both_ways: bool },
 }
 
+impl Label {
+    /// Whether the cell is of the solid.
+    pub fn is_body(&self) -> bool {
+        *self != Self::Empty
+    }
+}
+
 /// The labels of a cluster's cells.
 pub(super) struct Labelled {
     /// A label for each of the cluster's cells.
@@ -31,6 +39,8 @@ pub(super) struct Labelled {
     pub nested: usize,
     /// What the divergence theorem counts of them beyond once, in the file's unit cubed.
     pub overlap: f64,
+    /// Whether bodies merge where the wall between them is there once.
+    pub merges: bool,
 }
 
 /// Volumes below zero by this share of the whole are rounding.
@@ -150,6 +160,7 @@ impl Cluster<'_> {
             labels: Vec::new(),
             nested: 0,
             overlap: 0.0,
+            merges: false,
         };
         if let Some(numbers) = self.numbers(outside, 0, &facing) {
             // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it
@@ -200,7 +211,10 @@ impl Cluster<'_> {
                 _ => 1,
             };
             self.numbers(outside, 2, step)
-        })?;
+        });
+        let Some(numbers) = numbers else {
+            return self.all_solid(is_region, &facing);
+        };
         for (&name, number) in self.names.iter().zip(numbers) {
             let doubled = all_walls(name, &|triangle| copies(triangle) > 1);
             let label = if is_region(name) && (number == 1 || doubled) {
@@ -214,5 +228,35 @@ impl Cluster<'_> {
             labelled.labels.push((name, label));
         }
         Some(labelled)
+    }
+
+    /// Every region solid, all facing as most of their outer walls do; none where a triangle that is there once has one cell on both sides.
+    fn all_solid(
+        &self,
+        is_region: impl Fn(u32) -> bool,
+        facing: impl Fn(u32) -> i64,
+    ) -> Option<Labelled> {
+        let mut outward = 0;
+        for &triangle in self.triangles {
+            let [front, behind] = self.beside(triangle)?;
+            if front == behind && !self.distinct.is_repeated(triangle) {
+                return None;
+            }
+            let sides = i64::from(is_region(behind)) - i64::from(is_region(front));
+            outward += sides * facing(triangle).signum();
+        }
+        let label = |&name: &u32| match is_region(name) {
+            true => Label::Body {
+                inward: outward < 0,
+                both_ways: false,
+            },
+            false => Label::Empty,
+        };
+        Some(Labelled {
+            labels: self.names.iter().map(|name| (*name, label(name))).collect(),
+            nested: 0,
+            overlap: 0.0,
+            merges: true,
+        })
     }
 }

@@ -9,7 +9,7 @@ use super::Mesh;
 use super::cells::Cells;
 use super::clusters::clusters;
 use super::distinct::Distinct;
-use super::edges::{half_edges, patches};
+use super::edges::{Sets, half_edges, patches};
 use super::labels::{Cluster, Label, Labelled};
 
 /// The shells of a mesh, and what was done to find them.
@@ -113,11 +113,38 @@ impl Shells {
                 .binary_search_by_key(&cell, |(cell, _)| *cell);
             place.map_or(Label::Empty, |place| labelled.labels[place].1)
         };
+        let copies = |triangle: u32| &distinct.copies[triangle as usize];
+        // Bodies that are one, as the wall between them is there once.
+        let mut merged = Sets::new(labelled.labels.len());
+        let place = |cell: u32| {
+            labelled
+                .labels
+                .binary_search_by_key(&cell, |(cell, _)| *cell)
+        };
+        let is_single = |triangle: u32| {
+            let beside = cluster.cells.beside[triangle as usize];
+            let bodies = beside.is_some_and(|cells| cells.map(label).iter().all(Label::is_body));
+            labelled.merges && bodies && copies(triangle).len() == 1
+        };
+        for &triangle in cluster.triangles {
+            if let (true, Some([front, behind])) =
+                (is_single(triangle), cluster.cells.beside[triangle as usize])
+                && let (Ok(front), Ok(behind)) = (place(front), place(behind))
+            {
+                merged.join(front, behind);
+            }
+        }
         // The first shell of each body.
         let mut shell_of = std::collections::HashMap::new();
         let mut is_reverse = Vec::new();
-        for &(cell, label) in &labelled.labels {
+        for (place, &(cell, label)) in labelled.labels.iter().enumerate() {
             if let Label::Body { both_ways, .. } = label {
+                let root = merged.root(place);
+                if root < place {
+                    let first = shell_of.get(&labelled.labels[root].0).copied();
+                    shell_of.insert(cell, first.unwrap_or_default());
+                    continue;
+                }
                 shell_of.insert(cell, (self.is_reverse.len() + is_reverse.len()) as u32);
                 is_reverse.push(false);
                 if both_ways {
@@ -128,6 +155,9 @@ impl Shells {
         // The shells at each triangle, and whether it faces as the first copy for them.
         let needs = |triangle: u32| {
             let mut needs = Vec::new();
+            if is_single(triangle) {
+                return needs;
+            }
             let Some([front, behind]) = cluster.cells.beside[triangle as usize] else {
                 return needs;
             };
@@ -142,7 +172,6 @@ impl Shells {
             }
             needs
         };
-        let copies = |triangle: u32| &distinct.copies[triangle as usize];
         let mut triangles = cluster.triangles.iter();
         if triangles.any(|&triangle| needs(triangle).len() > copies(triangle).len()) {
             // A single wall parts one body from another within it: to drop it would be to trust that the two cross
