@@ -1,16 +1,11 @@
-//! Suggestions for words that other programs of the field use and this one does not: `--restraints`, `--cores`, `rmsd`.
-//!
-//! clap suggests what is spelled alike, which for these words is often something else (`--cores`: `--poses`).
-
-use clap::builder::StyledStr;
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+//! The words, each with what to use here.
 
 /// Words for one thing, and what to use here.
-struct Suggestion {
+pub(super) struct Suggestion {
     /// Words, without leading dashes, `-` between parts.
-    words: &'static [&'static str],
+    pub words: &'static [&'static str],
     /// What to use, in a sentence without a full stop.
-    instead: &'static str,
+    pub instead: &'static str,
 }
 
 const fn suggestion(words: &'static [&'static str], instead: &'static str) -> Suggestion {
@@ -18,7 +13,7 @@ const fn suggestion(words: &'static [&'static str], instead: &'static str) -> Su
 }
 
 /// Words of options.
-const OPTIONS: [Suggestion; 25] = [
+pub(super) const OPTIONS: [Suggestion; 25] = [
     suggestion(
         &[
             "restraint",
@@ -332,7 +327,7 @@ const OPTIONS: [Suggestion; 25] = [
 ];
 
 /// Words of commands.
-const COMMANDS: [Suggestion; 10] = [
+pub(super) const COMMANDS: [Suggestion; 10] = [
     suggestion(
         &[
             "docking", "run", "search", "predict", "global", "zdock", "megadock",
@@ -401,135 +396,3 @@ const COMMANDS: [Suggestion; 10] = [
         "use `knotdock calibrate`, which measures how fast this machine is",
     ),
 ];
-
-/// What to use instead of a word that is no option or command.
-fn find(suggestions: &[Suggestion], word: &str) -> Option<&'static str> {
-    let word = word.trim_start_matches('-');
-    let word = word.split('=').next().unwrap_or(word);
-    let word = word.to_lowercase().replace('_', "-");
-    let known = |one: &&Suggestion| one.words.contains(&word.as_str());
-    suggestions.iter().find(known).map(|one| one.instead)
-}
-
-/// What to do about an error of the command line, where the field's word for something is at fault or one that is spelled alike.
-pub fn suggested(error: &clap::Error) -> Option<String> {
-    let text = |kind| match error.get(kind) {
-        Some(ContextValue::String(text)) => Some(text.as_str()),
-        _ => None,
-    };
-    let alike = |kind| match error.get(kind) {
-        Some(ContextValue::String(one)) => Some(format!("is `{one}` meant?")),
-        Some(ContextValue::Strings(some)) => some.first().map(|one| format!("is `{one}` meant?")),
-        _ => None,
-    };
-    match error.kind() {
-        ErrorKind::UnknownArgument => text(ContextKind::InvalidArg)
-            .and_then(|word| find(&OPTIONS, word))
-            .map(str::to_owned)
-            .or_else(|| alike(ContextKind::SuggestedArg)),
-        ErrorKind::InvalidSubcommand => text(ContextKind::InvalidSubcommand)
-            .and_then(|word| find(&COMMANDS, word))
-            .map(str::to_owned)
-            .or_else(|| alike(ContextKind::SuggestedSubcommand)),
-        ErrorKind::InvalidValue => alike(ContextKind::SuggestedValue),
-        _ => None,
-    }
-}
-
-/// The error with the field's word explained, in place of what is spelled alike.
-pub fn explained(mut error: clap::Error) -> clap::Error {
-    let word = match error.kind() {
-        ErrorKind::UnknownArgument => (&OPTIONS[..], ContextKind::InvalidArg),
-        ErrorKind::InvalidSubcommand => (&COMMANDS[..], ContextKind::InvalidSubcommand),
-        _ => return error,
-    };
-    let (suggestions, kind) = word;
-    let found = match error.get(kind) {
-        Some(ContextValue::String(word)) => find(suggestions, word),
-        _ => None,
-    };
-    if let Some(instead) = found {
-        // The usage line shows what is spelled alike, too.
-        for alike in [
-            ContextKind::SuggestedArg,
-            ContextKind::SuggestedSubcommand,
-            ContextKind::Usage,
-        ] {
-            error.remove(alike);
-        }
-        let tips = vec![StyledStr::from(instead)];
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
-    }
-    error
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Options and commands that a suggestion names, in backquotes.
-    fn named(text: &str) -> Vec<String> {
-        let quoted = text.split('`').skip(1).step_by(2);
-        let words = quoted.flat_map(str::split_whitespace);
-        words.map(str::to_owned).collect()
-    }
-
-    #[test]
-    fn what_is_suggested_exists_and_no_word_of_ours_is_explained_away() {
-        use clap::CommandFactory;
-        let cli = super::super::Cli::command();
-        let commands: Vec<&str> = cli.get_subcommands().map(clap::Command::get_name).collect();
-        let dock = cli.find_subcommand("dock").unwrap();
-        let options: Vec<String> = dock
-            .get_arguments()
-            .flat_map(|option| {
-                let short = option.get_short().map(|letter| format!("-{letter}"));
-                let long = option.get_long().map(|name| format!("--{name}"));
-                [short, long].into_iter().flatten()
-            })
-            .collect();
-        for one in OPTIONS.iter().chain(&COMMANDS) {
-            let words = named(one.instead);
-            for word in &words {
-                let general = word.starts_with("--...") || word == "--rank" || word == "--pose";
-                assert!(
-                    !word.starts_with('-') || general || options.contains(word),
-                    "{word}"
-                );
-            }
-            for pair in words.windows(2).filter(|pair| pair[0] == "knotdock") {
-                assert!(commands.contains(&pair[1].as_str()), "{}", pair[1]);
-            }
-        }
-        for word in OPTIONS.iter().flat_map(|one| one.words) {
-            let ours = [format!("--{word}"), format!("-{word}")];
-            assert!(!ours.iter().any(|ours| options.contains(ours)), "{word}");
-        }
-        for word in COMMANDS.iter().flat_map(|one| one.words) {
-            assert!(!commands.contains(word), "{word}");
-        }
-    }
-
-    #[test]
-    fn no_word_has_two_suggestions() {
-        for suggestions in [&OPTIONS[..], &COMMANDS[..]] {
-            let mut words: Vec<&str> = suggestions
-                .iter()
-                .flat_map(|one| one.words)
-                .copied()
-                .collect();
-            let count = words.len();
-            words.sort_unstable();
-            words.dedup();
-            assert_eq!(words.len(), count);
-        }
-    }
-
-    #[test]
-    fn words_are_found_however_they_are_spelled() {
-        for word in ["--ncores", "--NCORES", "--n_cores", "--ncores=4"] {
-            assert_eq!(find(&OPTIONS, word), Some("use `--threads N`"), "{word}");
-        }
-        assert_eq!(find(&OPTIONS, "--no-such-thing"), None);
-    }
-}
