@@ -6,7 +6,7 @@
 //! of the spacing in each of the eight directions). Samples with nothing of the solid on either side are no points
 //! of it. *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over the same grid's
 //! points in the balls, over the point of each ball's sphere on the far side of the surface point nearest to its
-//! centre, and where that leaves room, over the whole sphere ([`super::outward`]); a ball of radius R at depth d
+//! centre, and where that leaves room, over the whole sphere (`outward`); a ball of radius R at depth d
 //! reaches no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
