@@ -26,7 +26,7 @@ pub struct Advice {
 /// a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
 ///
 /// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default does, less
-/// [`KEEPS`]. The error alone does not say so. It is measured over the poses that a setting found, and fewer rotations find
+/// 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and fewer rotations find
 /// fewer poses at no larger an error.
 pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let default = tradeoff.measured.first()?;
