@@ -212,3 +212,16 @@ fn both_formats_give_the_same_atoms() {
         assert_eq!(a, &moved);
     }
 }
+
+/// PyMOL writes each object as a data block: "the file has only A" was all that was said of a chain in the second one.
+#[test]
+fn a_chain_of_a_block_that_was_not_read_is_answered_with_the_block() {
+    let atom = |chain: &str| format!("ATOM 1 C CA . GLY {chain} 1 ? 1 2 3 1 9 1 {chain} 1\n");
+    let second = HEAD.replacen("data_", "data_second_", 1);
+    let file = format!("{HEAD}{}{second}{}", atom("A"), atom("B"));
+    let error = read_text(&file, ":B").unwrap_err().to_string();
+    assert!(
+        error.contains("only A") && error.contains("data_second_"),
+        "{error}"
+    );
+}

@@ -143,7 +143,11 @@ pub enum ReadError {
         residue: String,
     },
     /// A chain was asked for that the file does not have.
-    #[error("there is no chain '{chain}'; the file has {}", list_chains(present))]
+    #[error(
+        "there is no chain '{chain}'; the file has {}{}",
+        list_chains(present),
+        warned(warnings)
+    )]
     UnknownChain {
         /// The path as given.
         file: PathBuf,
@@ -151,6 +155,8 @@ pub enum ReadError {
         chain: String,
         /// Author names of the chains in the file, in file order.
         present: Vec<String>,
+        /// Warnings of reading until then, such as that a further data block was not read.
+        warnings: Vec<String>,
     },
     /// Residues were asked for that a chain of the file does not have.
     #[error("there is no residue {part}; chain {chain} of the file has {} to {}", numbers[0], numbers[1])]
@@ -233,6 +239,11 @@ fn list_chains(present: &[String]) -> String {
         [one] => format!("only {one}"),
         several => several.join(", "),
     }
+}
+
+/// Warnings behind a message.
+fn warned(warnings: &[String]) -> String {
+    warnings.iter().map(|text| format!("; {text}")).collect()
 }
 
 impl ReadError {

@@ -33,7 +33,13 @@ pub(super) fn select(
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
     let wanted = chains.map(|chains| Wanted::new(file, &parsed, chains));
-    let wanted = wanted.transpose()?;
+    let wanted = wanted.transpose().map_err(|mut error| {
+        // What was not read may hold the chain.
+        if let ReadError::UnknownChain { warnings, .. } = &mut error {
+            warnings.clone_from(&report.warnings);
+        }
+        error
+    })?;
     let other_names = other_names(&parsed);
     let (aligned, pseudo_atoms) = {
         let names = parsed.iter().zip(&other_names);

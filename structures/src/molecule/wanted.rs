@@ -90,6 +90,7 @@ impl Wanted {
                     file: file.to_path_buf(),
                     chain: picked.written,
                     present,
+                    warnings: Vec::new(),
                 });
             }
             let of_chain = || {
