@@ -9,12 +9,12 @@ mod example;
 
 use knotdock::search::DockOptions;
 use knotdock::search::rotations::rotation_set;
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };
 use knotdock_scoring::kernel::{Band, ProductScorer};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -107,7 +107,7 @@ fn uniform_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>
         };
         let centers = (plan.receptor_center, plan.ligand_center);
         let size = plan.size;
-        let engine = UniformGrid::<f32>::new(plan, &pair.receptor, &pair.ligand, Fold::Score);
+        let engine = UniformGrid::<f32>::new(plan, &pair.receptor, &pair.ligand, Quantity::Score);
         let mut work = engine.workspace();
         let mut measured = Measured::default();
         let mut rasterising = f64::INFINITY;
@@ -154,7 +154,8 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
             Some(scorer) => scorer,
             none => none.insert(ProductScorer::new(kernel, &pair.receptor, &pair.ligand)?),
         };
-        let folded = Folded::<f32>::new(&plan, &pair.receptor, &pair.ligand, Fold::Score);
+        let folded =
+            ReceptorSpectra::<f32>::new(&plan, &pair.receptor, &pair.ligand, Quantity::Score);
         for rank in 1..=folded.full_rank().min(4) {
             let engine = CpuEngine::new(Arc::clone(&plan), &folded, &pair.ligand, rank);
             let mut work = engine.workspace();

@@ -5,10 +5,10 @@
 
 mod example;
 
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         plan.kernel.reach(),
         1e3 * prepared.elapsed().as_secs_f64()
     );
-    let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);
+    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, 3);
     let mut work = engine.workspace();
     let brute = Brute::new(&plan, &receptor, &ligand);

@@ -8,8 +8,8 @@ mod example;
 use knotdock::search::peaks::find_peaks;
 use knotdock::search::rotations::rotation_set;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
-use knotdock_scoring::engine::{CpuEngine, Folded, Plan};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::HalfTurn;
 use std::error::Error;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
     let options = knotdock::search::DockOptions::default().engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
-    let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);
+    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     let turns: Vec<Turn> = rotation_set(4 * TURNS)
         .into_iter()
         .step_by(4)

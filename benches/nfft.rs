@@ -12,7 +12,7 @@
 //! - `write FILE`: writes the modes of the last run (f64, re and im); answers `written`.
 
 use cpu_time::ThreadTime;
-use knotdock_scoring::transform::nonequispaced::{Located, Plan, Workspace};
+use knotdock_scoring::transform::nufft::{Plan, SortedPoints, Workspace};
 use num_complex::Complex64;
 use std::error::Error;
 use std::io::{BufRead, Write};
@@ -103,7 +103,7 @@ struct Case<const D: usize> {
     plan: Plan<f64, D>,
     points: Vec<[f64; D]>,
     weights: Vec<Complex64>,
-    located: Located<D>,
+    located: SortedPoints<D>,
     work: Workspace<f64, D>,
     output: Vec<Complex64>,
 }

@@ -6,9 +6,9 @@
 
 mod example;
 
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use num_complex::Complex32;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
     let options = knotdock::search::DockOptions::default().engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
-    let folded = Folded::<f32>::new(&plan, &receptor, &ligand, Fold::Score);
+    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     for rank in [2, 3] {
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
         let mut work = engine.workspace();

@@ -2,13 +2,13 @@
 
 use crate::search::outcome::error_scale;
 use crate::search::{Scene, SearchError};
-use knotdock_scoring::configuration::Configuration;
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{ModeOrder, Selection, Tail, total};
+use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use rayon::prelude::*;
@@ -149,17 +149,17 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
     let scorer = ExactScorer::with_effects(&plan.kernel, receptor, ligand, &plan.effects)?;
     let exact = scorer.score(pose);
     let folds = [
-        Fold::Score,
-        Fold::SliceByOffset(0),
-        Fold::SliceByOffset(1),
-        Fold::SliceByOffset(2),
+        Quantity::Score,
+        Quantity::SliceByOffset(0),
+        Quantity::SliceByOffset(1),
+        Quantity::SliceByOffset(2),
     ];
     let all = Selection::all(&plan.modes);
-    let whole: Vec<(Folded<f64>, Configuration)> = folds
+    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = folds
         .into_par_iter()
         .map(|fold| {
-            let folded = Folded::<f64>::new(&plan, receptor, ligand, fold);
-            let configuration = Configuration::new(&plan, &folded, ligand, &all);
+            let folded = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, fold);
+            let configuration = TruncatedCorrelation::new(&plan, &folded, ligand, &all);
             (folded, configuration)
         })
         .collect();
@@ -180,7 +180,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
             ModeOrder::LowFrequency => Selection::low_frequency(&plan.modes, most),
             ModeOrder::Magnitude => Selection::by_magnitude(&plan.modes, &magnitudes, most),
         };
-        let few = Configuration::new(&plan, folded, ligand, &selection);
+        let few = TruncatedCorrelation::new(&plan, folded, ligand, &selection);
         let mut work = few.workspace();
         let prepared = few.prepare(&pose.rotation, &mut work);
         let (value, _) = prepared.gradient(&pose.translation, &mut work);
@@ -260,7 +260,7 @@ fn rungs(total: usize, asked: Option<usize>) -> Vec<usize> {
 }
 
 /// The largest score of the grid at the pose's rotation.
-fn scale(plan: &Arc<Plan>, folded: &Folded<f64>, ligand: &Knots, pose: &Pose) -> f64 {
+fn scale(plan: &Arc<Plan>, folded: &ReceptorSpectra<f64>, ligand: &Knots, pose: &Pose) -> f64 {
     let engine = CpuEngine::new(Arc::clone(plan), folded, ligand, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);

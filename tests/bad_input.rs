@@ -415,7 +415,7 @@ fn words_of_other_programs_are_answered_by_what_does_that_here() {
     for (words, expected, wrong) in [
         (
             "dock a.pdb b.pdb --restraints x.tbl",
-            "--attract-receptor",
+            "--active-receptor",
             "--restraint-weight",
         ),
         ("dock a.pdb b.pdb --cores 4", "--threads N", "--poses"),

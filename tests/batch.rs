@@ -88,7 +88,7 @@ fn each_pair_is_docked_as_by_itself() {
             (row["status"].as_str(), row["error"].as_str()),
             ("done", "")
         );
-        for column in ["score", "rank_score", "z_score", "cluster_size"] {
+        for column in ["score", "pose_score", "z_score", "cluster_size"] {
             assert_eq!(row[column], best[column], "{column}");
         }
         assert_eq!(row["dockq"], "");
@@ -174,7 +174,7 @@ fn a_known_complex_is_measured_against() {
     let folder = place();
     write_pairs(
         folder.path(),
-        "name,receptor,ligand,native_receptor,native_ligand,attract_receptor\n\
+        "name,receptor,ligand,native_receptor,native_ligand,active_receptor\n\
          a,helices_receptor.pdb,helices_ligand.pdb,helices_receptor.pdb,helices_ligand.pdb,A:5\n",
     );
     let output = batch(
@@ -201,7 +201,7 @@ fn a_known_complex_is_measured_against() {
     assert_eq!(best["capri"], row["capri"].as_str());
     let record = fs::read(folder.path().join("out/a/run.json")).unwrap();
     let record: Value = serde_json::from_slice(&record).unwrap();
-    assert_eq!(record["options"]["attract_receptor"], "A:5");
+    assert_eq!(record["options"]["active_receptor"], "A:5");
 
     // Another known complex is another run, and so is a table of poses that is gone.
     let again = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 48");
@@ -436,5 +436,5 @@ fn words_of_the_field_are_explained_in_columns_and_options() {
     let refused = batch(folder.path(), "batch in/pairs.csv -o out -- --restraints=x");
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(said.contains("--attract-receptor"), "{said}");
+    assert!(said.contains("--active-receptor"), "{said}");
 }

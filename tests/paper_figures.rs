@@ -16,8 +16,8 @@ mod spectrum;
 mod ways;
 
 use correlation::Grid;
-use knotdock_scoring::configuration::Prepared;
 use knotdock_scoring::transform::truncation::{Selection, Tail};
+use knotdock_scoring::truncated::RotationSpectrum;
 use lifted::{Expansion, Task};
 use nalgebra::Vector3;
 use num_complex::Complex64;
@@ -78,8 +78,8 @@ impl Correlated {
         buffers.grid
     }
 
-    fn prepared(&self, selection: &Selection) -> Prepared {
-        Prepared::from_spectrum(&self.grid.modes, selection, |mode| {
+    fn prepared(&self, selection: &Selection) -> RotationSpectrum {
+        RotationSpectrum::from_spectrum(&self.grid.modes, selection, |mode| {
             self.grid.mode(&self.product, mode)
         })
     }

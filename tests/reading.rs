@@ -344,7 +344,7 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
 fn picked_residues_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
-    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --attract-ligand A:2,3,4-6 --rotations 20 --write-top 1 -o run --quiet";
+    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --active-ligand A:2,3,4-6 --rotations 20 --write-top 1 -o run --quiet";
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
@@ -355,7 +355,7 @@ fn picked_residues_are_recorded_and_followed() {
     );
     assert_eq!(inputs["receptor"]["atoms"], 5 * 24);
     assert_eq!(inputs["ligand"]["atoms"], 5 * 6);
-    assert_eq!(first["options"]["attract_ligand"], "A:2,3,4-6");
+    assert_eq!(first["options"]["active_ligand"], "A:2,3,4-6");
     succeed(
         folder,
         "dock --from run/run.json -o again --quiet".split_whitespace(),
@@ -370,7 +370,7 @@ fn picked_residues_are_recorded_and_followed() {
 
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder)
-        .args("dock receptor.pdb ligand.pdb --attract-ligand 5".split_whitespace())
+        .args("dock receptor.pdb ligand.pdb --active-ligand 5".split_whitespace())
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));

@@ -314,7 +314,7 @@ fn first_poses_of_small_searches() {
                 Some(row.rotation as f64),
                 Some(row.score),
                 Some(row.score_grid),
-                Some(row.rank_score),
+                Some(row.pose_score),
             ];
             found.insert((case.to_owned(), index as u32 + 1), values);
         }
@@ -325,7 +325,7 @@ fn first_poses_of_small_searches() {
         "rotation",
         "score",
         "score_grid",
-        "rank_score",
+        "pose_score",
     ];
     let tolerance = [0.0, FAST_TOLERANCE, FAST_TOLERANCE, FAST_TOLERANCE];
     check("search.csv", &columns, &found, &tolerance);

@@ -279,7 +279,7 @@ fn bad_input_is_refused_before_anything_runs() {
 
 /// A cost model of a machine so slow that a few hundred rotations fill a minute.
 const SLOW: &str = r#"{"schema": 1, "program": "knotdock", "threads": 1, "cost_model": {"inverse": 1e-7, "field": 1e-12,
-    "prepare": 1e-12, "pair": 1e-15, "rescore": 1e-15, "climb": 1e-15, "rotation": 1e-12, "covering": 1e-12}}"#;
+    "prepare": 1e-12, "pair": 1e-15, "rescore": 1e-15, "refine": 1e-15, "rotation": 1e-12, "covering": 1e-12}}"#;
 
 fn dock(folder: &Path, arguments: &[&str]) -> Output {
     cargo_bin_cmd!("knotdock")

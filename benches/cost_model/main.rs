@@ -22,7 +22,7 @@ use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 use pace::Pace;
 
 /// Dockings of a setting, and seconds after which no further one is begun.
-const MOST_DOCKINGS: usize = 3;
+const MAX_DOCKINGS: usize = 3;
 const ENOUGH_SECONDS: f64 = 60.0;
 
 struct Silent;
@@ -140,7 +140,7 @@ fn pair(files: &[String; 2], machine: &Machine) -> Result<(), Box<dyn Error>> {
             let pace = 0.5 * (before + machine.pace.seconds()) / machine.at_fit;
             times.push(Time { seconds, pace });
             spent += seconds;
-            if times.len() == MOST_DOCKINGS || spent > ENOUGH_SECONDS {
+            if times.len() == MAX_DOCKINGS || spent > ENOUGH_SECONDS {
                 break (plan, outcome);
             }
         };

@@ -10,8 +10,8 @@ use crate::timing::least;
 use crate::ways::{Points, fast_3d, plan_3d};
 use crate::whole::Whole;
 use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
-use knotdock_scoring::configuration::Prepared;
 use knotdock_scoring::transform::truncation::Selection;
+use knotdock_scoring::truncated::RotationSpectrum;
 use nalgebra::Vector3;
 use std::error::Error;
 
@@ -35,9 +35,9 @@ struct Row {
 }
 
 /// The function of the selected modes, ready for one configuration at a time.
-pub fn prepared(whole: &Whole, selection: &Selection) -> Prepared {
+pub fn prepared(whole: &Whole, selection: &Selection) -> RotationSpectrum {
     let grid = whole.grid();
-    Prepared::from_spectrum(&grid.modes, selection, |mode| {
+    RotationSpectrum::from_spectrum(&grid.modes, selection, |mode| {
         grid.mode(whole.product(), mode)
     })
 }

@@ -1,6 +1,6 @@
 //! Three ways from balls to the spectrum of their summed bumps without a grid, all through an [`Expansion`] of the radius.
 //!
-//! - [`direct`]: the nonequispaced sums as they stand (NDFT), over whichever expansion: with the series that is the 4D sum.
+//! - [`direct`]: the nufft sums as they stand (NDFT), over whichever expansion: with the series that is the 4D sum.
 //! - [`fast_4d`]: one four-dimensional fast transform of the points (x, y, z, r), for the series.
 //! - [`fast_3d`]: a three-dimensional fast transform for each function of the radius.
 //!
@@ -9,8 +9,8 @@
 use crate::lifted::Expansion;
 use crate::spectrum::{Body, FrequencyBox};
 use knotdock_scoring::transform::direct;
-use knotdock_scoring::transform::nonequispaced::{
-    Located, Plan, PlanError, TransformError, Workspace,
+use knotdock_scoring::transform::nufft::{
+    Plan, PlanError, SortedPoints, TransformError, Workspace,
 };
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -77,7 +77,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// The nonequispaced sums, direct.
+/// The nufft sums, direct.
 pub fn direct(points: &Points) -> Vec<Complex64> {
     let sums = direct::forward(&points.centers, &points.weights, points.frequencies.half());
     let mut output = points.values();
@@ -106,7 +106,7 @@ pub fn direct_share(points: &Points, planes: usize) -> f64 {
 /// A fast transform in D dimensions, planned.
 pub struct Fast<const D: usize> {
     plan: Plan<f64, D>,
-    located: Located<D>,
+    located: SortedPoints<D>,
     work: Workspace<f64, D>,
     sums: Vec<Vec<Complex64>>,
 }

@@ -2,13 +2,13 @@
 //! whose answer is known.
 
 use knotdock_scoring::effect::contact::{self, Potential};
-use knotdock_scoring::effect::restraint::{Mark, Weights};
+use knotdock_scoring::effect::restraint::{ResidueRole, Weights};
 use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::field::ReceptorField;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
@@ -69,11 +69,11 @@ fn free_terms(a: &Knots, b: &Knots) -> Vec<Term> {
 /// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as the defaults have it,
 /// and as many attracted.
 fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
-    let every = |knots: &Knots, step: usize| -> Vec<Mark> {
+    let every = |knots: &Knots, step: usize| -> Vec<ResidueRole> {
         let mark = |count: usize| match count % step {
-            0 => Mark::Blocked,
-            1 => Mark::Attracted,
-            _ => Mark::Free,
+            0 => ResidueRole::Excluded,
+            1 => ResidueRole::Active,
+            _ => ResidueRole::Free,
         };
         (1..=knots.len()).map(mark).collect()
     };
@@ -109,7 +109,7 @@ fn turn() -> UnitQuaternion<f64> {
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) -> f64 {
     let plan = plan(a, b, tolerance);
     let scorer = scorer(&plan, a, b);
-    let mut folded = Folded::<T>::new(&plan, a, b, Fold::Score);
+    let mut folded = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
     if let Some(effect) = effect {
         for other in Effect::ALL.into_iter().filter(|other| *other != effect) {
             folded = folded.without(other);
@@ -219,8 +219,8 @@ fn the_field_reads_all_terms() {
     let (a, b) = (cloud(160, 12.0, 5), cloud(60, 8.0, 6));
     let plan = plan(&a, &b, 1e-2);
     let scorer = scorer(&plan, &a, &b);
-    let folded = Folded::<f32>::new(&plan, &a, &b, Fold::Score);
-    let field = ReceptorField::new(&plan, &folded, &b);
+    let folded = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&plan, &folded, &b);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
@@ -245,7 +245,7 @@ fn an_effect_that_is_off_changes_not_one_bit() {
     let bare = |knots: &Knots| Knots::new(knots.centers.clone(), knots.radii.clone()).unwrap();
     let grid = |a: &Knots, b: &Knots| {
         let plan = Arc::new(Plan::new(a, b, options(1e-2)).unwrap());
-        let folded = Folded::<f32>::new(&plan, a, b, Fold::Score);
+        let folded = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
         let mut work = engine.workspace();
         engine.correlate(&turn(), &mut work);
@@ -254,7 +254,7 @@ fn an_effect_that_is_off_changes_not_one_bit() {
     let (rank, plain) = grid(&bare(&a), &bare(&b));
     assert_eq!(grid(&a, &b), (rank, plain));
     let plan = plan(&a, &b, 1e-2);
-    let whole = Folded::<f32>::new(&plan, &a, &b, Fold::Score);
+    let whole = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
     let without = whole
         .without(Effect::Contact)
         .without(Effect::Restraint)
@@ -342,7 +342,7 @@ fn patched(charge: [f64; 2], types: [&str; 2], patch: f64) -> Knots {
 /// The direction from the receptor's centre in which the best voxel of a correlation lies.
 fn best_direction(a: &Knots, b: &Knots, terms: Vec<Term>) -> Vector3<f64> {
     let plan = planned(a, b, 1e-2, terms);
-    let folded = Folded::<f32>::new(&plan, a, b, Fold::Score);
+    let folded = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&UnitQuaternion::identity(), &mut work);
@@ -384,7 +384,7 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
 #[test]
 fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
     let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));
-    let marked = |inside: Mark, outside: Mark| -> Vec<Mark> {
+    let marked = |inside: ResidueRole, outside: ResidueRole| -> Vec<ResidueRole> {
         let inside = |x: &[f64; 3]| if x[0] > 6.0 { inside } else { outside };
         body.centers.iter().map(inside).collect()
     };
@@ -392,7 +392,7 @@ fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
         blocked: 2.0,
         attracted: 2.0,
     };
-    let found = |marks: &[Mark]| {
+    let found = |marks: &[ResidueRole]| {
         let by_receptor = restraint::term(&body, &ball, [marks, &[]], weights);
         let by_ligand = restraint::term(&ball, &body, [&[], marks], weights);
         [
@@ -401,14 +401,14 @@ fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
         ]
     };
     for marks in [
-        marked(Mark::Free, Mark::Blocked),
-        marked(Mark::Attracted, Mark::Free),
+        marked(ResidueRole::Free, ResidueRole::Excluded),
+        marked(ResidueRole::Active, ResidueRole::Free),
     ] {
         for place in found(&marks) {
             assert!(place[0] > 0.9, "{place}");
         }
     }
-    for place in found(&marked(Mark::Blocked, Mark::Free)) {
+    for place in found(&marked(ResidueRole::Excluded, ResidueRole::Free)) {
         assert!(place[0] < 0.5, "{place}");
     }
 }

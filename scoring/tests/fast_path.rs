@@ -4,11 +4,11 @@
 
 mod scene;
 
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::Trim;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
-fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Fold) -> f64 {
+fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Quantity) -> f64 {
     worst_after::<T>(a, b, tolerance, fold, HalfTurn::None)
 }
 
@@ -29,7 +29,7 @@ fn worst_after<T: Real>(
     a: &Knots,
     b: &Knots,
     tolerance: f64,
-    fold: Fold,
+    fold: Quantity,
     half_turn: HalfTurn,
 ) -> f64 {
     worst_of::<T>(a, b, options(tolerance), fold, half_turn)
@@ -40,12 +40,12 @@ fn worst_of<T: Real>(
     a: &Knots,
     b: &Knots,
     options: EngineOptions,
-    fold: Fold,
+    fold: Quantity,
     half_turn: HalfTurn,
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(&plan.kernel, a, b).unwrap();
-    let folded = Folded::<T>::new(&plan, a, b, fold);
+    let folded = ReceptorSpectra::<T>::new(&plan, a, b, fold);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
     let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
@@ -60,8 +60,8 @@ fn worst_of<T: Real>(
         let place = plan.receptor_center + engine.position_after(half_turn, voxel);
         let exact = scorer.score(&Pose::about(rotation, plan.ligand_center, place));
         let value = match fold {
-            Fold::Score => exact.score,
-            Fold::Slice(slice) => exact.slices[slice],
+            Quantity::Score => exact.score,
+            Quantity::Slice(slice) => exact.slices[slice],
             other => unreachable!("the exact sum has no {other:?}"),
         };
         error = error.max((value - work.grid[voxel].wide()).abs());
@@ -74,12 +74,12 @@ fn worst_of<T: Real>(
 fn scores_meet_the_tolerance_asked() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-        let error = worst::<f64>(&a, &b, tolerance, Fold::Score);
+        let error = worst::<f64>(&a, &b, tolerance, Quantity::Score);
         println!("f64 {tolerance:e}: {error:.2e}");
         assert!(error <= tolerance, "f64 at {tolerance:e}: {error:e}");
     }
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        let error = worst::<f32>(&a, &b, tolerance, Fold::Score);
+        let error = worst::<f32>(&a, &b, tolerance, Quantity::Score);
         println!("f32 {tolerance:e}: {error:.2e}");
         assert!(error <= tolerance, "f32 at {tolerance:e}: {error:e}");
     }
@@ -93,7 +93,7 @@ fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let mut options = options(tolerance);
             options.kernel.trim = Trim::BehandishIlies { length };
-            let error = worst_of::<f64>(&a, &b, options, Fold::Score, HalfTurn::None);
+            let error = worst_of::<f64>(&a, &b, options, Quantity::Score, HalfTurn::None);
             println!("{length} {tolerance:e}: {error:.2e}");
             assert!(error <= tolerance, "{length} at {tolerance:e}: {error:e}");
         }
@@ -125,7 +125,7 @@ fn slices_meet_the_tolerance_asked() {
     let (a, b) = (cloud(160, 12.0, &RADII, 3), cloud(60, 8.0, &RADII, 4));
     for tolerance in [1e-2, 1e-4, 1e-6] {
         for slice in 0..3 {
-            let error = worst::<f64>(&a, &b, tolerance, Fold::Slice(slice));
+            let error = worst::<f64>(&a, &b, tolerance, Quantity::Slice(slice));
             assert!(
                 error <= tolerance,
                 "slice {slice} at {tolerance:e}: {error:e}"
@@ -172,7 +172,7 @@ fn half_turns_read_the_same_transform() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for half_turn in HalfTurn::ALL {
         for tolerance in [1e-2, 1e-4] {
-            let error = worst_after::<f64>(&a, &b, tolerance, Fold::Score, half_turn);
+            let error = worst_after::<f64>(&a, &b, tolerance, Quantity::Score, half_turn);
             assert!(
                 error <= tolerance,
                 "{half_turn:?} at {tolerance:e}: {error:e}"
@@ -187,7 +187,7 @@ fn continuous_radii_go_through_the_lifted_modes() {
     let many: Vec<f64> = (0..90).map(|i| 1.5 + 0.4 * f64::from(i) / 89.0).collect();
     let (a, b) = (cloud(90, 10.0, &many, 5), cloud(40, 6.0, &many, 6));
     for tolerance in [1e-2, 1e-3] {
-        let error = worst::<f64>(&a, &b, tolerance, Fold::Score);
+        let error = worst::<f64>(&a, &b, tolerance, Quantity::Score);
         assert!(error <= tolerance, "at {tolerance:e}: {error:e}");
     }
 }
@@ -197,7 +197,7 @@ fn continuous_radii_go_through_the_lifted_modes() {
 fn grid_equals_the_4d_direct_transform() {
     let (a, b) = (cloud(40, 6.0, &RADII, 7), cloud(20, 4.0, &RADII, 8));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
-    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
     let mut work = engine.workspace();
     let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
@@ -221,7 +221,7 @@ fn grid_equals_the_4d_direct_transform() {
         for k in -modes..=modes {
             let eta = plan.axis.eta(k);
             sum += plan.axis.coefficient(&plan.kernel, length, k)
-                * plan.axis.fold_factor(&plan.kernel, Fold::Score, k)
+                * plan.axis.fold_factor(&plan.kernel, Quantity::Score, k)
                 * ndft_4d(&x, &a.radii, &a.weights, w, eta)
                 * ndft_4d(&y, &mirrored, &b.weights, w, eta).conj();
         }
@@ -251,7 +251,7 @@ fn grid_equals_the_4d_direct_transform() {
 fn a_truncated_engine_is_the_one_of_lower_rank() {
     let (a, b) = (cloud(60, 8.0, &RADII, 15), cloud(30, 5.0, &RADII, 16));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
     let full = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
     let turned = Pose::from_parts([0.1, 0.6, -0.5, 0.2], [0.0; 3]).rotation;
     let grid = |engine: &CpuEngine<f64>| {
@@ -288,7 +288,7 @@ fn moved_inputs_keep_their_fast_scores() {
     for x in &mut moved.centers {
         *x = motion.apply(*x);
     }
-    let error = worst::<f64>(&moved, &b, 1e-3, Fold::Score);
+    let error = worst::<f64>(&moved, &b, 1e-3, Quantity::Score);
     assert!(error <= 1e-3, "{error:e}");
 }
 
@@ -298,7 +298,7 @@ fn moved_inputs_keep_their_fast_scores() {
 fn nothing_scores_through_the_periodic_image() {
     let (a, b) = (cloud(80, 8.0, &RADII, 11), cloud(60, 9.0, &RADII, 12));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
     let scorer = ExactScorer::new(&plan.kernel, &a, &b).unwrap();
     let mut work = engine.workspace();

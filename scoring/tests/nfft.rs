@@ -2,7 +2,7 @@
 
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft;
-use knotdock_scoring::transform::nonequispaced::{Plan, PlanError, TransformError};
+use knotdock_scoring::transform::nufft::{Plan, PlanError, TransformError};
 use num_complex::{Complex, Complex64};
 use std::f64::consts::PI;
 

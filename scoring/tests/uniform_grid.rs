@@ -4,14 +4,14 @@
 
 mod scene;
 
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };
 use knotdock_scoring::kernel::low_pass::smooth_step_down;
 use knotdock_scoring::kernel::product::{Body, lens_volume};
 use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer};
-use knotdock_scoring::lifted_axis::{Fold, RadiusBasis};
+use knotdock_scoring::lifted_axis::{Quantity, RadiusBasis};
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::{ndft_3d, ndft_4d};
@@ -56,7 +56,7 @@ fn errors<T: Real>(
     position: impl Fn(usize) -> Vector3<f64>,
     scorer: &ProductScorer,
     (a, b): (&Knots, &Knots),
-    fold: Fold,
+    fold: Quantity,
 ) -> (f64, f64) {
     let mut order: Vec<usize> = (0..grid.len()).collect();
     order.sort_by(|&x, &y| grid[y].partial_cmp(&grid[x]).unwrap());
@@ -67,9 +67,9 @@ fn errors<T: Real>(
         let place = middle(a) + position(voxel);
         let exact = scorer.score(&Pose::about(turned().rotation, middle(b), place));
         let value = match fold {
-            Fold::Score => exact.score,
-            Fold::Slice(slice) => exact.slices[slice],
-            Fold::ScoreByOffset | Fold::SliceByOffset(_) => unreachable!("not tried here"),
+            Quantity::Score => exact.score,
+            Quantity::Slice(slice) => exact.slices[slice],
+            Quantity::ScoreByOffset | Quantity::SliceByOffset(_) => unreachable!("not tried here"),
         };
         let error = (value - grid[voxel].wide()).abs();
         squares += error * error;
@@ -80,7 +80,12 @@ fn errors<T: Real>(
     ((squares / count).sqrt() / best, worst / best)
 }
 
-fn uniform<T: Real>(a: &Knots, b: &Knots, options: UniformGridOptions, fold: Fold) -> (f64, f64) {
+fn uniform<T: Real>(
+    a: &Knots,
+    b: &Knots,
+    options: UniformGridOptions,
+    fold: Quantity,
+) -> (f64, f64) {
     let plan = UniformGridPlan::new(a, b, options).unwrap();
     let scorer = ProductScorer::new(&plan.kernel, a, b).unwrap();
     let engine = UniformGrid::<T>::new(plan, a, b, fold);
@@ -95,13 +100,19 @@ fn uniform<T: Real>(a: &Knots, b: &Knots, options: UniformGridOptions, fold: Fol
     )
 }
 
-fn lifted<T: Real>(a: &Knots, b: &Knots, options: EngineOptions, band: Band, fold: Fold) -> f64 {
+fn lifted<T: Real>(
+    a: &Knots,
+    b: &Knots,
+    options: EngineOptions,
+    band: Band,
+    fold: Quantity,
+) -> f64 {
     let plan = Arc::new(Plan::product(a, b, options, band).unwrap());
     let PairKernel::Product(kernel) = &plan.pair else {
         unreachable!("a product plan has a product kernel");
     };
     let scorer = ProductScorer::new(kernel, a, b).unwrap();
-    let folded = Folded::<T>::new(&plan, a, b, fold);
+    let folded = ReceptorSpectra::<T>::new(&plan, a, b, fold);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
@@ -118,7 +129,7 @@ fn smooth_bumps_converge_faster_than_any_power() {
         let mut rows = Vec::new();
         for spacing in [2.0, 1.0, 0.5] {
             let (rms, worst) =
-                uniform::<f64>(&a, &b, grid_options(2.0, band, spacing), Fold::Score);
+                uniform::<f64>(&a, &b, grid_options(2.0, band, spacing), Quantity::Score);
             println!("{band:?}: h = {spacing}: rms {rms:.2e}, worst {worst:.2e}");
             rows.push((spacing, rms));
         }
@@ -141,7 +152,7 @@ fn sharp_balls_converge_to_their_lens_volumes_like_a_power() {
         .into_iter()
         .map(|spacing| {
             let options = grid_options(f64::INFINITY, Band::Whole, spacing);
-            let (rms, worst) = uniform::<f64>(&a, &b, options, Fold::Slice(0));
+            let (rms, worst) = uniform::<f64>(&a, &b, options, Quantity::Slice(0));
             println!("h = {spacing}: rms {rms:.2e}, worst {worst:.2e}");
             (spacing, rms)
         })
@@ -154,7 +165,7 @@ fn sharp_balls_converge_to_their_lens_volumes_like_a_power() {
     let (one, other) = (ball(1.9), ball(1.5));
     let options = grid_options(f64::INFINITY, Band::Whole, 0.1);
     let plan = UniformGridPlan::new(&one, &other, options).unwrap();
-    let engine = UniformGrid::<f64>::new(plan, &one, &other, Fold::Slice(0));
+    let engine = UniformGrid::<f64>::new(plan, &one, &other, Quantity::Slice(0));
     let mut work = engine.workspace();
     engine.correlate(&Pose::identity().rotation, &mut work);
     for voxel in (0..work.grid.len()).step_by(997) {
@@ -169,14 +180,14 @@ fn every_slice_and_single_precision() {
     for (slice, bound) in [(0, 1e-2), (1, 4e-3), (2, 1e-3)] {
         // The larger the balls, the smoother: each growth by r0 = 2 Å brings digits at the same h.
         let options = grid_options(2.0, Band::Whole, 0.6);
-        let (_, worst) = uniform::<f64>(&a, &b, options, Fold::Slice(slice));
+        let (_, worst) = uniform::<f64>(&a, &b, options, Quantity::Slice(slice));
         println!("slice {slice}: {worst:.2e}");
         assert!(worst < bound);
     }
     // Single precision rounds and does nothing else: the sampling error at this h is the same to a thousandth of the best score.
     let options = grid_options(2.0, Band::Whole, 0.6);
-    let (_, double) = uniform::<f64>(&a, &b, options, Fold::Score);
-    let (_, single) = uniform::<f32>(&a, &b, options, Fold::Score);
+    let (_, double) = uniform::<f64>(&a, &b, options, Quantity::Score);
+    let (_, single) = uniform::<f32>(&a, &b, options, Quantity::Score);
     println!("f64 {double:.4e}, f32 {single:.4e}");
     assert!((double - single).abs() < 1e-4);
 }
@@ -188,16 +199,16 @@ fn the_lifted_engine_meets_its_tolerance_with_the_product_kernel() {
     for band in [Band::Whole, Band::LowPass] {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let options = engine_options(None, tolerance);
-            let error = lifted::<f64>(&a, &b, options, band, Fold::Score);
+            let error = lifted::<f64>(&a, &b, options, band, Quantity::Score);
             println!("{band:?} f64 {tolerance:e}: {error:.2e}");
             assert!(error <= tolerance);
         }
-        let error = lifted::<f32>(&a, &b, engine_options(None, 1e-3), band, Fold::Score);
+        let error = lifted::<f32>(&a, &b, engine_options(None, 1e-3), band, Quantity::Score);
         println!("{band:?} f32 1e-3: {error:.2e}");
         assert!(error <= 1e-3);
         for slice in 0..3 {
             let options = engine_options(None, 1e-3);
-            let error = lifted::<f64>(&a, &b, options, band, Fold::Slice(slice));
+            let error = lifted::<f64>(&a, &b, options, band, Quantity::Slice(slice));
             assert!(error <= 1e-3, "{band:?} slice {slice}: {error:e}");
         }
     }
@@ -212,7 +223,7 @@ fn many_radii_go_through_chebyshev_nodes() {
     let plan = Plan::product(&a, &b, options, Band::LowPass).unwrap();
     assert!(matches!(plan.basis, RadiusBasis::Nodes { .. }));
     println!("{:?}, error {:.1e}", plan.basis, plan.axis_error);
-    let error = lifted::<f64>(&a, &b, options, Band::LowPass, Fold::Score);
+    let error = lifted::<f64>(&a, &b, options, Band::LowPass, Quantity::Score);
     assert!(error <= 1e-3, "{error:e}");
 }
 
@@ -239,7 +250,7 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
     let correlate = |a: &Knots| {
         let plan = UniformGridPlan::new(a, &b, grid_options(2.0, Band::Whole, spacing)).unwrap();
         let size = plan.size;
-        let engine = UniformGrid::<f64>::new(plan, a, &b, Fold::Score);
+        let engine = UniformGrid::<f64>::new(plan, a, &b, Quantity::Score);
         let mut work = engine.workspace();
         engine.correlate(&turned().rotation, &mut work);
         (work.grid, size)
@@ -332,11 +343,11 @@ fn modes_equal_the_direct_transforms() {
         };
     let plan = UniformGridPlan::new(&a, &b, grid_options(2.0, Band::LowPass, 0.5)).unwrap();
     let lengths = plan.lengths();
-    let grid = UniformGrid::<f64>::new(plan, &a, &b, Fold::Score);
+    let grid = UniformGrid::<f64>::new(plan, &a, &b, Quantity::Score);
     let mut grid_work = grid.workspace();
     grid.correlate(&turned().rotation, &mut grid_work);
     let plan = Arc::new(Plan::product(&a, &b, engine_options(None, 1e-4), Band::LowPass).unwrap());
-    let folded = Folded::<f64>::new(&plan, &a, &b, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
@@ -388,7 +399,7 @@ fn nothing_wraps() {
     let (a, b) = (cloud(60, 7.0, &RADII, 15), cloud(40, 8.0, &RADII, 16));
     let plan = UniformGridPlan::new(&a, &b, grid_options(2.0, Band::Whole, 1.0)).unwrap();
     let (size, spacing) = (plan.size, plan.options.spacing);
-    let engine = UniformGrid::<f64>::new(plan, &a, &b, Fold::Score);
+    let engine = UniformGrid::<f64>::new(plan, &a, &b, Quantity::Score);
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     let best = work.grid.iter().copied().fold(0.0, f64::max);

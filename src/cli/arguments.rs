@@ -1,6 +1,6 @@
 //! Values of options, checked as they are read.
 
-use knotdock::search::meshes::MOST_PER_AXIS;
+use knotdock::search::meshes::MAX_PER_AXIS;
 
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
@@ -64,7 +64,7 @@ pub fn grid(text: &str) -> Result<usize, String> {
         },
         None => text.parse::<u64>().ok(),
     };
-    let most = (MOST_PER_AXIS as u64).pow(3);
+    let most = (MAX_PER_AXIS as u64).pow(3);
     match nodes.filter(|nodes| (8..=most).contains(nodes)) {
         Some(nodes) => Ok((nodes as f64).cbrt().round() as usize),
         None => Err(format!(

@@ -24,7 +24,7 @@ use super::failure::Failure;
 #[derive(Args, Debug)]
 pub struct Batch {
     /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further columns named as options of
-    /// `knotdock dock` that take a value (native, attract_receptor, rotations ...). Files are looked for from the table's folder.
+    /// `knotdock dock` that take a value (native, active_receptor, rotations ...). Files are looked for from the table's folder.
     #[arg(value_name = "PAIRS.CSV")]
     pairs: PathBuf,
     /// Directory of the batch, in which each pair's run has a directory of its name [default: knotdock_PAIRS].
@@ -198,9 +198,9 @@ fn dock_pair(dock: Dock) -> Result<bool, Failure> {
 fn words(summary: &RunSummary, anew: bool, clock: Instant) -> String {
     let [_, clusters] = summary.counts;
     let mut words = format!(
-        "{} clusters, the best of rank score {}",
+        "{} clusters, the best of pose score {}",
         clusters.unwrap_or(0),
-        rounded(&summary.best["rank_score"], 1).unwrap_or_default()
+        rounded(&summary.best["pose_score"], 1).unwrap_or_default()
     );
     for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
         if let Some(value) = rounded(&summary.best[column], digits) {

@@ -10,7 +10,7 @@ use knotdock::output::manifest::InputEntry;
 use knotdock::output::poses::PoseRow;
 use knotdock::search::meshes::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
 use knotdock::search::{DockOptions, SearchError};
-use knotdock::tradeoff::pair::{Pair, Prepared, Sampling};
+use knotdock::tradeoff::pair::{Pair, PreparedPair, Sampling};
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
@@ -133,7 +133,7 @@ impl Bodies {
         offset: Option<f64>,
         given: GivenLengths,
         console: Console,
-    ) -> Result<Prepared, Failure> {
+    ) -> Result<PreparedPair, Failure> {
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         match self {
             Self::Molecules(inputs) => {
@@ -144,7 +144,7 @@ impl Bodies {
                     .remedy("leave them out: the balls of a molecule are its atoms"));
                 }
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                Prepared::molecules(molecules, options).map_err(|error| match error {
+                PreparedPair::molecules(molecules, options).map_err(|error| match error {
                     SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
                     error => refused(error),
                 })
@@ -166,7 +166,7 @@ impl Bodies {
                     Sampling::of(solids, &sampling).map_err(|error| located(&error, inputs))?;
                 sampling.pair.defaults(options, given);
                 console.say(told(&sampling.pair));
-                Prepared::meshes(Arc::new(sampling), options).map_err(refused)
+                PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
             }
         }
     }

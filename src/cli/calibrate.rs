@@ -72,7 +72,11 @@ impl Calibrate {
                 model.rescore,
                 built_in.rescore,
             ),
-            ("refining, each pose and knot", model.climb, built_in.climb),
+            (
+                "refining, each pose and knot",
+                model.refine,
+                built_in.refine,
+            ),
             (
                 "rotation set, each rotation",
                 model.rotation,

@@ -34,7 +34,7 @@ pub struct Dock {
     ligand: Option<String>,
     /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is itself a ring of 2, 3 ...
     /// copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where the second copy or ring goes. Residues that
-    /// --block-receptor and --attract-receptor name are those of every copy, or of both rings.
+    /// --block-receptor and --active-receptor name are those of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn", conflicts_with_all = NO_RING)]
     symmetry: Option<Symmetry>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
@@ -75,7 +75,7 @@ const NO_RING: [&str; 6] = [
     "accuracy",
     "budget",
     "block_ligand",
-    "attract_ligand",
+    "active_ligand",
 ];
 
 /// What run.json records, so that none of it goes with --from.
@@ -121,12 +121,12 @@ const RECORDED: [&str; 59] = [
     "antibody",
     "block_receptor",
     "block_ligand",
-    "attraction_weight",
+    "active_weight",
     "peptidase_weight",
-    "missing_weight",
-    "chain_end_weight",
-    "attract_receptor",
-    "attract_ligand",
+    "unresolved_weight",
+    "termini_weight",
+    "active_receptor",
+    "active_ligand",
     "ph",
     "per_rotation",
     "poses",

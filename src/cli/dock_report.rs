@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use knotdock::output::report::counted;
 use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect, Loose};
-use knotdock::tradeoff::choice::FEWEST_ROTATIONS;
+use knotdock::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.
@@ -127,10 +127,10 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
 
 /// That a deadline left time for too few rotations.
 pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
-    let few = has_deadline && outcome.searched < FEWEST_ROTATIONS;
+    let few = has_deadline && outcome.searched < MIN_ROTATIONS;
     few.then(|| {
         format!(
-            "the budget left time for {} only, and fewer than {FEWEST_ROTATIONS} find little: allow more time, or leave \
+            "the budget left time for {} only, and fewer than {MIN_ROTATIONS} find little: allow more time, or leave \
              more of the machine to the run",
             counted(outcome.searched, "rotation")
         )
@@ -178,14 +178,14 @@ pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
             parts.push(format!("{ends} of chains that may go on"));
         }
         if !missing.stretches.is_empty() {
-            options.push("--missing-weight 0");
+            options.push("--unresolved-weight 0");
         } else if let Some(last) = parts.last_mut() {
             last.push_str(", which the rest leaves no room");
         }
         if near.residues > 0 {
             let residues = counted(near.residues, "residue");
             parts.push(format!("{residues} near ends of chains or gaps"));
-            options.push("--chain-end-weight 0");
+            options.push("--termini-weight 0");
         }
         let leave = if options.len() > 1 { "leave" } else { "leaves" };
         let pay = match options.join(" and ") {

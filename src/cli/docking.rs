@@ -14,7 +14,7 @@ use knotdock::search::options::Precision;
 use knotdock::search::{self, Deadline, DockOutcome};
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
-use knotdock::tradeoff::pair::{Prepared, Preparer};
+use knotdock::tradeoff::pair::{PreparedPair, Preparer};
 use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
@@ -35,7 +35,7 @@ pub struct Docking {
     /// Whether another run there is replaced.
     force: bool,
     evaluator: Option<Evaluator>,
-    prepared: Prepared,
+    prepared: PreparedPair,
     chosen: Option<Chosen>,
     /// Where the run has a budget.
     deadline: Option<Deadline>,
@@ -141,7 +141,7 @@ impl Docking {
             deadline,
             clock,
         } = self;
-        let Prepared {
+        let PreparedPair {
             plan,
             points,
             sampling,
@@ -247,7 +247,7 @@ fn plan_within(
     (model, source): (&CostModel, &str),
     request: &mut Request,
     console: Console,
-) -> Result<(Prepared, Chosen), Failure> {
+) -> Result<(PreparedPair, Chosen), Failure> {
     let rotations = request.options.dock.rotations;
     // A first plan fills in the lengths of meshes; its rotations are not used.
     request.options.dock.rotations = 4;

@@ -35,8 +35,8 @@ const OF_MOLECULES: [OfMolecules; 15] = [
     of_molecules!("relaxed-weight", relaxed_weight),
     of_molecules!("atom-pair-potential", atom_pair_potential),
     of_molecules!("peptidase-weight", peptidase_weight),
-    of_molecules!("missing-weight", missing_weight),
-    of_molecules!("chain-end-weight", chain_end_weight),
+    of_molecules!("unresolved-weight", unresolved_weight),
+    of_molecules!("termini-weight", termini_weight),
     of_molecules!("restraint-weight", restraint_weight),
     of_molecules!("antibody", antibody),
 ];

@@ -256,8 +256,8 @@ pub fn label(path: &Path, chains: Option<&[String]>) -> String {
         .into_iter()
         .flatten()
         .map(|chain| format!("_{chain}"));
-    let mut label = cut(stem(&name.to_string_lossy()), LONGEST_NAME);
-    label += &cut(&chains.collect::<String>(), LONGEST_CHAINS);
+    let mut label = cut(stem(&name.to_string_lossy()), MAX_NAME_LENGTH);
+    label += &cut(&chains.collect::<String>(), MAX_CHAINS_LENGTH);
     label
         .chars()
         .map(|c| {
@@ -271,8 +271,8 @@ pub fn label(path: &Path, chains: Option<&[String]>) -> String {
 }
 
 /// Most bytes of a file's part of a directory's name, and of its chains'.
-const LONGEST_NAME: usize = 80;
-const LONGEST_CHAINS: usize = 30;
+const MAX_NAME_LENGTH: usize = 80;
+const MAX_CHAINS_LENGTH: usize = 30;
 
 /// A file's name without the endings of structure and mesh files.
 fn stem(name: &str) -> &str {

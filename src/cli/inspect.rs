@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
 use knotdock::search::DockOptions;
-use knotdock::search::attracted::sites_told;
+use knotdock::search::active_residues::sites_told;
 use knotdock::search::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{

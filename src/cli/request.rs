@@ -8,7 +8,7 @@ use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 use knotdock::search::meshes::GivenLengths;
-use knotdock::tradeoff::pair::{Prepared, Sampling};
+use knotdock::tradeoff::pair::{PreparedPair, Sampling};
 
 use super::bodies::Bodies;
 use super::console::Console;
@@ -63,7 +63,7 @@ impl Request {
     }
 
     /// Plans the run; of meshes, options that follow from them are filled in.
-    pub fn plan(&mut self, console: Console) -> Result<Prepared, Failure> {
+    pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Failure> {
         let (offset, given) = (self.offset, self.given);
         self.bodies
             .plan(&mut self.options.dock, offset, given, console)

@@ -83,7 +83,7 @@ impl Score {
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
         let rescorer = scene.rescorer(&dock);
         let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
-        let rank_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
+        let pose_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
         console.say(format!("\n{}", told(&scored)));
         for text in loose_told(&["receptor", "ligand"], &scene.loose) {
             console.say(text);
@@ -104,7 +104,7 @@ impl Score {
                 .iter()
                 .filter_map(|(name, value)| Some(format!("{name} {:.3}", (*value)?)));
             console.say(format!(
-                "{}: `dock` ranks this pose of a pair by {rank_score:.3}",
+                "{}: `dock` ranks this pose of a pair by {pose_score:.3}",
                 told.collect::<Vec<_>>().join(", ")
             ));
         }
@@ -149,7 +149,7 @@ impl Score {
             ] {
                 object.insert(name.to_owned(), serde_json::json!(value));
             }
-            object.insert("rank_score".to_owned(), serde_json::json!(rank_score));
+            object.insert("pose_score".to_owned(), serde_json::json!(pose_score));
         }
         console.result(&object)?;
         Ok(())

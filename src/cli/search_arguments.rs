@@ -9,7 +9,7 @@ use knotdock::search::options::{
 };
 use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
-use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_scoring::symmetry::Symmetry;
 
 use knotdock_structures::molecule::ResidueSelection;
@@ -141,25 +141,25 @@ pub struct KernelArguments {
     block_ligand: Option<ResidueSelection>,
     /// What a pose earns in which all attracted residues touch, else the share of them that does: score. In the search each contact of theirs earns a
     /// 250th, divided by their number.
-    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().attraction_weight, help_heading = SCORE)]
-    attraction_weight: f64,
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().active_weight, help_heading = SCORE)]
+    active_weight: f64,
     /// Residues of the receptor thought to be in contact, likewise: poses that touch them rank higher.
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
-    attract_receptor: Option<ResidueSelection>,
+    active_receptor: Option<ResidueSelection>,
     /// Residues of the ligand thought to be in contact, likewise.
     #[arg(long, value_name = "RESIDUES", help_heading = SCORE)]
-    attract_ligand: Option<ResidueSelection>,
+    active_ligand: Option<ResidueSelection>,
     /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues that does: score. Peptidases are told by their
     /// sequence, and this counts where the contact effect is on, no residue is attracted and the other is neither peptidase nor antibody; 0 for none.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().peptidase_weight, help_heading = SCORE)]
     peptidase_weight: f64,
     /// What an atom costs that lies where residues missing from the other side's file are, in gaps of a chain or past its ends, times how likely they are there:
     /// score; 0 for nothing.
-    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().missing_weight, help_heading = SCORE)]
-    missing_weight: f64,
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().unresolved_weight, help_heading = SCORE)]
+    unresolved_weight: f64,
     /// What an atom near an end of its chain, or near a gap in it, costs that touches the other side: score; 0 for nothing.
-    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().chain_end_weight, help_heading = SCORE)]
-    chain_end_weight: f64,
+    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().termini_weight, help_heading = SCORE)]
+    termini_weight: f64,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph, help_heading = SCORE)]
     ph: f64,
@@ -232,7 +232,7 @@ impl KernelArguments {
                 self.fine_contact_potential.as_deref(),
                 "fine-contact-potential",
                 "contact_potential.py --fine",
-                FinePotential::parse,
+                DistanceBinnedPotential::parse,
             )?,
             atom_pair_weight: self.atom_pair_weight,
             relaxed_weight: self.relaxed_weight,
@@ -257,12 +257,12 @@ impl KernelArguments {
             antibody: self.antibody,
             block_receptor: self.block_receptor.clone(),
             block_ligand: self.block_ligand.clone(),
-            attraction_weight: self.attraction_weight,
+            active_weight: self.active_weight,
             peptidase_weight: self.peptidase_weight,
-            missing_weight: self.missing_weight,
-            chain_end_weight: self.chain_end_weight,
-            attract_receptor: self.attract_receptor.clone(),
-            attract_ligand: self.attract_ligand.clone(),
+            unresolved_weight: self.unresolved_weight,
+            termini_weight: self.termini_weight,
+            active_receptor: self.active_receptor.clone(),
+            active_ligand: self.active_ligand.clone(),
             ph: self.ph,
             ..default
         })
@@ -308,7 +308,7 @@ impl SearchArguments {
             }),
             symmetry: Some(symmetry),
             block_ligand: options.block_receptor.clone(),
-            attract_ligand: options.attract_receptor.clone(),
+            active_ligand: options.active_receptor.clone(),
             ..options
         })
     }

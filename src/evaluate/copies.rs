@@ -16,7 +16,7 @@ use super::placements::{Placement, WORST_FIT};
 use super::residues::Residues;
 
 /// Share of what the best combination matches, of either side, that another must match.
-const LEAST_OF_BEST: f64 = 0.8;
+const MIN_OF_BEST: f64 = 0.8;
 /// Complexes are alike when their ligands differ by at most this shift in Å and this angle in radians (20 degrees).
 const ALIKE: (f64, f64) = (4.0, std::f64::consts::PI / 9.0);
 
@@ -33,13 +33,13 @@ pub(super) struct Combination {
 
 /// One side: the user's molecule, the native's residues and the ways in which the first lies on the second.
 #[derive(Clone, Copy)]
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedCopy<'a> {
     pub user: &'a Residues,
     pub native: &'a Residues,
     pub placements: &'a [Placement],
 }
 
-impl Placed<'_> {
+impl PlacedCopy<'_> {
     /// Equal residues of a placement in chains of equal names.
     fn same_named(&self, placement: usize) -> usize {
         let is_same = |chain: &&ChainPair| {
@@ -63,8 +63,8 @@ pub(super) enum Uncombined {
 ///
 /// `disjoint` where both sides are placed on one native, of which no residue can belong to both.
 pub(super) fn combinations(
-    receptor: Placed,
-    ligand: Placed,
+    receptor: PlacedCopy,
+    ligand: PlacedCopy,
     disjoint: bool,
 ) -> Result<Vec<Combination>, Uncombined> {
     let mut counts = ContactCounts::new(receptor.native, ligand.native);
@@ -136,7 +136,11 @@ pub(super) fn combinations(
 }
 
 /// Those that match of both sides nearly as much as the best, and of these the ones that fit, if any does.
-fn nearly_complete(receptor: Placed, ligand: Placed, all: Vec<Combination>) -> Vec<Combination> {
+fn nearly_complete(
+    receptor: PlacedCopy,
+    ligand: PlacedCopy,
+    all: Vec<Combination>,
+) -> Vec<Combination> {
     let matched = |one: &Combination| {
         [
             receptor.placements[one.receptor].matched() as f64,
@@ -151,7 +155,7 @@ fn nearly_complete(receptor: Placed, ligand: Placed, all: Vec<Combination>) -> V
         (matched[0] / most[0]).min(matched[1] / most[1])
     };
     let best = all.iter().map(share).fold(0.0, f64::max);
-    let complete = |one: &Combination| share(one) >= LEAST_OF_BEST * best;
+    let complete = |one: &Combination| share(one) >= MIN_OF_BEST * best;
     let fits = |placement: &Placement| placement.rmsd <= WORST_FIT && placement.displaced.is_none();
     let fit = |one: &Combination| {
         fits(&receptor.placements[one.receptor]) && fits(&ligand.placements[one.ligand])

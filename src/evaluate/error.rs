@@ -50,7 +50,7 @@ pub enum EvaluateError {
         "the docked {side} does not fit the native: its backbone lies {rmsd:.1} Å RMSD from the native's; at most \
          {WORST_FIT:.0} Å mean anything"
     )]
-    Misfit {
+    Superposition {
         /// "receptor" or "ligand".
         side: &'static str,
         /// Backbone RMSD after superposing, in Å.
@@ -127,7 +127,7 @@ impl EvaluateError {
                 "name the native's chains that belong together, as in --native FILE:A,B,C; or dock the chain apart, if it moves \
                  when the complex forms"
             }
-            Self::Misfit { .. } => {
+            Self::Superposition { .. } => {
                 "check that the native is of the same proteins, and name its chains, as in --native FILE:A,B; a molecule that \
                  changes its shape that much is not docked as a rigid body"
             }

@@ -23,14 +23,14 @@ pub(super) struct ChainPair {
 }
 
 /// Chains are one another's when at least this share of the shorter is equal.
-const LEAST_IDENTITY: f64 = 0.5;
+const MIN_IDENTITY: f64 = 0.5;
 /// Chains are copies of one another when this share of the shorter is equal: room for a few mutations and unlike ends.
 const IDENTICAL: f64 = 0.9;
 
 impl ChainPair {
     /// Whether the sequences allow that the two are the same chain.
     pub fn is_alike(&self) -> bool {
-        self.shares(LEAST_IDENTITY)
+        self.shares(MIN_IDENTITY)
     }
 
     /// Whether the two are copies of one chain.

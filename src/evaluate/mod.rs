@@ -68,9 +68,9 @@ use residues::Residues;
 use rmsd::{RmsdForms, Side, ligand_is_smaller};
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
-const LEAST_INTERFACE_SHARE: f64 = 0.5;
+const MIN_INTERFACE_SHARE: f64 = 0.5;
 /// Fewest backbone atoms that fix a superposition.
-const LEAST_ATOMS: usize = 3;
+const MIN_ATOMS: usize = 3;
 
 /// How near a pose is to the native. All numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -239,21 +239,21 @@ fn arrange(
         ("receptor", &receptor_match, receptor_atoms),
         ("ligand", &ligand_match, ligand_atoms),
     ] {
-        if found.interface_share() < LEAST_INTERFACE_SHARE {
+        if found.interface_share() < MIN_INTERFACE_SHARE {
             return Err(EvaluateError::Interface {
                 side,
                 matched: found.interface_matched,
                 interface: found.interface_residues,
             });
         }
-        if atoms < LEAST_ATOMS {
+        if atoms < MIN_ATOMS {
             return Err(EvaluateError::Backbone { side, atoms });
         }
         check_docked_share(side, found.matched, found.residues)?;
     }
     // Each side may have half of the interface and yet no place of it be matched on both.
     let across_atoms = rmsds.interface_atoms();
-    if across_atoms.contains(&0) || across_atoms.iter().sum::<usize>() < LEAST_ATOMS {
+    if across_atoms.contains(&0) || across_atoms.iter().sum::<usize>() < MIN_ATOMS {
         return Err(EvaluateError::Across {
             atoms: across_atoms,
         });
@@ -293,7 +293,7 @@ fn check_fit(side: &'static str, placement: &Placement) -> Result<(), EvaluateEr
         });
     }
     if placement.rmsd > WORST_FIT {
-        return Err(EvaluateError::Misfit {
+        return Err(EvaluateError::Superposition {
             side,
             rmsd: placement.rmsd,
         });

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
-use super::copies::{Combination, Placed, Uncombined, combinations};
+use super::copies::{Combination, PlacedCopy, Uncombined, combinations};
 use super::placements::{Placement, placements};
 use super::report::NativeComplex;
 use super::residues::Residues;
@@ -27,10 +27,10 @@ pub enum Native<'a> {
 }
 
 /// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part in it.
-const LEAST_DOCKED_SHARE: f64 = 0.25;
+const MIN_DOCKED_SHARE: f64 = 0.25;
 const ENOUGH_RESIDUES: usize = 50;
 /// Share of what the first way matches that another must match: paralogues would pass for each other.
-const LEAST_OF_FIRST: f64 = 0.9;
+const MIN_OF_FIRST: f64 = 0.9;
 /// Most placements kept of one side, the best-fitting ones: enough for every turn of an octahedral 24-mer.
 const MOST: usize = 24;
 
@@ -172,8 +172,12 @@ fn of_complex(
     Ok(found)
 }
 
-fn side<'a>(user: &'a Residues, native: &'a Residues, placements: &'a [Placement]) -> Placed<'a> {
-    Placed {
+fn side<'a>(
+    user: &'a Residues,
+    native: &'a Residues,
+    placements: &'a [Placement],
+) -> PlacedCopy<'a> {
+    PlacedCopy {
         user,
         native,
         placements,
@@ -202,7 +206,7 @@ pub(super) fn check_docked_share(
     matched: usize,
     residues: usize,
 ) -> Result<(), EvaluateError> {
-    if matched < ENOUGH_RESIDUES && (matched as f64) < LEAST_DOCKED_SHARE * residues as f64 {
+    if matched < ENOUGH_RESIDUES && (matched as f64) < MIN_DOCKED_SHARE * residues as f64 {
         return Err(EvaluateError::DockedShare {
             side,
             matched,
@@ -214,16 +218,20 @@ pub(super) fn check_docked_share(
 
 /// The first of the combinations and those that match nearly as much, in the order given; of each side at most [`MOST`]
 /// placements, those that fit best.
-fn alternatives(receptor: Placed, ligand: Placed, mut all: Vec<Combination>) -> Vec<Combination> {
+fn alternatives(
+    receptor: PlacedCopy,
+    ligand: PlacedCopy,
+    mut all: Vec<Combination>,
+) -> Vec<Combination> {
     let matched = |one: &Combination| {
         receptor.placements[one.receptor].matched() + ligand.placements[one.ligand].matched()
     };
     let Some(first) = all.first().copied() else {
         return all;
     };
-    let least = LEAST_OF_FIRST * matched(&first) as f64;
+    let least = MIN_OF_FIRST * matched(&first) as f64;
     all.retain(|one| matched(one) as f64 >= least);
-    let best = |side: Placed, taken: usize, of: &dyn Fn(&Combination) -> usize| -> Vec<usize> {
+    let best = |side: PlacedCopy, taken: usize, of: &dyn Fn(&Combination) -> usize| -> Vec<usize> {
         let mut placements: Vec<usize> = all.iter().map(of).filter(|&one| one != taken).collect();
         placements.sort_unstable();
         placements.dedup();
@@ -243,10 +251,10 @@ fn alternatives(receptor: Placed, ligand: Placed, mut all: Vec<Combination>) -> 
 }
 
 /// The complexes among the combinations, by the names of their chains, in the order given.
-fn complexes(receptor: Placed, ligand: Placed, all: &[Combination]) -> Vec<NativeComplex> {
+fn complexes(receptor: PlacedCopy, ligand: PlacedCopy, all: &[Combination]) -> Vec<NativeComplex> {
     let mut found: Vec<NativeComplex> = Vec::new();
     for one in all {
-        let names = |side: Placed, placement: usize| -> Vec<String> {
+        let names = |side: PlacedCopy, placement: usize| -> Vec<String> {
             let segments = side.placements[placement].native_segments();
             let names = segments
                 .into_iter()

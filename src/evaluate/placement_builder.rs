@@ -7,22 +7,22 @@ use super::matching::{ChainPair, align_members};
 use super::placements::{Displaced, Placement, WORST_FIT};
 use super::residues::Residues;
 use super::rmsd::backbone_pairs;
-use super::superposition::{Misfit, PointPair};
+use super::superposition::{PointPair, Superposition};
 
 /// Equal residues that a chain has by no chance.
 const DISTINCTIVE: usize = 20;
 /// Fewer are distinctive too, from the first number on, where the share of equal residues is at least the second.
 const DISTINCTIVE_PEPTIDE: (usize, f64) = (8, 0.9);
 /// What is left of two merged chains must have so many equal residues: fewer pair by chance.
-const LEAST_OF_TWO_REMAINDERS: usize = 8;
+const MIN_OF_TWO_REMAINDERS: usize = 8;
 /// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other chain is
 /// a copy of what was matched already.
-const LEAST_OF_WHOLE: f64 = 0.9;
+const MIN_OF_WHOLE: f64 = 0.9;
 
 /// Two chains of like sequence and their superposition.
 pub(super) struct Candidate {
     pub pair: ChainPair,
-    pub misfit: Misfit,
+    pub misfit: Superposition,
 }
 
 /// Farthest, in Å RMSD, that so many residues may be from where the rest of the side has them.
@@ -97,7 +97,7 @@ impl<'a> Builder<'a> {
         theirs[pair.native].retain(|j| natives.binary_search(j).is_err());
         let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
         self.points.extend(added);
-        let misfit = Misfit::new(&self.points);
+        let misfit = Superposition::new(&self.points);
         self.motion = misfit.best;
         self.rmsd = misfit.rmsd(&misfit.best);
         self.chains.push(pair);
@@ -171,11 +171,11 @@ impl<'a> Builder<'a> {
         let pair = align_members(self.user, self.native, (user, ours), (native, theirs));
         let equal = pair.pairs.len();
         let reach = if whole == (false, false) {
-            (equal >= LEAST_OF_TWO_REMAINDERS).then_some(REACH_OF_REMAINDERS)
+            (equal >= MIN_OF_TWO_REMAINDERS).then_some(REACH_OF_REMAINDERS)
         } else {
             Some(reach(equal))
         }?;
-        let misfit = Misfit::new(&backbone_pairs(
+        let misfit = Superposition::new(&backbone_pairs(
             self.user,
             self.native,
             pair.pairs.iter().copied(),
@@ -225,12 +225,12 @@ impl<'a> Builder<'a> {
                 } else {
                     align_members(self.user, self.native, (user, &ours), (native, theirs))
                 };
-                let of_whole = LEAST_OF_WHOLE * candidate.pair.pairs.len() as f64;
+                let of_whole = MIN_OF_WHOLE * candidate.pair.pairs.len() as f64;
                 if !is_distinctive(&pair) || (pair.pairs.len() as f64) < of_whole {
                     continue;
                 }
                 let points = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
-                let distance = Misfit::new(&points).rmsd(&self.motion);
+                let distance = Superposition::new(&points).rmsd(&self.motion);
                 if nearest.as_ref().is_none_or(|(other, _)| distance < *other) {
                     nearest = Some((distance, pair));
                 }
@@ -240,7 +240,7 @@ impl<'a> Builder<'a> {
             };
             let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
             let points = [self.points.as_slice(), &added].concat();
-            let all = Misfit::new(&points);
+            let all = Superposition::new(&points);
             if all.rmsd(&all.best) <= WORST_FIT {
                 self.take(pair);
             } else if pair.pairs.len() >= DISTINCTIVE {

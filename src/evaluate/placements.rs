@@ -15,16 +15,16 @@ use super::matching::{ChainPair, align_all};
 use super::placement_builder::{Builder, Candidate};
 use super::residues::Residues;
 use super::rmsd::backbone_pairs;
-use super::superposition::Misfit;
+use super::superposition::Superposition;
 
 /// A side whose backbone is farther than this from the native's, in Å RMSD, does not fit it.
 pub(super) const WORST_FIT: f64 = 15.0;
 /// Pairs with less than this share of the largest's residues begin no placement.
-const LEAST_SEED: f64 = 0.2;
+const MIN_SEED: f64 = 0.2;
 /// Most placements that are made: more than a capsid has chains.
-const MOST_PLACEMENTS: usize = 256;
+const MAX_PLACEMENTS: usize = 256;
 /// Pairs of fewer residues lie together by chance, where there are longer ones.
-const LEAST_PAIRS: usize = 3;
+const MIN_PAIRS: usize = 3;
 
 /// One way in which a side lies on the native.
 #[derive(Clone, Debug)]
@@ -95,19 +95,20 @@ pub(super) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
         .map(|pair| pair.pairs.len())
         .max()
         .unwrap_or_default();
-    let least = LEAST_PAIRS.min(largest);
+    let least = MIN_PAIRS.min(largest);
     let candidates: Vec<Candidate> = alike
         .into_iter()
         .filter(|pair| pair.pairs.len() >= least)
         .map(|pair| {
-            let misfit = Misfit::new(&backbone_pairs(user, native, pair.pairs.iter().copied()));
+            let misfit =
+                Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()));
             Candidate { pair, misfit }
         })
         .collect();
     let size = |candidate: &Candidate| candidate.pair.pairs.len();
     let mut seeds: Vec<&Candidate> = candidates
         .iter()
-        .filter(|seed| size(seed) as f64 >= LEAST_SEED * largest as f64)
+        .filter(|seed| size(seed) as f64 >= MIN_SEED * largest as f64)
         .collect();
     seeds.sort_by_key(|seed| std::cmp::Reverse(size(seed)));
     let mut found: Vec<Placement> = Vec::new();
@@ -116,7 +117,7 @@ pub(super) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
         if found.iter().any(|known| known.chains.contains(&seed.pair)) {
             continue;
         }
-        if made == MOST_PLACEMENTS {
+        if made == MAX_PLACEMENTS {
             break;
         }
         made += 1;

@@ -6,7 +6,7 @@ use knotdock_scoring::se3::Pose;
 
 use super::contacts::AcrossPair;
 use super::residues::Residues;
-use super::superposition::{Misfit, PointPair};
+use super::superposition::{PointPair, Superposition};
 
 /// The backbone atoms that both residues of a pair have, for each (user's, native's) pair of residues.
 pub(super) fn backbone_pairs(
@@ -34,13 +34,13 @@ pub(super) struct Side<'a> {
 }
 
 impl Side<'_> {
-    fn misfit(&self, keep: impl Fn(usize) -> bool) -> Misfit {
+    fn misfit(&self, keep: impl Fn(usize) -> bool) -> Superposition {
         let pairs = self
             .pairs
             .iter()
             .copied()
             .filter(|&(_, native)| keep(native));
-        Misfit::new(&backbone_pairs(self.user, self.native, pairs))
+        Superposition::new(&backbone_pairs(self.user, self.native, pairs))
     }
 }
 
@@ -56,10 +56,10 @@ pub(super) struct Rmsds {
 /// What the RMSDs of any pose are computed from.
 #[derive(Clone, Debug)]
 pub(super) struct RmsdForms {
-    receptor: Misfit,
-    ligand: Misfit,
-    receptor_interface: Misfit,
-    ligand_interface: Misfit,
+    receptor: Superposition,
+    ligand: Superposition,
+    receptor_interface: Superposition,
+    ligand_interface: Superposition,
     ligand_is_smaller: bool,
 }
 

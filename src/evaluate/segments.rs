@@ -22,10 +22,10 @@ use super::residues::{LINKING_OXYGEN, Number, PHOSPHATE_BOND, PHOSPHORUS, Residu
 /// Smallest step in residue numbers that begins a new segment.
 const LEAP: i64 = 100;
 /// Only if this many residues stand on both sides of it: shorter pieces stay with their chain.
-const LEAST_PIECE: usize = 20;
+const MIN_PIECE: usize = 20;
 
 /// Fewest residues of a chain that does not begin with a number that comes again.
-const LEAST_CHAIN: usize = 3;
+const MIN_CHAIN: usize = 3;
 
 /// Where more than this share of consecutive residues is not bonded, bonds say nothing of chains: a crude model.
 const BROKEN: f64 = 0.05;
@@ -42,7 +42,7 @@ const SPANS: [f64; 2] = [3.8, 7.5];
 const UNCOUNTED: f64 = 12.0;
 
 /// Longest gap in residues and in Å that a TER record may stand in without ending the chain.
-const LONGEST_GAP: (i64, f64) = (60, 40.0);
+const MAX_GAP_LENGTH: (i64, f64) = (60, 40.0);
 
 /// Places of CA, C, N and O5' among the backbone atoms.
 const ALPHA_CARBON: usize = 0;
@@ -124,7 +124,7 @@ fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) 
     match link {
         Link::Apart(..) if step == 1 && (bonds || is_ended) => true,
         Link::Apart(distance, span) => {
-            let (residues, longest) = LONGEST_GAP;
+            let (residues, longest) = MAX_GAP_LENGTH;
             distance > f64::max(span * step as f64, UNCOUNTED)
                 || (is_ended && (step > residues || distance > longest))
         }
@@ -144,8 +144,8 @@ pub(super) fn segments(residues: Vec<Residue>, ends: &[usize]) -> Vec<Vec<Residu
             piece.last().is_none_or(|before| {
                 let step = residue.number.0.saturating_sub(before.number.0);
                 (seen.contains(&residue.number) && link(before, &residue) != Link::Bonded)
-                    || (step >= LEAP && piece.len().min(left) >= LEAST_PIECE)
-                    || (piece.len().min(left) >= LEAST_CHAIN
+                    || (step >= LEAP && piece.len().min(left) >= MIN_PIECE)
+                    || (piece.len().min(left) >= MIN_CHAIN
                         && begins_chain(before, &residue, ends, bonds))
             })
         });

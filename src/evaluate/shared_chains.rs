@@ -8,13 +8,13 @@ use super::alignment::align;
 use super::residues::{Residue, Residues};
 
 /// Fewest residues of a chain that counts.
-const LEAST_RESIDUES: usize = 5;
+const MIN_RESIDUES: usize = 5;
 
 /// Fewest kinds of residues of such a chain: what has fewer is like any other of its kind.
-const LEAST_KINDS: usize = 3;
+const MIN_KINDS: usize = 3;
 
 /// Least share of the residues of the longer chain that are equal in two copies of one chain, which may lack loops.
-const LEAST_EQUAL: f64 = 0.8;
+const MIN_EQUAL: f64 = 0.8;
 
 /// The chains of one molecule that the other holds, and the other's further chains.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
     let one = Residues::of(one, "molecule").ok()?;
     let other = Residues::of(other, "molecule").ok()?;
     let chains = |residues: &Residues| -> Vec<usize> {
-        let long = |&place: &usize| residues.segments[place].members.len() >= LEAST_RESIDUES;
+        let long = |&place: &usize| residues.segments[place].members.len() >= MIN_RESIDUES;
         (0..residues.segments.len()).filter(long).collect()
     };
     let mut free = chains(&other);
@@ -78,9 +78,9 @@ fn members(residues: &Residues, segment: usize) -> Vec<&Residue> {
 
 /// Equal residues of two chains of one sequence, loops that one of them lacks aside; 0 of other chains.
 fn equal_residues(one: &[&Residue], other: &[&Residue]) -> usize {
-    let least = LEAST_EQUAL * one.len().max(other.len()) as f64;
+    let least = MIN_EQUAL * one.len().max(other.len()) as f64;
     let kinds: HashSet<&str> = one.iter().map(|residue| residue.kind.as_str()).collect();
-    if kinds.len() < LEAST_KINDS || (one.len().min(other.len()) as f64) < least {
+    if kinds.len() < MIN_KINDS || (one.len().min(other.len()) as f64) < least {
         return 0;
     }
     let equal = align(one, other).pairs.len();

@@ -22,7 +22,7 @@ pub(super) type PointPair = (Point3<f64>, Point3<f64>);
 
 /// The sum of squared distances of a set of point pairs as a function of the motion of the first points.
 #[derive(Clone, Debug)]
-pub(super) struct Misfit {
+pub(super) struct Superposition {
     /// Number n of pairs.
     pub count: f64,
     /// The motion with the least misfit.
@@ -40,7 +40,7 @@ pub(super) struct Misfit {
     residual: f64,
 }
 
-impl Misfit {
+impl Superposition {
     /// The form of these pairs; without any pair it is zero for every motion.
     pub fn new(pairs: &[PointPair]) -> Self {
         let count = pairs.len() as f64;
@@ -179,13 +179,13 @@ mod tests {
     proptest! {
         #[test]
         fn form_equals_the_direct_sum(pairs in pairs(1..30), motion in pose()) {
-            let (form, sum) = (Misfit::new(&pairs).at(&motion), directly(&pairs, &motion));
+            let (form, sum) = (Superposition::new(&pairs).at(&motion), directly(&pairs, &motion));
             prop_assert!((form - sum).abs() <= 1e-9 * (1.0 + sum), "{form} against {sum}");
         }
 
         #[test]
         fn no_motion_beats_the_best(pairs in pairs(3..30), other in pose(), step in 1e-3..0.5f64) {
-            let form = Misfit::new(&pairs);
+            let form = Superposition::new(&pairs);
             let small = Pose {
                 rotation: UnitQuaternion::identity().slerp(&other.rotation, step),
                 translation: other.translation * step,
@@ -202,8 +202,8 @@ mod tests {
             let all: Vec<_> = a.iter().copied()
                 .chain(b.iter().map(|(x, y)| (Point3::from(pose.apply((*x).into())), *y)))
                 .collect();
-            let whole = Misfit::new(&all);
-            let (motion, rmsd) = Misfit::new(&a).superpose_with(&Misfit::new(&b), &pose);
+            let whole = Superposition::new(&all);
+            let (motion, rmsd) = Superposition::new(&a).superpose_with(&Superposition::new(&b), &pose);
             prop_assert!((rmsd - whole.rmsd(&whole.best)).abs() < 1e-8);
             prop_assert!((rmsd - (directly(&all, &motion) / all.len() as f64).sqrt()).abs() < 1e-8);
         }
@@ -219,7 +219,7 @@ mod tests {
                 (x, x)
             })
             .collect();
-        let form = Misfit::new(&pairs);
+        let form = Superposition::new(&pairs);
         assert!(form.rmsd(&Pose::identity()) < 1e-9);
         assert!(form.rmsd(&form.best) < 1e-9);
     }
@@ -237,7 +237,7 @@ mod tests {
             .iter()
             .map(|&c| (Point3::from(c), Point3::new(-c[0], c[1], c[2])))
             .collect();
-        let form = Misfit::new(&mirrored);
+        let form = Superposition::new(&mirrored);
         let rotation = form.best.rotation.to_rotation_matrix();
         assert!((rotation.matrix().determinant() - 1.0).abs() < 1e-12);
         assert!(form.rmsd(&form.best) > 0.1);
@@ -245,7 +245,7 @@ mod tests {
             .iter()
             .map(|&c| (Point3::from(c), Point3::new(c[1] + 5.0, c[0], c[2])))
             .collect();
-        let form = Misfit::new(&flat);
+        let form = Superposition::new(&flat);
         assert!(form.rmsd(&form.best) < 1e-7);
     }
 }

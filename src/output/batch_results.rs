@@ -18,7 +18,7 @@ pub const RESULTS: &str = "results.csv";
 /// What is copied of the first row of a pair's poses.csv, where it has the column.
 const BEST: [&str; 9] = [
     "score",
-    "rank_score",
+    "pose_score",
     "z_score",
     "cluster_size",
     "irmsd",
@@ -178,7 +178,7 @@ mod tests {
         let rows = |classes: [&str; 3]| {
             let [first, second, third] = classes;
             format!(
-                "rank,qw,qx,qy,qz,tx,ty,tz,score,rank_score,capri\n1,1,0,0,0,0,0,0,4.5,0.0000001,{first}\n\
+                "rank,qw,qx,qy,qz,tx,ty,tz,score,pose_score,capri\n1,1,0,0,0,0,0,0,4.5,0.0000001,{first}\n\
                  2,1,0,0,0,0,0,0,4,5,{second}\n3,1,0,0,0,0,0,0,3,4,{third}\n"
             )
         };
@@ -192,7 +192,7 @@ mod tests {
         let summary = RunSummary::of(run).unwrap();
         assert_eq!(summary.counts, [Some(9), Some(3)]);
         assert_eq!(
-            ["score", "rank_score", "dockq", "capri", "nothing"].map(|name| summary.best(name)),
+            ["score", "pose_score", "dockq", "capri", "nothing"].map(|name| summary.best(name)),
             ["4.5", "0.0000001", "", "incorrect", ""]
         );
         assert_eq!(summary.first_acceptable, Some(2));

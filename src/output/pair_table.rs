@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn columns_are_found_by_name_and_the_rest_are_options() {
         let rows = read(
-            "ligand, receptor,attract_ligand,name,rotations\n# of March\n\n\"b.cif:A,B\",a.pdb,,first,\nd.pdb,c.pdb,A:5,,120\n",
+            "ligand, receptor,active_ligand,name,rotations\n# of March\n\n\"b.cif:A,B\",a.pdb,,first,\nd.pdb,c.pdb,A:5,,120\n",
         )
         .unwrap();
         let option = |name: &str, value: &str| (name.to_owned(), value.to_owned());
@@ -216,19 +216,19 @@ mod tests {
         assert_eq!((rows[0].name.as_str(), rows[0].line), ("first", 4));
         assert!(rows[0].options.is_empty());
         assert_eq!(rows[1].name, "");
-        let expected = [option("attract_ligand", "A:5"), option("rotations", "120")];
+        let expected = [option("active_ligand", "A:5"), option("rotations", "120")];
         assert_eq!(rows[1].options, expected);
     }
 
     /// Found with tables that spreadsheets had saved: `no column receptor` was all that was said.
     #[test]
     fn tables_of_spreadsheets_are_read() {
-        let plain = read("receptor,ligand,attract_ligand\n\"a.pdb:H,L\",b.pdb,A:5\n").unwrap();
+        let plain = read("receptor,ligand,active_ligand\n\"a.pdb:H,L\",b.pdb,A:5\n").unwrap();
         for text in [
-            "receptor;ligand;attract_ligand\na.pdb:H,L;b.pdb;A:5\n",
+            "receptor;ligand;active_ligand\na.pdb:H,L;b.pdb;A:5\n",
             "receptor\tligand\tattract_ligand\r\na.pdb:H,L\tb.pdb\tA:5\r\n",
             "\u{feff}Receptor,LIGAND,Attract ligand\n\"a.pdb:H,L\",b.pdb,A:5\n",
-            "\u{feff}\"Receptor\";\"Ligand\";\"attract-ligand\"\n\"a.pdb:H,L\";b.pdb;A:5\n",
+            "\u{feff}\"Receptor\";\"Ligand\";\"active-ligand\"\n\"a.pdb:H,L\";b.pdb;A:5\n",
         ] {
             assert_eq!(read(text).unwrap(), plain, "{text:?}");
         }

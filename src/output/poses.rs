@@ -40,7 +40,7 @@ pub const COLUMNS: [&str; 32] = [
     "contact",
     "cluster_score",
     "fine_contact",
-    "rank_score",
+    "pose_score",
     "z_score",
     "atom_pair",
     "relaxed",
@@ -103,7 +103,7 @@ fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
         term(Effect::Contact),
         row.cluster_score.map_or(String::new(), number),
         row.fine_contact.map_or(String::new(), number),
-        number(row.rank_score),
+        number(row.pose_score),
         row.z_score.map_or(String::new(), number),
         row.atom_pair.map_or(String::new(), number),
         row.relaxed.map_or(String::new(), number),
@@ -252,7 +252,7 @@ mod tests {
             missing: None,
             chain_ends: None,
             other_copies: None,
-            rank_score: 1.0 / 3.0,
+            pose_score: 1.0 / 3.0,
             z_score: Some(2.5),
         }
     }
@@ -270,7 +270,7 @@ mod tests {
             text(&table),
             "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
              shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
-             fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends\n\
+             fine_contact,pose_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends\n\
              1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
              1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,,,\n"
         );

@@ -7,7 +7,7 @@ use super::poses::Column;
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, score of the cluster where it has one, by which they are ordered, then of its best pose rank score and z-score, size of the
+/// The best clusters as a table: rank, score of the cluster where it has one, by which they are ordered, then of its best pose pose score and z-score, size of the
 /// cluster, and whatever columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
@@ -15,7 +15,7 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
     let clustered = ranking.iter().any(|row| row.cluster_score.is_some());
     let mut header = vec!["rank"];
     header.extend(clustered.then_some("cluster score"));
-    header.extend(["rank score", "z-score", "cluster size", "unfiltered"]);
+    header.extend(["pose score", "z-score", "cluster size", "unfiltered"]);
     let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];
@@ -28,7 +28,7 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         let mut line = vec![(index + 1).to_string()];
         line.extend(clustered.then(|| tenths(row.cluster_score)));
         line.extend([
-            tenths(Some(row.rank_score)),
+            tenths(Some(row.pose_score)),
             tenths(row.z_score),
             row.cluster_size
                 .map(|size| size.to_string())
@@ -119,7 +119,7 @@ mod tests {
             missing: None,
             chain_ends: None,
             other_copies: None,
-            rank_score: score,
+            pose_score: score,
             z_score: None,
         }
     }
@@ -142,7 +142,7 @@ mod tests {
         };
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  rank score  z-score  cluster size  unfiltered  irmsd\n\
+            "  rank  pose score  z-score  cluster size  unfiltered  irmsd\n\
              \x20    1         9.0                      2         9.0   1.23\n\
              \x20    4         6.0                      2         6.0   3.50\n\
              \x20    3         7.0                                7.0\n\
@@ -160,7 +160,7 @@ mod tests {
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
         assert_eq!(
             best_clusters(&ranking, &[]),
-            "  rank  cluster score  rank score  z-score  cluster size  unfiltered\n\
+            "  rank  cluster score  pose score  z-score  cluster size  unfiltered\n\
              \x20    1           11.0         8.0                      2         8.0\n\
              \x20    2           10.0         9.0                      2         9.0"
         );

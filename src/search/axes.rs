@@ -142,8 +142,8 @@ impl Layer {
 mod tests {
     use super::*;
     use crate::search::DockOptions;
-    use knotdock_scoring::engine::{Folded, Plan};
-    use knotdock_scoring::lifted_axis::Fold;
+    use knotdock_scoring::engine::{Plan, ReceptorSpectra};
+    use knotdock_scoring::lifted_axis::Quantity;
     use knotdock_scoring::se3::Pose;
     use knotdock_scoring::symmetry::Symmetry;
     use knotdock_structures::Knots;
@@ -156,7 +156,7 @@ mod tests {
         let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
         let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
-        let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
+        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let voxels = RingVoxels::new(&engine, None);
         let [nx, ny, nz] = plan.size();
@@ -208,7 +208,7 @@ mod tests {
         let axis = RingAxis::of(&copies).unwrap();
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
         let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
-        let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
+        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "D2".parse().unwrap();

@@ -30,7 +30,7 @@ pub(super) struct Candidate {
 
 /// Where a peak of the search led to.
 #[derive(Clone, Copy)]
-pub(super) struct Placed {
+pub(super) struct RefinedPose {
     /// The pose that it was refined from: the grid's, or of rings the one nearest to it.
     pub start: Pose,
     /// The pose that it was refined to.
@@ -41,7 +41,7 @@ pub(super) struct Placed {
     pub refined: bool,
 }
 
-impl Placed {
+impl RefinedPose {
     /// A grid pose, and what it was refined to where that is better.
     pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
         let (start, score) = grid;
@@ -71,7 +71,7 @@ pub(super) fn printed(pose: &Pose) -> Pose {
 /// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
 pub(super) fn candidates(
     peaks: &[Peak],
-    placed: &[Placed],
+    placed: &[RefinedPose],
     at_start: &[ExactScore],
     rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
@@ -173,10 +173,10 @@ mod tests {
                 voxel: 0,
             };
             let grid = (at(x), if refined { 0.0 } else { score });
-            let placed = Placed::best_of(grid, refined.then_some((at(x), score)));
+            let placed = RefinedPose::best_of(grid, refined.then_some((at(x), score)));
             (peak, placed)
         };
-        let (peaks, placed): (Vec<Peak>, Vec<Placed>) = [
+        let (peaks, placed): (Vec<Peak>, Vec<RefinedPose>) = [
             found(0.0, 9.0, true),
             found(1.0, 8.0, true),
             found(0.5, 7.0, false),

@@ -5,12 +5,12 @@
 //! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
-use super::correlator::Correlator;
 use super::error::SearchError;
 use super::peaks::{NEIGHBOURS, Peak};
 use super::plan::DockPlan;
 use super::run::Progress;
 use super::scan::{Quartet, scan};
+use super::scan_engine::ScanEngine;
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ pub struct FineSearched {
 /// As [`scan`].
 pub(super) fn search_finer<T: Real>(
     plan: &DockPlan,
-    engine: &Correlator<T>,
+    engine: &ScanEngine<T>,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Peak>, FineSearched), SearchError> {

@@ -1,6 +1,6 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
-use super::attracted::{AssumedSite, Attracted};
+use super::active_residues::{ActiveResidues, AssumedSite};
 use super::effect_choice::EffectChoice;
 use super::error::SearchError;
 use super::loose::Loose;
@@ -63,7 +63,7 @@ pub struct Scene {
     /// What was assumed in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
     /// What poses should touch.
-    pub attracted: Attracted,
+    pub attracted: ActiveResidues,
     /// Residues that are missing, and those near ends of chains; none where they cost nothing.
     pub loose: Loose,
     /// The axis of the ring that the molecule is, where two such rings are asked for.
@@ -185,17 +185,17 @@ impl Scene {
             let residues: usize = restraints.attracted.iter().map(Vec::len).sum();
             let weights = restraint::Weights {
                 blocked: options.restraint_weight,
-                attracted: PULL * options.attraction_weight / residues.max(1) as f64,
+                attracted: PULL * options.active_weight / residues.max(1) as f64,
             };
             terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
-        let named = Attracted::named(restraints.attracted, options);
+        let named = ActiveResidues::named(restraints.attracted, options);
         // What is known takes the place of what is assumed.
         let attracted = if !named.sets.is_empty() || !on(Effect::Contact) {
             named
         } else {
             let [own, other] = &restraints.marks;
-            Attracted::assumed(molecules, [own, other], options)
+            ActiveResidues::assumed(molecules, [own, other], options)
         };
         // Terms count atoms; how much a buried one weighs is a matter of shape.
         let [receptor, ligand] =
@@ -340,8 +340,8 @@ mod tests {
         let molecule = peptide(4.0);
         let pull = |residues: &str| {
             let options = DockOptions {
-                attraction_weight: 1000.0,
-                attract_ligand: Some(residues.parse().unwrap()),
+                active_weight: 1000.0,
+                active_ligand: Some(residues.parse().unwrap()),
                 ..DockOptions::default()
             };
             let scene = Scene::new(&molecule, &molecule, &options).unwrap();

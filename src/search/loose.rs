@@ -17,10 +17,10 @@ impl Loose {
     /// What is loose of two molecules.
     pub(super) fn of(molecules: [&Molecule; 2], options: &DockOptions) -> Self {
         let mut loose = Self::default();
-        if options.missing_weight > 0.0 {
+        if options.unresolved_weight > 0.0 {
             loose.missing_residues = molecules.map(Molecule::missing_residues);
         }
-        if options.chain_end_weight > 0.0 {
+        if options.termini_weight > 0.0 {
             loose.chain_end_residues = molecules.map(Molecule::chain_ends);
         }
         loose

@@ -25,7 +25,7 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::Referee;
+use knotdock_structures::sampler::hausdorff::HausdorffMeter;
 use knotdock_structures::sampler::lattice::lattice;
 use knotdock_structures::sampler::weights::{self, FittedWeights};
 use knotdock_structures::sampler::{SampleError, knots};
@@ -47,7 +47,7 @@ const ANGSTROM: f64 = 1.0 / 2.2;
 pub const PER_AXIS: usize = 64;
 
 /// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
-pub const MOST_PER_AXIS: usize = 512;
+pub const MAX_PER_AXIS: usize = 512;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 
@@ -271,7 +271,7 @@ pub fn sample_pair(
         // Exact where the surface is closed; an open one has as much as its grid says.
         let volume = || match solid.mesh().is_closed() {
             true => solid.mesh().volume(),
-            false => Referee::new(solid, field).volume(),
+            false => HausdorffMeter::new(solid, field).volume(),
         };
         let fitted = options
             .weights

@@ -1,14 +1,13 @@
 //! Search: rotations, peaks, refinement, clusters and ranks.
 
-pub mod attracted;
+pub mod active_residues;
 pub mod axes;
 mod candidates;
 pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
-mod correlator;
-mod costs;
 pub mod effect_choice;
+mod effect_timings;
 pub mod effects;
 pub mod error;
 pub mod loose;
@@ -25,10 +24,11 @@ mod ring;
 pub mod rotations;
 pub mod run;
 mod scan;
+mod scan_engine;
 mod schedule;
 mod time_left;
 
-pub use attracted::AssumedSite;
+pub use active_residues::AssumedSite;
 pub use effect_choice::EffectChoice;
 pub use effects::{Decision, LengthUnit, Scene};
 pub use error::SearchError;

@@ -7,7 +7,7 @@ use super::restraints::AntibodySurface;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
-use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
@@ -60,7 +60,7 @@ pub struct DockOptions {
     /// Weight of the fine contact potential, by which poses are rescored where the contact effect is on: score per RT; 0: without it.
     pub fine_contact_weight: f64,
     /// The fine contact potential; `None`: the one that the program carries.
-    pub fine_contact_potential: Option<FinePotential>,
+    pub fine_contact_potential: Option<DistanceBinnedPotential>,
     /// Weight of the atom pair potential, by which poses are rescored likewise: score per RT; 0: without it.
     pub atom_pair_weight: f64,
     /// Weight of what a pose is worth once relaxed, by which poses are rescored likewise: score per RT; 0: without it.
@@ -70,13 +70,13 @@ pub struct DockOptions {
     /// What a contact costs that a blocked atom makes: score.
     pub restraint_weight: f64,
     /// What a pose earns in which all attracted residues touch: score.
-    pub attraction_weight: f64,
+    pub active_weight: f64,
     /// What a pose earns in which all catalytic residues of a peptidase touch: score; 0: peptidases are docked as any protein.
     pub peptidase_weight: f64,
     /// What an atom costs that lies where residues missing from the other side's file are, times how likely they are there: score; 0: nothing is known of these.
-    pub missing_weight: f64,
+    pub unresolved_weight: f64,
     /// What an atom near an end of its chain costs that touches the other side: score; 0: ends are as good as any.
-    pub chain_end_weight: f64,
+    pub termini_weight: f64,
     /// What part of an antibody may touch.
     pub antibody: AntibodySurface,
     /// Residues of the receptor that are to stay free of contact.
@@ -84,9 +84,9 @@ pub struct DockOptions {
     /// Residues of the ligand that are to stay free of contact.
     pub block_ligand: Option<ResidueSelection>,
     /// Residues of the receptor that are to be in contact.
-    pub attract_receptor: Option<ResidueSelection>,
+    pub active_receptor: Option<ResidueSelection>,
     /// Residues of the ligand that are to be in contact.
-    pub attract_ligand: Option<ResidueSelection>,
+    pub active_ligand: Option<ResidueSelection>,
     /// pH at which charges are assigned.
     pub ph: f64,
     /// Peaks kept of each rotation.
@@ -235,16 +235,16 @@ impl Default for DockOptions {
             atom_pair_potential: None,
             // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
             restraint_weight: 1.0,
-            attraction_weight: 2000.0,
+            active_weight: 2000.0,
             // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
             peptidase_weight: 500.0,
-            missing_weight: 3.0,
-            chain_end_weight: 2.0,
+            unresolved_weight: 3.0,
+            termini_weight: 2.0,
             antibody: AntibodySurface::default(),
             block_receptor: None,
             block_ligand: None,
-            attract_receptor: None,
-            attract_ligand: None,
+            active_receptor: None,
+            active_ligand: None,
             ph: 7.0,
             per_rotation: 3,
             poses: 2000,
@@ -261,8 +261,8 @@ impl DockOptions {
     /// What the first version would have made of no options at all: the defaults, less all that came later and moves the ranking.
     pub fn of_first_version() -> Self {
         Self {
-            missing_weight: 0.0,
-            chain_end_weight: 0.0,
+            unresolved_weight: 0.0,
+            termini_weight: 0.0,
             fine_contact_weight: 0.0,
             atom_pair_weight: 0.0,
             relaxed_weight: 0.0,
@@ -293,8 +293,8 @@ impl DockOptions {
         let named = [
             &self.block_receptor,
             &self.block_ligand,
-            &self.attract_receptor,
-            &self.attract_ligand,
+            &self.active_receptor,
+            &self.active_ligand,
         ];
         named.into_iter().any(Option::is_some)
     }
@@ -309,10 +309,10 @@ impl DockOptions {
             ("atom-pair-weight", self.atom_pair_weight, 1e6),
             ("relaxed-weight", self.relaxed_weight, 1e6),
             ("restraint-weight", self.restraint_weight, 1e6),
-            ("attraction-weight", self.attraction_weight, 1e6),
+            ("active-weight", self.active_weight, 1e6),
             ("peptidase-weight", self.peptidase_weight, 1e6),
-            ("missing-weight", self.missing_weight, 1e6),
-            ("chain-end-weight", self.chain_end_weight, 1e6),
+            ("unresolved-weight", self.unresolved_weight, 1e6),
+            ("termini-weight", self.termini_weight, 1e6),
             ("ph", self.ph, 14.0),
         ];
         for (name, value, most) in numbers {
@@ -415,11 +415,7 @@ impl DockOptions {
         // A ring's poses score as their inverses do.
         let sides = [
             ("block-ligand", &self.block_receptor, &self.block_ligand),
-            (
-                "attract-ligand",
-                &self.attract_receptor,
-                &self.attract_ligand,
-            ),
+            ("active-ligand", &self.active_receptor, &self.active_ligand),
         ];
         for (name, receptor, ligand) in sides {
             if receptor != ligand {

@@ -19,7 +19,7 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
-    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' rank scores, at least the best pose's.
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at least the best pose's.
     pub cluster_score: Option<f64>,
     /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
     pub refined: bool,
@@ -48,8 +48,8 @@ pub struct RankedPose {
     /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
     pub other_copies: Option<f64>,
     /// What rows are ranked by: `score`, where poses are rescored `fine_contact`, `atom_pair`, `relaxed`, `attraction`, `missing` and `chain_ends` besides, and `other_copies`.
-    pub rank_score: f64,
-    /// Standard deviations that `rank_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    pub pose_score: f64,
+    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,
 }
 

@@ -1,6 +1,6 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::attracted::{AssumedSite, Attracted};
+use super::active_residues::{ActiveResidues, AssumedSite};
 use super::effects::{Decision, LengthUnit, Scene};
 use super::error::SearchError;
 use super::loose::Loose;
@@ -9,12 +9,12 @@ use super::peaks::Peak;
 use super::rescoring::Asked;
 use super::ring::Rings;
 use super::rotations::{
-    BYTES_RELAXED, MOST_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
+    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
 };
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_structures::Knots;
@@ -41,7 +41,7 @@ pub struct DockPlan {
     pub grid: [usize; 3],
     /// Grid spacing, Å.
     pub spacing: f64,
-    /// Fine grid of the nonequispaced transforms, points per axis.
+    /// Fine grid of the nufft transforms, points per axis.
     pub fine_grid: [usize; 3],
     /// Width of the spreading window, fine cells.
     pub spreading_width: usize,
@@ -75,7 +75,7 @@ pub struct DockPlan {
     pub decisions: Vec<Decision>,
     /// What poses should touch.
     #[serde(skip)]
-    pub(super) attracted: Attracted,
+    pub(super) attracted: ActiveResidues,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
     /// Residues that are missing, and those near ends of chains, of receptor and ligand.
@@ -156,11 +156,11 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         // The functions, one in the making, and the compressed ones in either order of modes, packed.
         let fixed =
             2 * real_bytes * engine.modes.count as u64 * (functions + 1 + 5 * rank / 2) as u64
-                + ReceptorField::bytes(engine) as u64
+                + PotentialGrid::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
                 + 64 * options.rotations as u64
                 + fine_bytes(options)
-                + BYTES_RELAXED * options.rotations.min(MOST_RELAXED) as u64
+                + BYTES_RELAXED * options.rotations.min(MAX_RELAXED) as u64
                 + 400 * options.poses as u64
                 + (16 << 20);
         (fixed, per_rotation)

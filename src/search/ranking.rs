@@ -4,10 +4,10 @@
 //! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
 //! pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the rank score; of rings with what copies beyond the
+//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the pose score; of rings with what copies beyond the
 //! neighbours add to it.
 //!
-//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' rank scores: the best pose's where it stands alone, more where many
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores: the best pose's where it stands alone, more where many
 //! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
 //! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
 //!
@@ -28,7 +28,7 @@ use rayon::prelude::*;
 
 /// What rows of the table are scored by.
 #[derive(Clone, Copy)]
-pub(super) struct Judge<'a> {
+pub(super) struct PoseScorer<'a> {
     /// The exact score.
     pub scorer: &'a ExactScorer,
     /// What poses are rescored with.
@@ -64,7 +64,7 @@ const ROWS_TOGETHER: usize = 8;
 ///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
 pub(super) fn report(
-    judge: Judge,
+    judge: PoseScorer,
     candidates: &[Candidate],
     clusters: (&[usize], &[bool]),
     every_pose: bool,
@@ -99,9 +99,9 @@ pub(super) fn report(
             progress.advance(1);
             (row, cluster)
         })
-        .filter(|(row, _)| row.rank_score.is_finite() && row.score_unfiltered.is_finite())
+        .filter(|(row, _)| row.pose_score.is_finite() && row.score_unfiltered.is_finite())
         .collect();
-    rows.sort_by(|(a, _), (b, _)| b.rank_score.total_cmp(&a.rank_score));
+    rows.sort_by(|(a, _), (b, _)| b.pose_score.total_cmp(&a.pose_score));
     // Rows come best first: the first of a cluster is its best.
     let mut order: Vec<(usize, f64)> = Vec::new();
     let mut seen = vec![false; count];
@@ -109,7 +109,7 @@ pub(super) fn report(
         if !std::mem::replace(&mut seen[*cluster], true) {
             order.push((
                 *cluster,
-                row.rank_score + temperature * weights[*cluster].ln(),
+                row.pose_score + temperature * weights[*cluster].ln(),
             ));
         }
     }
@@ -127,7 +127,7 @@ pub(super) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
-                z_score: background.z_score(row.rank_score),
+                z_score: background.z_score(row.pose_score),
                 ..row
             })
         })
@@ -149,10 +149,10 @@ struct Background {
 }
 
 /// Least spread of scores, as a share of the largest, that tells one pose from another.
-const LEAST_SPREAD: f64 = 1e-3;
+const MIN_SPREAD: f64 = 1e-3;
 
 impl Background {
-    /// Mean and standard deviation of the candidates' rank scores by the fast path.
+    /// Mean and standard deviation of the candidates' pose scores by the fast path.
     fn of(candidates: &[Candidate]) -> Self {
         let count = candidates.len().max(1) as f64;
         let mean = candidates.iter().map(|c| c.score).sum::<f64>() / count;
@@ -161,20 +161,20 @@ impl Background {
         let largest = candidates.iter().map(|c| c.score.abs()).fold(0.0, f64::max);
         Self {
             mean,
-            deviation: (deviation > LEAST_SPREAD * largest).then_some(deviation),
+            deviation: (deviation > MIN_SPREAD * largest).then_some(deviation),
         }
     }
 
-    fn z_score(&self, rank_score: f64) -> Option<f64> {
-        let z = (rank_score - self.mean) / self.deviation?;
+    fn z_score(&self, pose_score: f64) -> Option<f64> {
+        let z = (pose_score - self.mean) / self.deviation?;
         z.is_finite().then_some(z)
     }
 }
 
 impl Candidate {
     /// Its row of the table, exactly scored, not yet in a cluster.
-    fn reported(&self, judge: Judge) -> RankedPose {
-        let Judge {
+    fn reported(&self, judge: PoseScorer) -> RankedPose {
+        let PoseScorer {
             scorer,
             rescorer,
             on,
@@ -218,7 +218,7 @@ impl Candidate {
             missing: rescored.missing,
             chain_ends: rescored.chain_ends,
             other_copies: others,
-            rank_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
+            pose_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
             z_score: None,
             score: terms.score,
             cluster: None,
@@ -236,7 +236,7 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::candidates::{Placed, candidates};
+    use super::super::candidates::{RefinedPose, candidates};
     use super::super::peaks::Peak;
     use super::*;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
@@ -282,8 +282,8 @@ mod tests {
                     voxel: 0,
                 })
                 .collect();
-            let placed = |peak: &Peak| Placed::best_of((at(0.0), peak.score), None);
-            let placed: Vec<Placed> = peaks.iter().map(placed).collect();
+            let placed = |peak: &Peak| RefinedPose::best_of((at(0.0), peak.score), None);
+            let placed: Vec<RefinedPose> = peaks.iter().map(placed).collect();
             Background::of(&candidates(&peaks, &placed, &[], None))
         };
         let z = with(&[1.0, 2.0, 3.0, 4.0]).z_score(5.0).unwrap();
@@ -306,9 +306,9 @@ mod tests {
             };
             // The fast path claims a gain of one.
             let refined = Some((at(to), peak.score + 1.0));
-            let placed = Placed::best_of((at(from), peak.score), refined);
+            let placed = RefinedPose::best_of((at(from), peak.score), refined);
             let candidates = candidates(&[peak], &[placed], &[], None);
-            let judge = Judge {
+            let judge = PoseScorer {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
@@ -355,11 +355,11 @@ mod tests {
             voxel: 0,
         };
         let peaks: Vec<Peak> = poses.iter().map(peak).collect();
-        let placed = |x: &f64| Placed::best_of((at(*x), score(*x)), None);
-        let placed: Vec<Placed> = poses.iter().map(placed).collect();
+        let placed = |x: &f64| RefinedPose::best_of((at(*x), score(*x)), None);
+        let placed: Vec<RefinedPose> = poses.iter().map(placed).collect();
         let candidates = candidates(&peaks, &placed, &[], None);
         let first = |unit| {
-            let judge = Judge {
+            let judge = PoseScorer {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
@@ -371,7 +371,7 @@ mod tests {
             let first = &ranking.poses[0];
             (
                 first.cluster_size,
-                first.cluster_score == Some(first.rank_score),
+                first.cluster_score == Some(first.pose_score),
             )
         };
         assert_eq!(first(LengthUnit::Angstrom), (Some(5), false));

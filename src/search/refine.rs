@@ -1,13 +1,13 @@
 //! Climbing a peak off the grid, over translation and rotation together (BFGS).
 //!
-//! The climb runs on the receptor's field, the fast path's values read between its grid points; what is reported afterwards is
-//! the exact pair sum at the pose reached, and a climb that the exact sum does not confirm is undone by the caller.
+//! The ascent runs on the receptor's field, the fast path's values read between its grid points; what is reported afterwards is
+//! the exact pair sum at the pose reached, and a ascent that the exact sum does not confirm is undone by the caller.
 
 use knotdock_scoring::exact::PoseGradient;
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
 
-/// Bounds of a climb.
+/// Bounds of a ascent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbLimits {
     /// Score evaluations at most.
@@ -23,8 +23,8 @@ pub struct ClimbLimits {
 }
 
 /// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian) by the moves that
-/// `moved` makes of a turn and a shift: of the ligand about its centre ([`freely`]), or of the two bodies of a ring together.
-pub fn climb(
+/// `moved` makes of a turn and a shift: of the ligand about its centre ([`rigid_body`]), or of the two bodies of a ring together.
+pub fn maximize(
     start: Pose,
     ligand_center: Vector3<f64>,
     limits: &ClimbLimits,
@@ -103,7 +103,7 @@ pub fn climb(
 }
 
 /// Turns the ligand about its centre, and shifts it.
-pub fn freely(
+pub fn rigid_body(
     ligand_center: Vector3<f64>,
 ) -> impl Fn(&Pose, UnitQuaternion<f64>, Vector3<f64>) -> Pose {
     move |pose, turn, shift| {
@@ -116,7 +116,7 @@ pub fn freely(
 mod tests {
     use super::*;
 
-    /// A paraboloid in position and angle has one top; the climb must find it to its stopping length.
+    /// A paraboloid in position and angle has one top; the ascent must find it to its stopping length.
     #[test]
     fn finds_the_top_of_a_paraboloid() {
         let top = Pose::from_parts([0.99, 0.05, -0.04, 0.06], [1.0, -0.7, 0.4]);
@@ -137,12 +137,12 @@ mod tests {
             gyration: 10.0,
             angstrom: 1.0,
         };
-        let (found, _) = climb(
+        let (found, _) = maximize(
             Pose::identity(),
             Vector3::zeros(),
             &limits,
             score,
-            freely(Vector3::zeros()),
+            rigid_body(Vector3::zeros()),
         );
         assert!((found.translation - top.translation).norm() < 0.01);
         assert!(found.angle_to(&top) < 0.002);
@@ -164,12 +164,12 @@ mod tests {
             gyration: 10.0,
             angstrom: 1.0,
         };
-        let (found, _) = climb(
+        let (found, _) = maximize(
             Pose::identity(),
             Vector3::zeros(),
             &limits,
             score,
-            freely(Vector3::zeros()),
+            rigid_body(Vector3::zeros()),
         );
         assert!(found.translation[0] > 1.5 && found.translation.norm() <= 2.0);
     }

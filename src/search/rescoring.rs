@@ -1,6 +1,6 @@
 //! What poses are rescored by: the terms that the scene's effects make possible and whose weights ask for them.
 
-use super::attracted::Attracted;
+use super::active_residues::ActiveResidues;
 use super::effects::Decision;
 use super::loose::Loose;
 use super::options::DockOptions;
@@ -25,7 +25,7 @@ impl Asked {
     /// Potentials where the contact effect is on, what should be touched where there is something, and what is loose where anything is.
     pub fn of(
         decisions: &[Decision],
-        attracted: &Attracted,
+        attracted: &ActiveResidues,
         loose: &Loose,
         options: &DockOptions,
     ) -> Self {
@@ -37,8 +37,8 @@ impl Asked {
             atom_pair: when(typed, options.atom_pair_weight),
             relaxed: when(typed, options.relaxed_weight),
             attraction: when(attracted.any(), attracted.weight),
-            missing: when(loose.any_missing(), options.missing_weight),
-            chain_ends: when(loose.any_ends(), options.chain_end_weight),
+            missing: when(loose.any_missing(), options.unresolved_weight),
+            chain_ends: when(loose.any_ends(), options.termini_weight),
         }
     }
 
@@ -63,7 +63,7 @@ impl Asked {
     pub fn rescorer(
         &self,
         [receptor, ligand]: [&Knots; 2],
-        attracted: &Attracted,
+        attracted: &ActiveResidues,
         loose: &Loose,
         options: &DockOptions,
     ) -> Option<Rescorer> {

@@ -2,7 +2,7 @@
 
 use super::error::SearchError;
 use super::options::DockOptions;
-use knotdock_scoring::effect::restraint::Mark;
+use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_structures::molecule::{
     Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,
 };
@@ -43,7 +43,7 @@ impl std::str::FromStr for AntibodySurface {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Restraints {
     /// A mark for each atom of receptor and ligand.
-    pub marks: [Vec<Mark>; 2],
+    pub marks: [Vec<ResidueRole>; 2],
     /// Of each side, the residues that are attracted, each as the places of its atoms.
     pub attracted: [Vec<Vec<usize>>; 2],
     /// Why, in words; empty where all are free.
@@ -57,7 +57,7 @@ impl Restraints {
     /// [`SearchError::Option`] when residues are named that a molecule does not have.
     pub fn new(molecules: [&Molecule; 2], options: &DockOptions) -> Result<Self, SearchError> {
         let mut reasons = Vec::new();
-        let mut marks = molecules.map(|molecule| vec![Mark::Free; molecule.atoms.len()]);
+        let mut marks = molecules.map(|molecule| vec![ResidueRole::Free; molecule.atoms.len()]);
         let mut attracted = [Vec::new(), Vec::new()];
         for (((molecule, named), marks), attracted) in molecules
             .into_iter()
@@ -71,7 +71,7 @@ impl Restraints {
             {
                 for (mark, paratope) in marks.iter_mut().zip(&antibody.paratope) {
                     if !paratope {
-                        *mark = Mark::Blocked;
+                        *mark = ResidueRole::Excluded;
                     }
                 }
                 reasons.push(format!(
@@ -80,14 +80,19 @@ impl Restraints {
                 ));
             }
             for (option, residues, mark, told) in [
-                (named.block, named.blocked, Mark::Blocked, "blocked"),
-                (named.attract, named.attracted, Mark::Attracted, "attracted"),
+                (named.block, named.blocked, ResidueRole::Excluded, "blocked"),
+                (
+                    named.attract,
+                    named.attracted,
+                    ResidueRole::Active,
+                    "attracted",
+                ),
             ] {
                 let Some(residues) = residues else {
                     continue;
                 };
                 let chosen = selected(molecule, side, option, residues)?;
-                if mark == Mark::Attracted {
+                if mark == ResidueRole::Active {
                     *attracted = molecule.atoms_by_residue(&chosen);
                 }
                 for (own, chosen) in marks.iter_mut().zip(chosen) {
@@ -110,7 +115,10 @@ impl Restraints {
 
     /// Whether any atom is marked.
     pub fn any(&self) -> bool {
-        self.marks.iter().flatten().any(|mark| *mark != Mark::Free)
+        self.marks
+            .iter()
+            .flatten()
+            .any(|mark| *mark != ResidueRole::Free)
     }
 }
 
@@ -130,15 +138,15 @@ fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
             side: "receptor",
             block: "block-receptor",
             blocked: options.block_receptor.as_ref(),
-            attract: "attract-receptor",
-            attracted: options.attract_receptor.as_ref(),
+            attract: "active-receptor",
+            attracted: options.active_receptor.as_ref(),
         },
         Named {
             side: "ligand",
             block: "block-ligand",
             blocked: options.block_ligand.as_ref(),
-            attract: "attract-ligand",
-            attracted: options.attract_ligand.as_ref(),
+            attract: "active-ligand",
+            attracted: options.active_ligand.as_ref(),
         },
     ]
 }
@@ -208,9 +216,9 @@ pub(super) mod tests {
         let none = of(None, None).unwrap();
         assert!(!none.any() && none.reason.is_empty());
         let both = of(Some("A:2-3"), Some("A:4")).unwrap();
-        use Mark::{Blocked, Free};
-        assert_eq!(both.marks[0], [Free, Blocked, Blocked, Free]);
-        assert_eq!(both.marks[1], [Free, Free, Free, Blocked]);
+        use ResidueRole::{Excluded, Free};
+        assert_eq!(both.marks[0], [Free, Excluded, Excluded, Free]);
+        assert_eq!(both.marks[1], [Free, Free, Free, Excluded]);
         assert_eq!(
             both.reason,
             "residues A:2-3 of the receptor are blocked; residues A:4 of the ligand are blocked"
@@ -228,14 +236,14 @@ pub(super) mod tests {
         let molecule = peptide(10.0);
         let options = DockOptions {
             block_receptor: Some("A:3-4".parse().unwrap()),
-            attract_receptor: Some("A:1,A:4".parse().unwrap()),
-            attract_ligand: Some("A:2".parse().unwrap()),
+            active_receptor: Some("A:1,A:4".parse().unwrap()),
+            active_ligand: Some("A:2".parse().unwrap()),
             ..DockOptions::default()
         };
         let restraints = Restraints::new([&molecule, &molecule], &options).unwrap();
-        use Mark::{Attracted, Blocked, Free};
-        assert_eq!(restraints.marks[0], [Attracted, Free, Blocked, Attracted]);
-        assert_eq!(restraints.marks[1], [Free, Attracted, Free, Free]);
+        use ResidueRole::{Active, Excluded, Free};
+        assert_eq!(restraints.marks[0], [Active, Free, Excluded, Active]);
+        assert_eq!(restraints.marks[1], [Free, Active, Free, Free]);
         assert_eq!(
             restraints.attracted,
             [vec![vec![0], vec![3]], vec![vec![1]]]

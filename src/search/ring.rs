@@ -1,9 +1,9 @@
-//! Poses of rings off the grid: what the search's peaks become, and their climb among rings, about any axis or, of Dn, about those across a ring's own.
+//! Poses of rings off the grid: what the search's peaks become, and their ascent among rings, about any axis or, of Dn, about those across a ring's own.
 
 use super::axes::{axes_radius, axis_set};
-use super::refine::{ClimbLimits, climb};
+use super::refine::{ClimbLimits, maximize};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
-use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::{RingAxis, Symmetry, conjugated, conjugated_gradient};
 use nalgebra::{Unit, Vector3};
@@ -39,14 +39,14 @@ impl Rings {
     }
 
     /// The ring that climbs highest from `pose`, which the grid found, and its score with that of copies beyond the neighbours, by the fast path.
-    pub fn climb(
+    pub fn maximize(
         &self,
-        field: &ReceptorField,
+        field: &PotentialGrid,
         center: Vector3<f64>,
         pose: &Pose,
         limits: &ClimbLimits,
     ) -> (Pose, f64) {
-        let (top, score) = climb(
+        let (top, score) = maximize(
             self.nearest(pose),
             center,
             limits,
@@ -70,7 +70,7 @@ impl Rings {
 /// Score of a ring for each pair of neighbours, with its gradient by moves of the molecule under the axis.
 fn whole(
     symmetry: Symmetry,
-    field: &ReceptorField,
+    field: &PotentialGrid,
     center: Vector3<f64>,
     pose: &Pose,
 ) -> (f64, PoseGradient) {
@@ -102,20 +102,20 @@ pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose
 mod tests {
     use super::*;
     use crate::search::DockOptions;
-    use crate::search::correlator::Correlator;
     use crate::search::plan::plan;
     use crate::search::restraints::tests::peptide;
     use crate::search::run::Progress;
     use crate::search::scan::{all_rotations, choose_rank, scan};
-    use knotdock_scoring::engine::{Folded, Plan};
-    use knotdock_scoring::lifted_axis::Fold;
+    use crate::search::scan_engine::ScanEngine;
+    use knotdock_scoring::engine::{Plan, ReceptorSpectra};
+    use knotdock_scoring::lifted_axis::Quantity;
     use knotdock_structures::Knots;
     use knotdock_structures::molecule::{Format, Molecule};
     use nalgebra::UnitQuaternion;
     use std::f64::consts::PI;
 
     /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
-    /// climb ends higher, on a ring.
+    /// ascent ends higher, on a ring.
     #[test]
     fn copies_across_the_axis_are_climbed_with_the_rest() {
         let centers = vec![
@@ -127,8 +127,8 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
         let engine = DockOptions::default().engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
-        let folded = Folded::<f64>::new(&plan, &knots, &knots, Fold::Score);
-        let field = ReceptorField::new(&plan, &folded, &knots);
+        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let field = PotentialGrid::new(&plan, &folded, &knots);
         let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
@@ -173,7 +173,7 @@ mod tests {
             symmetry,
             axis: None,
         };
-        let (top, score) = rings.climb(&field, center, &start, &limits);
+        let (top, score) = rings.maximize(&field, center, &start, &limits);
         assert!(symmetry.ring(&top).is_some());
         assert!(exact(symmetry, &top) > exact(symmetry, &start) + 1.0);
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
@@ -185,7 +185,7 @@ mod tests {
         fn advance(&self, _: u64) {}
     }
 
-    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the climb from one ends where neither a turn about that axis nor a
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
     /// shift along it gains anything by the exact sum.
     #[test]
     fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
@@ -212,8 +212,13 @@ mod tests {
         };
         let plan = plan(&ring, &ring, &options).unwrap();
         let rings = plan.rings.unwrap();
-        let folded = Folded::<f32>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
-        let engine = Correlator::new(&plan, choose_rank(&plan, &folded).engine).unwrap();
+        let folded = ReceptorSpectra::<f32>::new(
+            &plan.engine,
+            &plan.receptor,
+            &plan.ligand,
+            Quantity::Score,
+        );
+        let engine = ScanEngine::new(&plan, choose_rank(&plan, &folded).engine).unwrap();
         let peaks = scan(&plan, &engine, &all_rotations(&plan), 20, None, &Silent)
             .unwrap()
             .peaks;
@@ -231,7 +236,7 @@ mod tests {
             assert!(off.norm() < 1.8 * plan.spacing, "{off}");
         }
 
-        let field = ReceptorField::new(&plan.engine, &folded, &plan.ligand);
+        let field = PotentialGrid::new(&plan.engine, &folded, &plan.ligand);
         let scorer = plan.exact_scorer().unwrap();
         let limits = ClimbLimits {
             evaluations: 60,
@@ -240,7 +245,7 @@ mod tests {
             gyration: 8.0,
             angstrom: 1.0,
         };
-        let (top, _) = rings.climb(&field, center, &starts[4], &limits);
+        let (top, _) = rings.maximize(&field, center, &starts[4], &limits);
         let highest = scorer.score_only(&top);
         assert!(highest > scorer.score_only(&rings.nearest(&starts[4])) + 1.0);
         for sign in [-1.0, 1.0] {

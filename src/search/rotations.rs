@@ -32,7 +32,7 @@ fn rotation(index: usize, count: usize) -> UnitQuaternion<f64> {
 /// images are relaxed as charges that push each other apart, which evens out the domain's edges and leaves every rotation a nearer neighbour on
 /// average than the spiral itself does.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
-    if count > MOST_RELAXED {
+    if count > MAX_RELAXED {
         return spiral_set(count);
     }
     let mut base = domain(count.div_ceil(4));
@@ -65,14 +65,14 @@ fn with_images(base: &[Point], count: usize) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// Largest set that is relaxed: beyond, the spiral is fine enough, and time and memory would go into a gain that nothing shows.
-pub(super) const MOST_RELAXED: usize = 100_000;
+pub(super) const MAX_RELAXED: usize = 100_000;
 
 /// Bytes that a set takes while it is made, per rotation relaxed (points and images, sorted by cell).
 pub(super) const BYTES_RELAXED: u64 = 250;
 
 /// What a set of `count` rotations is called.
 pub(super) fn set_name(count: usize) -> &'static str {
-    if count <= MOST_RELAXED {
+    if count <= MAX_RELAXED {
         "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed"
     } else {
         "super-Fibonacci (Alexa 2022), closed under half-turns"

@@ -1,27 +1,27 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
-use super::candidates::{Placed, candidates, clusters_of, listed, merge, printed};
+use super::candidates::{RefinedPose, candidates, clusters_of, listed, merge, printed};
 use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
-use super::correlator::Correlator;
-use super::costs::costs;
+use super::effect_timings::costs;
 use super::error::SearchError;
 use super::options::{Precision, Stopped};
 use super::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
 use super::peaks::Peak;
 use super::plan::DockPlan;
-use super::ranking::{Judge, cluster_temperature, report};
-use super::refine::{ClimbLimits, climb, freely};
+use super::ranking::{PoseScorer, cluster_temperature, report};
+use super::refine::{ClimbLimits, maximize, rigid_body};
 use super::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use super::scan_engine::ScanEngine;
 use super::schedule::{Deadline, schedule};
 use super::time_left::poses_in_time;
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::exact::ExactScore;
-use knotdock_scoring::field::ReceptorField;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
@@ -118,13 +118,14 @@ fn dock_in<T: Real>(
     let options = &plan.options;
     let mut clock = Clock::start();
     progress.stage("prepare", 1);
-    let folded = Folded::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Fold::Score);
+    let folded =
+        ReceptorSpectra::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Quantity::Score);
     let Chosen {
         engine,
         error: rank_error,
     } = choose_rank(plan, &folded);
     let effects = costs(plan, &folded, &engine);
-    let engine = Correlator::new(plan, engine)?;
+    let engine = ScanEngine::new(plan, engine)?;
     let scorer = plan.exact_scorer()?;
     progress.advance(1);
     clock.lap("prepare");
@@ -212,7 +213,7 @@ fn dock_in<T: Real>(
     clock.lap("cluster");
 
     let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
-    let judge = Judge {
+    let judge = PoseScorer {
         scorer: &scorer,
         rescorer: rescorer.as_ref(),
         on,
@@ -227,7 +228,7 @@ fn dock_in<T: Real>(
         2.0 * options.tolerance * best_peak.abs(),
         progress,
     );
-    // Rows stand for clusters by their rank scores; the best score may be another pose's.
+    // Rows stand for clusters by their pose scores; the best score may be another pose's.
     let at_start = at_start.iter().map(|exact| exact.score);
     let scores = ranking.poses.iter().map(|row| row.score).chain(at_start);
     let best = error_scale(scores, 0.0);
@@ -266,15 +267,15 @@ fn ligand_turn(plan: &DockPlan) -> f64 {
 /// survive the table's round trip.
 fn refine<T: Real>(
     plan: &DockPlan,
-    folded: &Folded<T>,
+    folded: &ReceptorSpectra<T>,
     peaks: &[Peak],
     grid_poses: &[Pose],
     body: &RigidBody,
     progress: &dyn Progress,
-) -> Vec<Placed> {
+) -> Vec<RefinedPose> {
     let count = plan.refined().min(peaks.len());
     progress.stage("refine", count as u64);
-    let field = (count > 0).then(|| ReceptorField::new(&plan.engine, folded, &plan.ligand));
+    let field = (count > 0).then(|| PotentialGrid::new(&plan.engine, folded, &plan.ligand));
     let limits = ClimbLimits {
         evaluations: 40,
         distance: 3.0 * plan.spacing,
@@ -285,12 +286,12 @@ fn refine<T: Real>(
     let center = plan.engine.ligand_center;
     let place = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
         let Some(field) = field.as_ref().filter(|_| index < count) else {
-            return Placed::best_of((printed(pose), peak.score), None);
+            return RefinedPose::best_of((printed(pose), peak.score), None);
         };
         let placed = match &plan.rings {
             Some(rings) => {
-                let (top, score) = rings.climb(field, center, pose, &limits);
-                Placed {
+                let (top, score) = rings.maximize(field, center, pose, &limits);
+                RefinedPose {
                     start: printed(&rings.nearest(pose)),
                     pose: printed(&top),
                     score,
@@ -299,14 +300,14 @@ fn refine<T: Real>(
             }
             None => {
                 let gradient = |pose: &Pose| field.gradient(pose);
-                let (top, score) = climb(*pose, center, &limits, gradient, freely(center));
-                Placed::best_of((printed(pose), peak.score), Some((printed(&top), score)))
+                let (top, score) = maximize(*pose, center, &limits, gradient, rigid_body(center));
+                RefinedPose::best_of((printed(pose), peak.score), Some((printed(&top), score)))
             }
         };
         progress.advance(1);
         placed
     };
-    // Those that climb come first, so long shares would leave some threads without any.
+    // Those that are refined come first, so long shares would leave some threads without any.
     let places = peaks.par_iter().zip(grid_poses).enumerate();
     places.with_max_len(CLIMBS_TOGETHER).map(place).collect()
 }

@@ -1,14 +1,14 @@
 //! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
 
 use super::axes::RingVoxels;
-use super::correlator::Correlator;
 use super::error::SearchError;
 use super::peaks::{Peak, find_peaks};
 use super::plan::DockPlan;
 use super::run::Progress;
+use super::scan_engine::ScanEngine;
 use super::schedule::Deadline;
 use knotdock_scoring::engine::CpuEngine;
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::se3::HalfTurn;
@@ -72,7 +72,7 @@ impl<T: Real> Probes<T> {
 
 /// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance, found by halving, for the
 /// error falls with the rank.
-pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &Folded<T>) -> Chosen<T> {
+pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> Chosen<T> {
     let factors = folded.factor(&plan.engine.modes);
     // What lies below rounding is no rank.
     let rounding = T::epsilon().wide();
@@ -151,7 +151,7 @@ pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
 /// [`SearchError::Graphics`] where the graphics processor fails.
 pub(super) fn scan<T: Real>(
     plan: &DockPlan,
-    engine: &Correlator<T>,
+    engine: &ScanEngine<T>,
     quartets: &[Quartet],
     most: usize,
     deadline: Option<&Deadline>,

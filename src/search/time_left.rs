@@ -3,7 +3,7 @@
 //! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is done, on
 //! the machine as it then is, and the poses that scored least are left out where time is short.
 
-use super::candidates::{Placed, candidates, clusters_of};
+use super::candidates::{RefinedPose, candidates, clusters_of};
 use super::cluster::RigidBody;
 use super::options::DockOptions;
 use super::peaks::Peak;
@@ -19,7 +19,7 @@ const PROBES: usize = 48;
 /// The number of poses that are kept, best first. `scoring` is the seconds that the exact score of one takes.
 pub(super) fn poses_in_time(
     deadline: &Deadline,
-    (peaks, placed): (&[Peak], &[Placed]),
+    (peaks, placed): (&[Peak], &[RefinedPose]),
     rescorer: Option<&Rescorer>,
     scoring: f64,
     body: &RigidBody,
@@ -32,7 +32,7 @@ pub(super) fn poses_in_time(
     let rescoring = rescorer.map_or(0.0, |rescorer| {
         let step = count.div_ceil(PROBES);
         let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
-        let placed: Vec<Placed> = placed.iter().step_by(step).copied().collect();
+        let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
         let begun = Instant::now();
         let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
         begun.elapsed().as_secs_f64() / probed.max(1) as f64

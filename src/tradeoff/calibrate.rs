@@ -238,9 +238,9 @@ fn fit(runs: &[Timed]) -> CostModel {
             &|run| run.stage("rescore") / (run.work.rescored * run.work.ligand),
             built_in.rescore,
         ),
-        climb: mean(
+        refine: mean(
             &|run| run.stage("refine") / (run.work.refined * run.work.ligand),
-            built_in.climb * pair / built_in.pair,
+            built_in.refine * pair / built_in.pair,
         ),
         rotation: built_in.rotation * sets,
         covering: built_in.covering * sets,

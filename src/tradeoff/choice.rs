@@ -9,9 +9,9 @@ use super::pair::{PairError, Preparer};
 use crate::search::{Deadline, DockOptions, DockPlan};
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
-pub const FEWEST_ROTATIONS: usize = 600;
+pub const MIN_ROTATIONS: usize = 600;
 /// Most: 6 degrees, beyond which rotations cost time and find nothing.
-pub const MOST_ROTATIONS: usize = 56_250;
+pub const MAX_ROTATIONS: usize = 56_250;
 
 /// What was wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -120,14 +120,14 @@ pub fn choose(
     let work = Workload::of(&draft.plan);
     let threads = draft.plan.most_in_flight();
     if let Some(budget) = wanted.budget {
-        let most = options.fine_rotations.unwrap_or(MOST_ROTATIONS);
-        let range = FEWEST_ROTATIONS..=most.clamp(FEWEST_ROTATIONS, MOST_ROTATIONS);
+        let most = options.fine_rotations.unwrap_or(MAX_ROTATIONS);
+        let range = MIN_ROTATIONS..=most.clamp(MIN_ROTATIONS, MAX_ROTATIONS);
         options.rotations = model
             .rotations_within(&work, budget, threads, range)
             .map_err(|needed| ChoiceError::Budget {
                 budget,
                 needed,
-                fewest: FEWEST_ROTATIONS,
+                fewest: MIN_ROTATIONS,
             })?;
     }
     Ok(Chosen {

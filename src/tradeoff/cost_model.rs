@@ -8,7 +8,7 @@
 //! - preparing: `prepare` for each mode and effect, on the clock: threads share it in part;
 //! - in double precision these two times [`DOUBLE`];
 //! - an exact sum: `pair` for each pair of knots that can feel each other;
-//! - rescoring a pose, climbing a peak: `rescore`, `climb` for each knot of the ligand;
+//! - rescoring a pose, climbing a peak: `rescore`, `refine` for each knot of the ligand;
 //! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
 //!
 //! Coefficients are seconds of one thread while all are busy. The built-in ones are those of a
@@ -39,7 +39,7 @@ pub struct CostModel {
     /// Of rescoring, each pose and ligand knot.
     pub rescore: f64,
     /// Of refining, each pose and ligand knot.
-    pub climb: f64,
+    pub refine: f64,
     /// Of making the rotation set, each rotation.
     pub rotation: f64,
     /// Of measuring its covering radius.
@@ -74,7 +74,7 @@ impl CostModel {
         prepare: 4.5e-6,
         pair: 9e-9,
         rescore: 3e-6,
-        climb: 3.5e-5,
+        refine: 3.5e-5,
         rotation: 1.2e-5,
         covering: 0.05,
     };
@@ -87,12 +87,12 @@ impl CostModel {
             prepare,
             pair,
             rescore,
-            climb,
+            refine,
             rotation,
             covering,
         } = *self;
         [
-            inverse, field, prepare, pair, rescore, climb, rotation, covering,
+            inverse, field, prepare, pair, rescore, refine, rotation, covering,
         ]
         .iter()
         .all(|value| value.is_finite() && *value > 0.0 && *value < 1e3)
@@ -121,7 +121,7 @@ impl CostModel {
         let exact =
             self.pair * work.pairs * (CHECKED.min(kept * work.poses) + kept * work.reported(count));
         let rescored = self.rescore * work.ligand * kept * work.rescored;
-        let refined = self.climb * work.ligand * work.refined.min(kept * work.poses);
+        let refined = self.refine * work.ligand * work.refined.min(kept * work.poses);
         let finer = FINE * work.fine * self.rotation_seconds(work);
         (finer + exact + rescored + refined) / threads as f64
     }

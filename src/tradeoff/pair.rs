@@ -68,7 +68,7 @@ impl Sampling {
 }
 
 /// A docking made ready to run.
-pub struct Prepared {
+pub struct PreparedPair {
     /// Its plan.
     pub plan: DockPlan,
     /// Points of the ligand whose RMSD makes clusters.
@@ -79,7 +79,7 @@ pub struct Prepared {
     pub timing: Vec<StageTime>,
 }
 
-impl Prepared {
+impl PreparedPair {
     /// Plans a docking of molecules.
     ///
     /// # Errors
@@ -133,7 +133,7 @@ fn key(options: &DockOptions) -> SamplingKey {
 
 impl<'a> Preparer<'a> {
     /// Knows what `first`, prepared with `options`, needed.
-    pub fn new(pair: Pair<'a>, options: &DockOptions, first: &Prepared) -> Self {
+    pub fn new(pair: Pair<'a>, options: &DockOptions, first: &PreparedPair) -> Self {
         let sampled = first.sampling.iter();
         Self {
             pair,
@@ -148,12 +148,12 @@ impl<'a> Preparer<'a> {
     ///
     /// # Errors
     /// [`PairError`].
-    pub fn prepare(&mut self, options: &DockOptions) -> Result<Prepared, PairError> {
+    pub fn prepare(&mut self, options: &DockOptions) -> Result<PreparedPair, PairError> {
         match self.pair {
-            Pair::Molecules(molecules) => Ok(Prepared::molecules(molecules, options)?),
+            Pair::Molecules(molecules) => Ok(PreparedPair::molecules(molecules, options)?),
             Pair::Meshes(solids) => {
                 let sampling = self.sampling(solids, options)?;
-                Ok(Prepared::meshes(sampling, options)?)
+                Ok(PreparedPair::meshes(sampling, options)?)
             }
         }
     }

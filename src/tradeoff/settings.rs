@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::change::{Change, rounded_to_fours, three_digits};
 use crate::search::DockOptions;
-use crate::search::meshes::MOST_PER_AXIS;
+use crate::search::meshes::MAX_PER_AXIS;
 use crate::search::options::Precision;
 
 /// What a setting changes of the default.
@@ -200,7 +200,7 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
                 // Molecules are balls as they come.
                 for factor in default.sample_grid.map_or(&[][..], |_| &[0.75, 1.5]) {
                     let nodes = default.sample_grid.unwrap_or(1) as f64 * factor;
-                    let nodes = (nodes.round() as usize).min(MOST_PER_AXIS);
+                    let nodes = (nodes.round() as usize).min(MAX_PER_AXIS);
                     add(knob, None, &[Change::SampleGrid(nodes)]);
                 }
             }

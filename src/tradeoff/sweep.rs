@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::agreement::{agreement, compare};
 use super::front::front;
 use super::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
-use super::pair::{Pair, PairError, Prepared, Preparer};
+use super::pair::{Pair, PairError, PreparedPair, Preparer};
 use super::settings::{Knob, Planned, Setting, settings};
 use crate::evaluate::{Capri, Evaluator};
 use crate::search::cluster::RigidBody;
@@ -32,7 +32,7 @@ pub trait SweepProgress: Progress {
 /// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are listed with the reason.
 pub fn sweep(
     pair: Pair,
-    first: Prepared,
+    first: PreparedPair,
     default: &DockOptions,
     knobs: &[Knob],
     evaluator: Option<&Evaluator>,
@@ -45,7 +45,7 @@ pub fn sweep(
     };
     let body = RigidBody::new(&first.points);
     let mut refused: Vec<Refused> = Vec::new();
-    let mut ready: Vec<(Setting, Prepared)> = Vec::new();
+    let mut ready: Vec<(Setting, PreparedPair)> = Vec::new();
     let mut settings = settings(default, planned, knobs).into_iter();
     ready.extend(settings.next().map(|default| (default, first)));
     for setting in settings {
@@ -158,7 +158,7 @@ impl Run<'_> {
 /// Runs a setting; what needs the reference is left at zero. With it the first poses of its table.
 fn run(
     setting: &Setting,
-    prepared: &Prepared,
+    prepared: &PreparedPair,
     evaluator: Option<&Evaluator>,
     progress: &dyn Progress,
 ) -> Result<(Measured, Vec<Pose>), SearchError> {
@@ -225,7 +225,7 @@ fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
 }
 
 /// About how many seconds on the clock all settings take, going by what the default took: transforms grow as the grid does, and exact sums stay.
-fn estimate(default: &Measured, ready: &[(Setting, Prepared)]) -> f64 {
+fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
     let work = |plan: &DockPlan| {
         let points = plan.grid.iter().product::<usize>() as f64;
         points * points.log2()

@@ -9,7 +9,7 @@ use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, read};
 use knotdock_structures::sampler::ball_tree::BallTree;
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, Referee};
+use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::weights;
 use knotdock_structures::sampler::{Method, Sampling, SetName, sample};
 
@@ -67,7 +67,7 @@ fn run(solid: &Solid, per_axis: usize, method: Method) -> Run {
     let (start, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let sampling = sample(solid, per_axis, method).expect("the bunny has an inside");
     let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
-    let referee = Referee::new(solid, &sampling.field);
+    let referee = HausdorffMeter::new(solid, &sampling.field);
     let fits = sampling
         .sets
         .iter()
@@ -168,7 +168,7 @@ fn main() {
                 run.cpu
             );
             if index == 0 {
-                let referee = Referee::new(&solid, &run.sampling.field);
+                let referee = HausdorffMeter::new(&solid, &run.sampling.field);
                 others.push(row(
                     paper,
                     "B&I A3, mu 0.25",
@@ -185,7 +185,7 @@ fn main() {
             ("voxels", Method::Voxels, paper.inside.to_string()),
         ] {
             let run = run(&solid, per_axis, method);
-            let volume = Referee::new(&solid, &run.sampling.field).volume();
+            let volume = HausdorffMeter::new(&solid, &run.sampling.field).volume();
             others.push(row(paper, name, &theirs, &run, 0, volume));
         }
     }
@@ -203,7 +203,7 @@ fn main() {
             1 << (paper.power / 3),
             Method::BehandishIlies(DecompositionOptions::default()),
         );
-        let volume = Referee::new(&solid, &run.sampling.field).volume();
+        let volume = HausdorffMeter::new(&solid, &run.sampling.field).volume();
         let balls = &run.sampling.sets[2].balls;
         let fitted = weights::fit(&run.sampling.field, balls, 2.0, volume);
         println!(

@@ -46,7 +46,7 @@ const LINES_A_RADIUS: f64 = 16.0;
 /// Balls up to which there are so many: of more the errors cancel, and fewer lines do as well.
 const MANY: f64 = 10_000.0;
 /// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer wait.
-const MOST_LINES: f64 = 4096.0;
+const MAX_LINES: f64 = 4096.0;
 
 /// Volume of the union of balls.
 pub fn union_volume(balls: &Knots) -> Volume {
@@ -137,7 +137,7 @@ fn measure(sets: &[&Knots]) -> [[f64; 3]; 3] {
     let extent = edges.fold(0.0, f64::max) + 2.0 * largest;
     let count = balls.len() as f64;
     let lines_a_radius = LINES_A_RADIUS * (MANY / count.max(MANY)).powf(0.25);
-    let spacing = (total / count / lines_a_radius).max(extent / MOST_LINES);
+    let spacing = (total / count / lines_a_radius).max(extent / MAX_LINES);
     let mut volumes = [[0.0; 3]; 3];
     for axis in 0..3 {
         let along = along_axis(&balls, axis, spacing);

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use knotdock_structures::mesh::{MeshFormat, MeshReport, Solid, parse};
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, Referee};
+use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::{BallSet, Method, SampleError, SetName, knots, sample};
 use solids::{Surface, cuboid, sphere};
 
@@ -32,7 +32,7 @@ fn sampled(surface: &Surface, per_axis: usize) -> Sampled {
         Method::BehandishIlies(DecompositionOptions::default()),
     )
     .unwrap();
-    let referee = Referee::new(&solid, &sampling.field);
+    let referee = HausdorffMeter::new(&solid, &sampling.field);
     let epsilon = sampling.field.grid.epsilon();
     let volume = referee.volume() * solid.frame().unit.powi(3);
     let fits = sampling
@@ -327,7 +327,7 @@ fn a_million_triangles() {
         start.elapsed().as_secs_f64(),
         sampling.steps
     );
-    let referee = Referee::new(&solid, &sampling.field);
+    let referee = HausdorffMeter::new(&solid, &sampling.field);
     for set in &sampling.sets {
         let fit = referee.judge(&set.balls);
         println!("{:?}: {} balls, {fit:?}", set.name, set.balls.len());

@@ -7,7 +7,7 @@ mod pdb_text;
 use std::fmt::Write;
 
 use knotdock_structures::molecule::{
-    Confidence, DropKind, InputSpec, ReadError, ReadOptions, ToldBy, read, read_listed,
+    Confidence, ConfidenceSource, DropKind, InputSpec, ReadError, ReadOptions, read, read_listed,
 };
 use pdb_text::{read_bytes, read_text};
 
@@ -67,7 +67,7 @@ fn confidence_of(name: &str, text: &str) -> Option<Confidence> {
 }
 
 const SURE_OF_TEN: Confidence = Confidence {
-    told_by: ToldBy::Values,
+    told_by: ConfidenceSource::Values,
     mean: 61.5,
     residues: 10,
     below_50: 3,
@@ -166,7 +166,7 @@ fn scores_that_a_model_names_go_before_its_values() {
     let named = metrics("'mean' pLDDT", "pLDDT pLDDT");
     let by_atom = |residue: usize, atom: usize| rising(residue) + 0.5 * atom as f64 - 0.75;
     let expected = Confidence {
-        told_by: ToldBy::Header,
+        told_by: ConfidenceSource::Header,
         ..SURE_OF_TEN
     };
     assert_eq!(
@@ -273,7 +273,7 @@ fn by_atom(scale: f64) -> String {
 fn values_by_atom_tell_a_prediction_where_they_are_distributed_as_one() {
     for scale in [1.0, 0.01] {
         let confidence = confidence_of("x.pdb", &by_atom(scale)).unwrap();
-        assert_eq!(confidence.told_by, ToldBy::Values);
+        assert_eq!(confidence.told_by, ConfidenceSource::Values);
         assert_eq!((confidence.residues, confidence.below_50), (29, 4));
     }
     let text = format!("EXPDTA    X-RAY DIFFRACTION\n{}", by_atom(1.0));
@@ -331,7 +331,10 @@ fn the_users_word_is_taken_where_it_can_be_true() {
         let scaled = glycines(10, |residue, _| scale * (12.0 + 7.0 * residue as f64));
         let trusted = read_by(&scaled, true);
         let confidence = trusted.report.confidence.unwrap();
-        assert_eq!((confidence.told_by, confidence.below_50), (ToldBy::User, 6));
+        assert_eq!(
+            (confidence.told_by, confidence.below_50),
+            (ConfidenceSource::User, 6)
+        );
         assert_eq!(trusted.atoms.len(), 16);
         assert!(
             trusted

@@ -11,7 +11,7 @@ use knotdock_structures::sampler::ball_tree::BallTree;
 use knotdock_structures::sampler::decomposition::{DecompositionOptions, decompose};
 use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::Referee;
+use knotdock_structures::sampler::hausdorff::HausdorffMeter;
 use knotdock_structures::sampler::skeletal_density::{Priority, SHARE_WIDTH, share};
 use knotdock_structures::sampler::{Ball, Method, SetName, sample};
 use solids::{Surface, cuboid, scattered, sphere};
@@ -42,7 +42,7 @@ fn bunny() -> Solid {
 fn check_bounds(solid: &Solid, per_axis: usize, options: DecompositionOptions) -> [usize; 3] {
     let sampling = sample(solid, per_axis, Method::BehandishIlies(options)).unwrap();
     let epsilon = sampling.field.grid.epsilon();
-    let referee = Referee::new(solid, &sampling.field);
+    let referee = HausdorffMeter::new(solid, &sampling.field);
     let [a1, a2, a3] = &sampling.sets[..] else {
         panic!()
     };
@@ -148,7 +148,7 @@ fn any_number_of_threads_gives_the_same_bits() {
                 Method::BehandishIlies(DecompositionOptions::default()),
             )
             .unwrap();
-            let referee = Referee::new(&solid, &sampling.field);
+            let referee = HausdorffMeter::new(&solid, &sampling.field);
             let fits: Vec<_> = sampling
                 .sets
                 .iter()
@@ -263,7 +263,7 @@ fn grids_have_both_ends_and_the_middle() {
 fn hausdorff_distances_and_volumes_of_a_ball_in_a_cube() {
     let solid = cuboid([-0.5; 3], [0.5; 3]).solid();
     let field = DepthField::new(&solid, Grid::new(&solid, 48));
-    let referee = Referee::new(&solid, &field);
+    let referee = HausdorffMeter::new(&solid, &field);
     assert!((referee.volume() - 1.0).abs() < 1e-12);
     let ball = Ball {
         center: [0.0; 3],
@@ -332,7 +332,7 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
     let solid = Solid::new(&mesh).unwrap();
     let frame = solid.frame();
     let field = DepthField::new(&solid, Grid::new(&solid, 16));
-    let referee = Referee::new(&solid, &field);
+    let referee = HausdorffMeter::new(&solid, &field);
     let (center, radius) = ([0.434, -0.514, 0.0], 23.481);
     let fit = referee.judge(&[Ball {
         center: frame.inward(center),
@@ -374,7 +374,7 @@ fn sheets_have_no_part_in_the_inward_distance() {
     .unwrap();
     assert_eq!(sampling.covering.unwrap().unreachable, 0);
     for set in &sampling.sets {
-        let fit = Referee::new(&solid, &sampling.field).judge(&set.balls);
+        let fit = HausdorffMeter::new(&solid, &sampling.field).judge(&set.balls);
         assert!(fit.hausdorff_inward <= sampling.field.grid.epsilon());
     }
 }
@@ -427,7 +427,7 @@ fn packed_balls_lie_inside_and_do_not_overlap() {
             assert!(apart >= a.radius + b.radius - 1e-12);
         }
     }
-    let fit = Referee::new(&solid, &sampling.field).judge(balls);
+    let fit = HausdorffMeter::new(&solid, &sampling.field).judge(balls);
     assert_eq!(fit.nodes_missed, 0);
 }
 
@@ -438,7 +438,7 @@ fn octree_balls_and_voxels_cover_and_stay_near() {
         let mut counts = Vec::new();
         for method in [Method::Voxels, Method::Octree] {
             let sampling = sample(&solid, n, method).unwrap();
-            let fit = Referee::new(&solid, &sampling.field).judge(&sampling.sets[0].balls);
+            let fit = HausdorffMeter::new(&solid, &sampling.field).judge(&sampling.sets[0].balls);
             assert_eq!(fit.nodes_missed, 0);
             assert!(fit.outward_bound <= sampling.field.grid.epsilon() * (1.0 + 1e-12));
             counts.push(sampling.sets[0].balls.len());

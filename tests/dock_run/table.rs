@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::run::*;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,rank_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends";
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,pose_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends";
 
 #[test]
 fn the_table_says_what_its_columns_promise() {
@@ -30,8 +30,8 @@ fn the_table_says_what_its_columns_promise() {
     for (index, row) in rows.iter().enumerate() {
         assert_eq!(row["rank"], (index + 1).to_string());
         let score = number(row, "score");
-        let ranked = number(row, "rank_score");
-        assert!(ranked <= last, "ranks must follow rank scores");
+        let ranked = number(row, "pose_score");
+        assert!(ranked <= last, "ranks must follow pose scores");
         last = ranked;
         let length: f64 = ["qw", "qx", "qy", "qz"]
             .map(|part| number(row, part).powi(2))
@@ -46,7 +46,7 @@ fn the_table_says_what_its_columns_promise() {
         let terms = number(row, "shape") + number(row, "electrostatics") + number(row, "contact");
         assert!((score - terms).abs() <= 1e-9 * best);
         let rescored = ["fine_contact", "atom_pair", "relaxed"].map(|term| number(row, term));
-        let ranked_by = number(row, "rank_score") - rescored.iter().sum::<f64>();
+        let ranked_by = number(row, "pose_score") - rescored.iter().sum::<f64>();
         assert!((score - ranked_by).abs() <= 1e-9 * best);
         // Shortest digits: printing what was read gives the field back.
         for column in ["score", "qx", "tx", "score_grid", "slice_0"] {
@@ -124,7 +124,7 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
     firsts.retain(|row| seen.insert(row["cluster"].clone()));
     firsts.sort_by_key(|row| row["cluster"].parse::<usize>().unwrap());
     for row in &firsts {
-        let excess = number(row, "cluster_score") - number(row, "rank_score");
+        let excess = number(row, "cluster_score") - number(row, "pose_score");
         assert_eq!(excess > 1e-9, row["cluster_size"] != "1", "company counts");
     }
     let clusters = rows(&folder.path().join("clusters"));

@@ -57,10 +57,10 @@ fn named_residues_are_kept_free_or_touched() {
     assert!(after > 0.4 * before && before < -100.0, "{before} {after}");
 
     // Fourteen residues attract, which the inhibitor cannot all reach.
-    let drawn = rows(&["--attract-receptor", sites, "--attraction-weight", "4000"]);
+    let drawn = rows(&["--active-receptor", sites, "--active-weight", "4000"]);
     let attracting = DockOptions {
-        attract_receptor: options.block_receptor.clone(),
-        attraction_weight: 1.0,
+        active_receptor: options.block_receptor.clone(),
+        active_weight: 1.0,
         ..DockOptions::default()
     };
     let scene = Scene::new(&own, &other, &attracting).unwrap();
@@ -80,7 +80,7 @@ fn named_residues_are_kept_free_or_touched() {
 
     for (options, said) in [
         (&["--block-ligand", "Z:1"][..], "block-ligand is Z:1"),
-        (&["--attract-ligand", "Z:1"], "attract-ligand is Z:1"),
+        (&["--active-ligand", "Z:1"], "active-ligand is Z:1"),
         (&["--block-receptor", "A:9000"], "among A:"),
         (&["--effects", "restraint"], "there can be no restraint"),
         (
@@ -161,9 +161,9 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
     let mut seen = std::collections::BTreeSet::new();
     for row in &ranked {
         let own = plain.iter().find(|other| place(other) == place(row));
-        let before = number(&own.unwrap()["rank_score"]);
+        let before = number(&own.unwrap()["pose_score"]);
         let earned = number(&row["attraction"]);
-        assert!((number(&row["rank_score"]) - before - earned).abs() < 1e-9 * before.abs());
+        assert!((number(&row["pose_score"]) - before - earned).abs() < 1e-9 * before.abs());
         seen.insert(row["attraction"].clone());
     }
     // None, one or both of the two residues touch.

@@ -12,7 +12,7 @@ fn what_lies_where_residues_are_missing_costs() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |weight: &str| {
-        let options = "--rotations 24 --effects shape --no-cluster --refine 0 --chain-end-weight 0 --missing-weight";
+        let options = "--rotations 24 --effects shape --no-cluster --refine 0 --termini-weight 0 --unresolved-weight";
         let options: Vec<&str> = options.split(' ').chain([weight]).collect();
         let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
         let missing = object["run"]["plan"]["missing_residues"].clone();
@@ -40,7 +40,7 @@ fn what_lies_where_residues_are_missing_costs() {
     for row in rows.iter().step_by(5) {
         let number = |name: &str| -> f64 { row[name].parse().unwrap() };
         let missing = number("missing");
-        assert_eq!(number("rank_score"), number("score") + missing);
+        assert_eq!(number("pose_score"), number("score") + missing);
         let quaternion = ["qw", "qx", "qy", "qz"].map(number);
         let pose = Pose::from_parts(quaternion, ["tx", "ty", "tz"].map(number));
         let back = pose.inverse();
@@ -91,7 +91,7 @@ fn inside(atoms: &[[f64; 3]], stretches: &[Conformers], reach: f64) -> f64 {
 fn contacts_of_ends_of_chains_cost() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
-    let options = "--rotations 24 --effects shape --no-cluster --refine 0 --missing-weight 0 --chain-end-weight 3";
+    let options = "--rotations 24 --effects shape --no-cluster --refine 0 --unresolved-weight 0 --termini-weight 3";
     let options: Vec<&str> = options.split(' ').collect();
     let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
     let plan = &object["run"]["plan"];
@@ -140,7 +140,7 @@ fn contacts_of_ends_of_chains_cost() {
         };
         let atoms = touching(&fixed, &placed) + touching(&placed, &fixed);
         assert_eq!(number("chain_ends"), -3.0 * atoms as f64);
-        assert_eq!(number("rank_score"), number("score") + number("chain_ends"));
+        assert_eq!(number("pose_score"), number("score") + number("chain_ends"));
         met += usize::from(atoms > 0);
     }
     assert!(met > 0, "no pose touches an end");

@@ -126,12 +126,12 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
             "attraction",
             "missing",
             "chain_ends",
-            "rank_score",
+            "pose_score",
         ] {
             assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
         }
         assert_eq!(
-            number(&row["rank_score"]),
+            number(&row["pose_score"]),
             score
                 + (number(&row["fine_contact"])
                     + number(&row["atom_pair"])

@@ -9,8 +9,8 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |options: &[&str]| {
         let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
-        all.extend(["--peptidase-weight", "0", "--missing-weight", "0"]);
-        all.extend(["--chain-end-weight", "0"]);
+        all.extend(["--peptidase-weight", "0", "--unresolved-weight", "0"]);
+        all.extend(["--termini-weight", "0"]);
         all.extend(options);
         let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
         let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -36,7 +36,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
     for row in plain.iter().chain(&table(&["--effects", "shape"])) {
         for (_, term) in TERMS {
             assert_eq!(
-                (row[term].as_str(), &row["rank_score"]),
+                (row[term].as_str(), &row["pose_score"]),
                 ("", &row["score"])
             );
         }
@@ -51,7 +51,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
                 assert_eq!(row[*name].is_empty(), term != on);
             }
             assert_eq!(
-                number(&row, "rank_score"),
+                number(&row, "pose_score"),
                 number(&row, "score") + number(&row, only)
             );
         }
@@ -75,12 +75,12 @@ fn rescoring_orders_poses_and_changes_no_score() {
             assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
             all += two;
         }
-        assert_eq!(number(row, "rank_score"), number(row, "score") + all);
+        assert_eq!(number(row, "pose_score"), number(row, "score") + all);
     }
     assert!(moved > 0, "rescoring must matter");
     assert!(
         twice
             .windows(2)
-            .all(|pair| number(&pair[0], "rank_score") >= number(&pair[1], "rank_score"))
+            .all(|pair| number(&pair[0], "pose_score") >= number(&pair[1], "pose_score"))
     );
 }

@@ -1,7 +1,7 @@
 //! What fuzzing found, each with its story. No mutated input has made a reader panic; promises were broken otherwise.
 
 use knotdock_scoring::effect::contact::Potential;
-use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 
 /// The first runs on tables of potentials took too many inputs: whatever followed the last row, a copied line or a cut-off second table,
 /// was never looked at, so a table joined to another by mistake was half used without a word.
@@ -13,11 +13,11 @@ fn rows_after_a_table_are_refused() {
     let refused = Potential::parse(&format!("{coarse}{again}\n")).unwrap_err();
     assert_eq!(refused.line, coarse.lines().count() + 1);
     let fine = include_str!("../../scoring/src/rescoring/fine_contact_potential.csv");
-    assert!(FinePotential::parse(fine).is_ok());
+    assert!(DistanceBinnedPotential::parse(fine).is_ok());
     let again = fine.lines().next_back().unwrap();
-    assert!(FinePotential::parse(&format!("{fine}{again}\n")).is_err());
+    assert!(DistanceBinnedPotential::parse(&format!("{fine}{again}\n")).is_err());
     assert!(
-        FinePotential::parse(&format!("{fine}\n\n")).is_ok(),
+        DistanceBinnedPotential::parse(&format!("{fine}\n\n")).is_ok(),
         "blank lines may follow"
     );
     let pairs = include_str!("../../scoring/src/rescoring/atom_pair_potential.csv");

@@ -7,7 +7,7 @@ use knotdock::output::pair_table::read_pairs;
 use knotdock::output::poses::PoseTable;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
-use knotdock_scoring::rescoring::{AtomPairPotential, FinePotential};
+use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
@@ -96,7 +96,9 @@ impl Reader {
                 }
             }
             Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
-            Self::FineContact => table(bytes, |text| Ok(FinePotential::parse(text)?.ranges.into())),
+            Self::FineContact => table(bytes, |text| {
+                Ok(DistanceBinnedPotential::parse(text)?.ranges.into())
+            }),
             Self::AtomPair => pair_table(bytes),
             Self::Pairs => {
                 let path = scratch.join("pairs.csv");

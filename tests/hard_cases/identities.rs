@@ -4,17 +4,17 @@
 //! holds for the pair sum alone (r0 = 0, a split knot, doubled lengths) in scoring/tests/identities.rs.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_options, some_rotation};
-use knotdock_scoring::engine::{CpuEngine, Folded};
+use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
-use knotdock_scoring::lifted_axis::{Fold, RadiusBasis};
+use knotdock_scoring::lifted_axis::{Quantity, RadiusBasis};
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
 /// A grid of one fold in f64.
-fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, fold: Fold) -> Vec<f64> {
-    let folded = Folded::<f64>::new(&pair.plan, a, b, fold);
+fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, fold: Quantity) -> Vec<f64> {
+    let folded = ReceptorSpectra::<f64>::new(&pair.plan, a, b, fold);
     let engine = CpuEngine::new(pair.plan.clone(), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&some_rotation(), &mut work);
@@ -38,8 +38,8 @@ fn the_folded_grid_is_the_weighted_sum_of_the_slices() {
             ..options.kernel
         };
         let pair = Pair::<f64>::new(&a, &b, options);
-        let score = grid(&pair, &a, &b, Fold::Score);
-        let slices = [0, 1, 2].map(|slice| grid(&pair, &a, &b, Fold::Slice(slice)));
+        let score = grid(&pair, &a, &b, Quantity::Score);
+        let slices = [0, 1, 2].map(|slice| grid(&pair, &a, &b, Quantity::Slice(slice)));
         let [w0, w1, w2] = options.kernel.slice_weights();
         let size = (1.0 + lambda).powi(2) * largest(&slices[2]);
         for voxel in 0..score.len() {
@@ -158,7 +158,7 @@ fn as_many_fields_as_distinct_radii_are_exact() {
     let (a, b) = (cloud(80, 9.0, &many, 7), cloud(45, 6.0, &RADII, 8));
     let pair = Pair::<f64>::new(&a, &b, engine_options(1e-2));
     assert_eq!(pair.plan.basis, RadiusBasis::Modes);
-    let folded = Folded::<f64>::new(&pair.plan, &a, &b, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
     let at = |rank: usize| {
         let engine = CpuEngine::new(pair.plan.clone(), &folded, &b, rank);
         let mut work = engine.workspace();

@@ -2,10 +2,10 @@
 //! bits at twice the size.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
-use knotdock_scoring::engine::{CpuEngine, Folded, Plan};
-use knotdock_scoring::field::ReceptorField;
+use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::KernelOptions;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -25,7 +25,7 @@ struct Losses {
 /// error would have to be several times its measured size to bring one of them up (asserted).
 fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let pair = Pair::<f32>::new(a, b, engine_options(tolerance));
-    let folded = Folded::<f32>::new(&pair.plan, a, b, Fold::Score);
+    let folded = ReceptorSpectra::<f32>::new(&pair.plan, a, b, Quantity::Score);
     let rank = rank.unwrap_or(folded.full_rank());
     let engine = CpuEngine::new(pair.plan.clone(), &folded, b, rank);
     let mut work = engine.workspace();
@@ -136,8 +136,8 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
     let a = Knots::new(centers, radii).unwrap();
     let b = cloud(40, 6.0, &RADII, 42);
     let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let folded = Folded::<f32>::new(&pair.plan, &a, &b, Fold::Score);
-    let field = ReceptorField::new(&pair.plan, &folded, &b);
+    let folded = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&pair.plan, &folded, &b);
     let work = pair.correlate(&some_rotation());
     let best = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
     let (mut peaks, mut worst) = (0, 0.0f64);

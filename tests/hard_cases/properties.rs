@@ -2,13 +2,13 @@
 //! under the inverse pose, no score through the periodic image, and the fast path within its tolerance of the pair sum.
 
 use crate::scene::{Pair, engine_options};
-use knotdock_scoring::configuration::Configuration;
-use knotdock_scoring::engine::{EngineOptions, Folded, Plan};
+use knotdock_scoring::engine::{EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::Selection;
+use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -83,7 +83,10 @@ fn size(kernel: &RankingKernel, a: &Knots, b: &Knots) -> f64 {
 fn best(plan: &Plan, a: &Knots, b: &Knots) -> f64 {
     let widest = crate::scene::ends(a).1 + crate::scene::ends(b).1;
     let table = plan.kernel.distance_table(widest);
-    plan.kernel.rim(&table).max(0.1 * table.value(0.0)[3].abs()) * pairs(a, b)
+    plan.kernel
+        .peak_score(&table)
+        .max(0.1 * table.value(0.0)[3].abs())
+        * pairs(a, b)
 }
 
 fn pairs(a: &Knots, b: &Knots) -> f64 {
@@ -116,8 +119,8 @@ proptest! {
     fn the_fast_path_is_finite_and_symmetric(a in knots(), b in knots(), options in options(), place in pose()) {
         let summed = |a: &Knots, b: &Knots, pose: &Pose| {
             let plan = Arc::new(Plan::new(a, b, options).unwrap());
-            let folded = Folded::<f64>::new(&plan, a, b, Fold::Score);
-            let whole = Configuration::new(&plan, &folded, b, &Selection::all(&plan.modes));
+            let folded = ReceptorSpectra::<f64>::new(&plan, a, b, Quantity::Score);
+            let whole = TruncatedCorrelation::new(&plan, &folded, b, &Selection::all(&plan.modes));
             let (value, gradient) = whole.gradient(pose, &mut whole.workspace());
             assert!(gradient.force.iter().chain(&gradient.torque).all(|x| x.is_finite()));
             value

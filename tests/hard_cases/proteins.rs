@@ -4,7 +4,7 @@
 //! references are too slow for all modes and all voxels of a protein, so 2,000 modes and 200 poses are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_scoring::transform::real_fft_3d::RealFft3d;
@@ -161,7 +161,7 @@ fn direct<T: Real>(
                 .map(|k| {
                     let eta = plan.axis.eta(k);
                     plan.axis.coefficient(&plan.kernel, length, k)
-                        * plan.axis.fold_factor(&plan.kernel, Fold::Score, k)
+                        * plan.axis.fold_factor(&plan.kernel, Quantity::Score, k)
                         * turned(&classes[0], eta)
                         * turned(&classes[1], eta).conj()
                 })

@@ -7,11 +7,11 @@
 #![allow(clippy::excessive_precision, clippy::approx_constant)]
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_scoring::kernel::radial_transform::RadialTransform;
 use knotdock_scoring::kernel::{Band, Bump, KernelOptions};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use num_complex::Complex64;
@@ -106,7 +106,7 @@ fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
             ..engine_options(1e-4)
         };
         let plan = Arc::new(Plan::product(&one, &other, options, Band::Whole).unwrap());
-        let folded = Folded::<f64>::new(&plan, &one, &other, Fold::Slice(0));
+        let folded = ReceptorSpectra::<f64>::new(&plan, &one, &other, Quantity::Slice(0));
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &other, 1);
         let mut work = engine.workspace();
         engine.correlate(&Pose::identity().rotation, &mut work);

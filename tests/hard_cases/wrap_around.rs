@@ -5,12 +5,12 @@
 //! beyond it the tails of many pairs may add up in step, most so of two plates, whose knots all lie at the same distance.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
-use knotdock_scoring::configuration::Configuration;
-use knotdock_scoring::engine::Folded;
-use knotdock_scoring::field::ReceptorField;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::engine::ReceptorSpectra;
+use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::Selection;
+use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -102,8 +102,8 @@ fn a_ligand_between_receptor_and_image_scores_with_neither() {
 fn the_field_ends_with_the_box() {
     let (a, b) = (cloud(120, 10.0, &RADII, 3), cloud(50, 7.0, &RADII, 4));
     let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let folded = Folded::<f32>::new(&pair.plan, &a, &b, Fold::Score);
-    let field = ReceptorField::new(&pair.plan, &folded, &b);
+    let folded = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&pair.plan, &folded, &b);
     let rotation = UnitQuaternion::identity();
     let work = pair.correlate(&rotation);
     let (best, score) = work
@@ -148,8 +148,9 @@ fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
         options.kernel.lambda = lambda;
         options.kernel.offset = offset;
         let pair = Pair::<f64>::new(&a, &b, options);
-        let folded = Folded::<f64>::new(&pair.plan, &a, &b, Fold::Score);
-        let direct = Configuration::new(&pair.plan, &folded, &b, &Selection::all(&pair.plan.modes));
+        let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
+        let direct =
+            TruncatedCorrelation::new(&pair.plan, &folded, &b, &Selection::all(&pair.plan.modes));
         let mut work = direct.workspace();
         let rotation = some_rotation();
         let grid = pair.correlate(&rotation).grid;

@@ -99,7 +99,7 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--effects", "contact"], "atom types"),
         (["--effects", "restraint"], "residues"),
         (["--block-ligand", "A:1"], "residues"),
-        (["--attract-receptor", "A:1"], "residues"),
+        (["--active-receptor", "A:1"], "residues"),
         (["--core-weight", "2"], "of molecules"),
         (["--contact-weight", "5"], "of molecules"),
         (["--ph", "5"], "of molecules"),

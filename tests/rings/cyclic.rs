@@ -127,7 +127,7 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
             }
             let loose = number(row, "missing") + number(row, "chain_ends");
             let ranked = own + others + loose;
-            assert!(close(number(row, "rank_score"), ranked), "{name}");
+            assert!(close(number(row, "pose_score"), ranked), "{name}");
         }
     }
 }
@@ -191,16 +191,16 @@ fn all_copies_are_written_and_runs_repeat() {
 fn residues_are_named_for_all_copies() {
     let folder = tempfile::tempdir().unwrap();
     let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
-    assert!(told["run"]["options"]["attract_ligand"].is_null());
+    assert!(told["run"]["options"]["active_ligand"].is_null());
     assert!(rows.iter().all(|row| row["attraction"].is_empty()));
     let molecule = example("ligand_unbound");
-    let options = "--rotations 40 --poses 60 --effects shape,restraint --attract-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
+    let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
     let mut arguments = vec!["dock", &molecule, "--symmetry", "C3"];
     arguments.extend(options.split(' '));
     let output = succeed(folder.path(), arguments);
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
     for (side, other) in [
-        ("attract_receptor", "attract_ligand"),
+        ("active_receptor", "active_ligand"),
         ("block_receptor", "block_ligand"),
     ] {
         let options = &told["run"]["options"];
@@ -254,7 +254,7 @@ fn what_no_ring_can_have_is_refused() {
         ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
         (
-            "a.pdb --symmetry C3 --attract-ligand B:5",
+            "a.pdb --symmetry C3 --active-ligand B:5",
             "cannot be used with",
         ),
         ("a.pdb --symmetry C3 --refine 5", "refine is 5"),

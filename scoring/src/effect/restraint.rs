@@ -9,19 +9,19 @@ use knotdock_structures::Knots;
 
 /// What is wanted of an atom's contacts; as a number its class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mark {
+pub enum ResidueRole {
     /// Nothing.
     #[default]
     Free,
     /// That there be none.
-    Blocked,
+    Excluded,
     /// That there be some.
-    Attracted,
+    Active,
 }
 
-impl Mark {
+impl ResidueRole {
     /// All marks, in the order of their classes.
-    const ALL: [Self; 3] = [Self::Free, Self::Blocked, Self::Attracted];
+    const ALL: [Self; 3] = [Self::Free, Self::Excluded, Self::Active];
 }
 
 /// What a contact of a marked atom is worth.
@@ -34,8 +34,13 @@ pub struct Weights {
 }
 
 /// The term for two sets of knots with a mark each; knots without one are free.
-pub fn term(receptor: &Knots, ligand: &Knots, marks: [&[Mark]; 2], weights: Weights) -> Term {
-    let labels = |knots: &Knots, marks: &[Mark]| {
+pub fn term(
+    receptor: &Knots,
+    ligand: &Knots,
+    marks: [&[ResidueRole]; 2],
+    weights: Weights,
+) -> Term {
+    let labels = |knots: &Knots, marks: &[ResidueRole]| {
         (0..knots.len())
             .map(|index| Label {
                 class: marks.get(index).copied().unwrap_or_default() as usize,
@@ -43,17 +48,21 @@ pub fn term(receptor: &Knots, ligand: &Knots, marks: [&[Mark]; 2], weights: Weig
             })
             .collect()
     };
-    let worth = |mark: Mark| match mark {
-        Mark::Free => 0.0,
-        Mark::Blocked => -weights.blocked,
-        Mark::Attracted => weights.attracted,
+    let worth = |mark: ResidueRole| match mark {
+        ResidueRole::Free => 0.0,
+        ResidueRole::Excluded => -weights.blocked,
+        ResidueRole::Active => weights.attracted,
     };
-    let row = |own: Mark| Mark::ALL.map(|other| worth(own) + worth(other)).to_vec();
+    let row = |own: ResidueRole| {
+        ResidueRole::ALL
+            .map(|other| worth(own) + worth(other))
+            .to_vec()
+    };
     let [of_receptor, of_ligand] = marks;
     Term {
         effect: Effect::Restraint,
         radial: contact::RADIAL,
-        matrix: Mark::ALL.map(row).to_vec(),
+        matrix: ResidueRole::ALL.map(row).to_vec(),
         receptor: labels(receptor, of_receptor),
         ligand: labels(ligand, of_ligand),
     }
@@ -71,7 +80,7 @@ mod tests {
             blocked: 1.5,
             attracted: 4.0,
         };
-        let marks = [Mark::Attracted, Mark::Blocked];
+        let marks = [ResidueRole::Active, ResidueRole::Excluded];
         let term = term(&knots, &knots, [&marks, &[]], weights);
         let classes = |labels: &[Label]| labels.iter().map(|l| l.class).collect::<Vec<_>>();
         assert_eq!(classes(&term.receptor), [2, 1]);

@@ -14,7 +14,7 @@ use super::preparation::ligand_forward;
 use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::place;
-use crate::transform::nfft::{Forward, ForwardWorkspace};
+use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
 use crate::vectorized::vectorized;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;

@@ -5,16 +5,16 @@
 
 mod columns;
 pub mod cpu;
-pub mod folded;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod packed;
 pub mod plan;
 mod preparation;
+pub mod receptor_spectra;
 mod resolved;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
-pub use folded::{Factors, Folded};
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
+pub use receptor_spectra::{Factors, ReceptorSpectra};
 pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};

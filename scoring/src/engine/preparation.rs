@@ -1,11 +1,11 @@
 //! Preparing the engine on CPU cores: everything that does not turn, for a rank of the lifted axis.
 
 use super::cpu::CpuEngine;
-use super::folded::{Factors, Folded};
 use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
+use super::receptor_spectra::{Factors, ReceptorSpectra};
 use crate::transform::Real;
-use crate::transform::nfft::Forward;
+use crate::transform::pruned_type1::Forward;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 
 impl<T: Real> CpuEngine<T> {
     /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
-    pub fn new(plan: Arc<Plan>, folded: &Folded<T>, ligand: &Knots, rank: usize) -> Self {
+    pub fn new(plan: Arc<Plan>, folded: &ReceptorSpectra<T>, ligand: &Knots, rank: usize) -> Self {
         let factors = folded.factor(&plan.modes);
         Self::with_factors(plan, folded, &factors, ligand, rank)
     }
@@ -21,7 +21,7 @@ impl<T: Real> CpuEngine<T> {
     /// As [`Self::new`], with factors that are at hand.
     pub fn with_factors(
         plan: Arc<Plan>,
-        folded: &Folded<T>,
+        folded: &ReceptorSpectra<T>,
         factors: &Factors,
         ligand: &Knots,
         rank: usize,

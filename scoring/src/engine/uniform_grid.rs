@@ -25,9 +25,9 @@
 
 use super::plan::{PlanError, check_bodies};
 use crate::exact::center;
-use crate::kernel::product::{Body, factors, rim_and_reach};
+use crate::kernel::product::{Body, factors, peak_score_and_reach};
 use crate::kernel::{Band, KernelOptions, ProductKernel};
-use crate::lifted_axis::Fold;
+use crate::lifted_axis::Quantity;
 use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
 use crate::transform::{Real, fast_size};
 use knotdock_structures::Knots;
@@ -44,7 +44,7 @@ pub struct UniformGridOptions {
     pub band: Band,
     /// Grid spacing h, Å.
     pub spacing: f64,
-    /// Share of its rim below which the low-passed kernel's ringing may reach through the box's faces; without a low-pass nothing does.
+    /// Share of its peak below which the low-passed kernel's ringing may reach through the box's faces; without a low-pass nothing does.
     pub tolerance: f64,
 }
 
@@ -92,7 +92,7 @@ impl UniformGridPlan {
         )?;
         let reach = match options.band {
             Band::Whole => kernel.reach(r, s),
-            Band::LowPass => rim_and_reach(&kernel.pair_table(r, s), options.tolerance).1,
+            Band::LowPass => peak_score_and_reach(&kernel.pair_table(r, s), options.tolerance).1,
         };
         let (receptor_center, ligand_center) = (center(receptor), center(ligand));
         let (low, high) = receptor.bounds();
@@ -158,7 +158,7 @@ pub struct UniformGridWorkspace<T> {
 
 impl<T: Real> UniformGrid<T> {
     /// Rasterises and transforms the receptor.
-    pub fn new(plan: UniformGridPlan, receptor: &Knots, ligand: &Knots, fold: Fold) -> Self {
+    pub fn new(plan: UniformGridPlan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
         let fft = RealFft3d::<T>::new(plan.size);
         let zero = Complex::new(T::zero(), T::zero());
         let receptor = balls(receptor, plan.receptor_center);

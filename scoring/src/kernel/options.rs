@@ -54,7 +54,7 @@ pub enum KernelError {
 /// and those of a pair sum a second for each sum of two radii.
 pub(super) const LONGEST: f64 = 140.0;
 /// Most resolutions that the low-pass may ring over, those of a pass length a hundredth above the resolution. Balls that are many resolutions wide need long tables, this does not.
-pub(super) const LONGEST_RING: f64 = 102.0;
+pub(super) const MAX_RING_LENGTH: f64 = 102.0;
 /// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal numbers.
 pub(super) const SMALLEST: f64 = 1e-6;
 /// What errors call `Trim::BehandishIlies::length`.

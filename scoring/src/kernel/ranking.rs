@@ -8,7 +8,7 @@
 //! Both are the work of [`super::radial_filter`].
 
 use super::cone::{Cone, Trim};
-use super::options::{KernelError, KernelOptions, LONGEST, LONGEST_RING, SMALLEST, TRIM_LENGTH};
+use super::options::{KernelError, KernelOptions, LONGEST, MAX_RING_LENGTH, SMALLEST, TRIM_LENGTH};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -69,7 +69,7 @@ impl RankingKernel {
             Trim::BehandishIlies { length } => reach.max(2.0 * length),
         };
         if !(0.0..=LONGEST).contains(&(longest / options.resolution))
-            || !(0.0..=LONGEST_RING).contains(&ring)
+            || !(0.0..=MAX_RING_LENGTH).contains(&ring)
         {
             return Err(KernelError::TooLong {
                 reach: longest,
@@ -178,7 +178,7 @@ impl RankingKernel {
     }
 
     /// Largest value of the score kernel over d, of a radius sum's [`Self::distance_table`]: what one touching pair can earn.
-    pub fn rim(&self, table: &Table<4>) -> f64 {
+    pub fn peak_score(&self, table: &Table<4>) -> f64 {
         (0..1000)
             .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
             .fold(0.0, f64::max)

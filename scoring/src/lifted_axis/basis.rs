@@ -1,7 +1,7 @@
 //! The basis in which knots meet the fourth axis: radius classes, lifted modes, or nodes over the radii.
 
-use super::nodes::{MOST_NODES, node_value, nodes_for};
-use super::{Fold, LiftedAxis};
+use super::nodes::{MAX_NODES, node_value, nodes_for};
+use super::{LiftedAxis, Quantity};
 use crate::kernel::table::Table;
 use crate::kernel::{ProductKernel, RankingKernel};
 use num_complex::Complex64;
@@ -40,7 +40,7 @@ impl RadiusBasis {
     }
 
     /// The basis for a product kernel on |w| <= `w_max`, and the largest error of interpolating over radii relative to the largest ball's
-    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as `MOST_NODES` nodes bring it.
+    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as `MAX_NODES` nodes bring it.
     pub fn for_product(
         kernel: &ProductKernel,
         receptor: Vec<f64>,
@@ -48,7 +48,7 @@ impl RadiusBasis {
         w_max: f64,
         tolerance: f64,
     ) -> (Self, f64) {
-        if receptor.len().max(ligand.len()) <= MOST_NODES {
+        if receptor.len().max(ligand.len()) <= MAX_NODES {
             return (Self::Classes { receptor, ligand }, 0.0);
         }
         let (receptor, a) = nodes_for(kernel, &receptor, w_max, tolerance);
@@ -90,7 +90,7 @@ impl RadiusBasis {
         &self,
         kernel: &RankingKernel,
         axis: &LiftedAxis,
-        fold: Fold,
+        fold: Quantity,
         (a, b): (usize, usize),
         w_max: f64,
     ) -> Option<Table<1>> {
@@ -136,7 +136,7 @@ impl RadiusBasis {
     pub fn product_coupling(
         &self,
         kernel: &ProductKernel,
-        fold: Fold,
+        fold: Quantity,
         (a, b): (usize, usize),
         w_max: f64,
     ) -> Option<Table<1>> {

@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 
 /// What the engine correlates: one slice, or the score that folds all three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fold {
+pub enum Quantity {
     /// The weighted sum of the three slices: G.
     Score,
     /// One unweighted slice, 0, 1 or 2 for rho = 0, r0, 2 r0.
@@ -132,25 +132,25 @@ impl LiftedAxis {
     }
 
     /// C_k: what the fold multiplies mode eta_k by.
-    pub fn fold_factor(&self, kernel: &RankingKernel, fold: Fold, k: i64) -> Complex64 {
+    pub fn fold_factor(&self, kernel: &RankingKernel, fold: Quantity, k: i64) -> Complex64 {
         let eta = self.eta(k);
         match fold {
-            Fold::Score => DoubleSkin {
+            Quantity::Score => DoubleSkin {
                 lambda: kernel.options().lambda,
                 offset: kernel.options().offset,
             }
             .multiplier(eta)
             .powi(2),
-            Fold::Slice(index) => {
+            Quantity::Slice(index) => {
                 let offset = kernel.options().slice_offsets()[index.min(2)];
                 Complex64::cis(-2.0 * PI * eta * offset)
             }
             // Modes turn as exp(-2 pi i eta rho): to differentiate is to multiply by -2 pi i eta.
-            Fold::ScoreByOffset => {
-                self.fold_factor(kernel, Fold::Score, k) * Complex64::new(0.0, -2.0 * PI * eta)
+            Quantity::ScoreByOffset => {
+                self.fold_factor(kernel, Quantity::Score, k) * Complex64::new(0.0, -2.0 * PI * eta)
             }
-            Fold::SliceByOffset(index) => {
-                let slice = self.fold_factor(kernel, Fold::Slice(index), k);
+            Quantity::SliceByOffset(index) => {
+                let slice = self.fold_factor(kernel, Quantity::Slice(index), k);
                 slice * Complex64::new(0.0, -2.0 * PI * eta)
             }
         }

@@ -5,7 +5,7 @@ use crate::kernel::product::Body;
 use std::f64::consts::PI;
 
 /// Most nodes of [`super::RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product kernel.
-pub(super) const MOST_NODES: usize = 32;
+pub(super) const MAX_NODES: usize = 32;
 
 /// Value at `radius` of the Lagrange polynomial that is 1 at node `index`.
 pub(super) fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
@@ -34,7 +34,7 @@ pub(super) fn nodes_for(
     let bodies = [Body::Solid, Body::Grown];
     let between = |i: usize, n: usize| low + (high - low) * i as f64 / n as f64;
     let mut reached = (Vec::new(), f64::INFINITY);
-    for count in 2..=MOST_NODES {
+    for count in 2..=MAX_NODES {
         let nodes: Vec<f64> = (0..count)
             .map(|i| (PI * (i as f64 + 0.5) / count as f64).cos())
             .map(|x| 0.5 * (low + high) + 0.5 * (high - low) * x)

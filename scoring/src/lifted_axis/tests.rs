@@ -47,7 +47,7 @@ fn classes_and_modes_are_the_same_sum() {
         ligand: vec![s],
     };
     let modes = RadiusBasis::Modes;
-    for fold in [Fold::Score, Fold::Slice(0), Fold::Slice(2)] {
+    for fold in [Quantity::Score, Quantity::Slice(0), Quantity::Slice(2)] {
         for w in [0.0, 0.05, 0.13, 0.22] {
             let direct = classes
                 .coupling(&kernel, &axis, fold, (0, 0), 0.25)

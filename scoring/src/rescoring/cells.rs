@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-/// Edge of a cell in Å, where the atoms do not lie so far apart that there would be more than [`MOST_CELLS`].
+/// Edge of a cell in Å, where the atoms do not lie so far apart that there would be more than [`MAX_CELLS`].
 const EDGE: f64 = 4.0;
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 
 /// An atom of a numbered type.
 #[derive(Clone, Copy)]
@@ -35,7 +35,7 @@ impl Cells {
         let extent = ends(f64::max, 0.0) - low;
         let count = |edge: f64| extent.map(|length| (length / edge).floor() + 1.0);
         let mut edge = EDGE;
-        while count(edge).product() > MOST_CELLS {
+        while count(edge).product() > MAX_CELLS {
             edge *= 1.5;
         }
         let counts: [usize; 3] = count(edge).map(|n| n as usize).into();

@@ -1,7 +1,7 @@
 //! The sum over contacts by distance range.
 
 use super::bodies::Bodies;
-use super::potential::{ENDS, FinePotential, step_down};
+use super::potential::{DistanceBinnedPotential, ENDS, step_down};
 use crate::effect::contact::TYPES;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
@@ -21,7 +21,12 @@ pub struct FineContacts {
 
 impl FineContacts {
     /// Prepares two sets of knots with contact types; `weight` is score per RT.
-    pub fn new(receptor: &Knots, ligand: &Knots, potential: &FinePotential, weight: f64) -> Self {
+    pub fn new(
+        receptor: &Knots,
+        ligand: &Knots,
+        potential: &DistanceBinnedPotential,
+        weight: f64,
+    ) -> Self {
         let energy = |range: usize, a: usize, b: usize| {
             potential
                 .ranges
@@ -60,7 +65,7 @@ mod tests {
     /// Two atoms at the middle of each range have that range's energy, those between two ranges a part of both; beyond the reach there is none.
     #[test]
     fn one_pair_has_the_energy_of_its_range() {
-        let potential = FinePotential::default();
+        let potential = DistanceBinnedPotential::default();
         let one = |kind: u8| {
             let knots = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
             knots.with_labels(Vec::new(), vec![Some(kind)]).unwrap()
@@ -88,7 +93,7 @@ mod tests {
     /// Every pair of types has its own energies, whichever body has which.
     #[test]
     fn every_pair_of_types_has_its_own_energies() {
-        let potential = FinePotential::default();
+        let potential = DistanceBinnedPotential::default();
         let one = |kind: usize| {
             let knots = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
             knots
@@ -110,7 +115,7 @@ mod tests {
     #[test]
     fn no_typed_atom_scores_nothing() {
         let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
-        let contacts = FineContacts::new(&bare, &bare, &FinePotential::default(), 1.0);
+        let contacts = FineContacts::new(&bare, &bare, &DistanceBinnedPotential::default(), 1.0);
         assert_eq!(contacts.score(&Pose::identity()), 0.0);
     }
 }

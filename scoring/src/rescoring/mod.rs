@@ -30,6 +30,6 @@ pub use chain_ends::ChainEndContacts;
 pub use contacts::FineContacts;
 pub use missing::MissingContacts;
 pub use pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
-pub use potential::{FinePotential, RANGES};
+pub use potential::{DistanceBinnedPotential, RANGES};
 pub use relaxation::{Relaxation, Relaxed, Workspace};
 pub use rescorer::{Rescored, Rescorer};

@@ -18,12 +18,12 @@ const TABLE: &str = include_str!("fine_contact_potential.csv");
 /// in docked poses, the reference state of DARS (Chuang, Kozakov, Brenke, Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227), mean removed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct FinePotential {
+pub struct DistanceBinnedPotential {
     /// One table for each of [`RANGES`].
     pub ranges: [Potential; 3],
 }
 
-impl Default for FinePotential {
+impl Default for DistanceBinnedPotential {
     /// The potential that this crate carries.
     fn default() -> Self {
         // A test holds the table to its form.
@@ -33,7 +33,7 @@ impl Default for FinePotential {
     }
 }
 
-impl FinePotential {
+impl DistanceBinnedPotential {
     /// Reads a table: lines of `#`, a header `range,type,` and the names of the types, then for each range a row for each type, in order.
     ///
     /// # Errors
@@ -62,8 +62,8 @@ mod tests {
 
     #[test]
     fn the_table_is_whole_and_says_what_chemistry_does() {
-        let FinePotential { ranges } = FinePotential::parse(TABLE).unwrap();
-        assert_eq!(FinePotential::default().ranges, ranges);
+        let DistanceBinnedPotential { ranges } = DistanceBinnedPotential::parse(TABLE).unwrap();
+        assert_eq!(DistanceBinnedPotential::default().ranges, ranges);
         let index = |name: &str| TYPES.iter().position(|kind| *kind == name).unwrap();
         let near = |a: &str, b: &str| ranges[0].energy(index(a), index(b));
         // Opposite charges attract and like ones repel where they meet, fat sticks to fat.
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
         assert_eq!(
-            FinePotential::parse("# x\nrange,type,A\n")
+            DistanceBinnedPotential::parse("# x\nrange,type,A\n")
                 .unwrap_err()
                 .line,
             2
@@ -87,14 +87,14 @@ mod tests {
         let spoilt = |line: &str| {
             let mut lines = lines.clone();
             lines[first] = line;
-            FinePotential::parse(&lines.join("\n"))
+            DistanceBinnedPotential::parse(&lines.join("\n"))
         };
         assert_eq!(spoilt("near,CA,1").unwrap_err().line, first + 1);
         assert_eq!(spoilt("far,CA,x").unwrap_err().line, first + 1);
-        assert!(FinePotential::parse(&lines[..first].join("\n")).is_err());
+        assert!(DistanceBinnedPotential::parse(&lines[..first].join("\n")).is_err());
         let longer = format!("{TABLE}far,N,1\n");
         assert_eq!(
-            FinePotential::parse(&longer).unwrap_err().line,
+            DistanceBinnedPotential::parse(&longer).unwrap_err().line,
             lines.len() + 1
         );
     }

@@ -24,7 +24,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// Most copies in a ring: proteins with more are rare, and their neighbours are all but parallel.
 const MOST: usize = 24;
 /// Most copies in each of two rings.
-const MOST_FOLDS: usize = 12;
+const MAX_FOLDS: usize = 12;
 /// How far from a ring's a pose may be: radians of its angle, and its slide along the axis in Å and besides as a share of how far it moves in all, which
 /// is far where the file's origin is.
 const OFF: f64 = 1e-6;
@@ -40,7 +40,7 @@ pub struct Symmetry {
 
 /// A text that is not C2, C3 and so on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no symmetry that is known: C2 to C{MOST} and D2 to D{MOST_FOLDS} are")]
+#[error("'{0}' is no symmetry that is known: C2 to C{MOST} and D2 to D{MAX_FOLDS} are")]
 pub struct SymmetryError(String);
 
 impl FromStr for Symmetry {
@@ -54,7 +54,7 @@ impl FromStr for Symmetry {
             .flatten();
         match (kind, count) {
             ("C" | "c", Some(copies @ 2..=MOST)) => Ok(Self { copies, folds: 1 }),
-            ("D" | "d", Some(folds @ 2..=MOST_FOLDS)) => Ok(Self { copies: 2, folds }),
+            ("D" | "d", Some(folds @ 2..=MAX_FOLDS)) => Ok(Self { copies: 2, folds }),
             _ => Err(wrong()),
         }
     }

@@ -1,8 +1,8 @@
-//! The direct nonequispaced sum over a box of modes, as fast as it goes without a fast transform.
+//! The direct nufft sum over a box of modes, as fast as it goes without a fast transform.
 //!
 //! f_k = sum_j c_j exp(-2 pi i k.x_j) for several sets of weights c on the same points. Phases are products of three tables, one an
 //! axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x modes), in vector lanes.
-//! For few modes or few points it needs less time than [`super::nonequispaced`], whose grid has a price of its own.
+//! For few modes or few points it needs less time than [`super::nufft`], whose grid has a price of its own.
 //!
 //! Conventions are those of [`super::ndft::forward`], against which it is tested: points in units of the period, modes from
 //! -floor(n/2) on each axis, row-major, the last axis fastest.
@@ -97,7 +97,7 @@ fn gathered(weights: &[Complex64]) -> [Lane; GROUPS] {
 /// exp(-2 pi i k x) of a block's points along an axis: \[k\]\[group\].
 fn tabulate(points: &[[f64; 3]], axis: usize, modes: usize, table: &mut [Lane]) {
     for (index, point) in points.iter().enumerate() {
-        // Folded first, so that a point many periods away keeps the digits that it has.
+        // ReceptorSpectra first, so that a point many periods away keeps the digits that it has.
         let x = point[axis] - point[axis].round();
         for k in 0..modes {
             let wave = Complex64::cis(-2.0 * PI * (k as f64 - (modes / 2) as f64) * x);

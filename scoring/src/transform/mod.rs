@@ -10,8 +10,8 @@
 pub mod direct;
 pub mod modes;
 pub mod ndft;
-pub mod nfft;
-pub mod nonequispaced;
+pub mod nufft;
+pub mod pruned_type1;
 pub mod real_fft_3d;
 pub mod spreading;
 pub mod truncation;

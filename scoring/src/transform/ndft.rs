@@ -1,4 +1,4 @@
-//! The nonequispaced discrete Fourier transform, direct and in f64: slow, plainly right, the reference for every fast path.
+//! The nufft discrete Fourier transform, direct and in f64: slow, plainly right, the reference for every fast path.
 
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// Type 1 in any number of dimensions: f_k = sum_j c_j exp(-2 pi i k.x_j) for all `modes`, O(points x modes).
 ///
 /// Points are in units of the period; modes run from -floor(n/2) on each axis and stand row-major, the last axis fastest, as
-/// in [`super::nonequispaced`].
+/// in [`super::nufft`].
 pub fn forward<const D: usize>(
     points: &[[f64; D]],
     weights: &[Complex64],
@@ -41,7 +41,7 @@ pub fn adjoint<const D: usize>(
 fn waves<const D: usize>(point: &[f64; D], modes: [usize; D]) -> Vec<Complex64> {
     let mut waves = vec![Complex64::new(1.0, 0.0)];
     for (x, n) in point.iter().zip(modes) {
-        // Folded first, so that a point many periods away keeps the digits that it has.
+        // ReceptorSpectra first, so that a point many periods away keeps the digits that it has.
         let x = x - x.round();
         let of_axis: Vec<Complex64> = (0..n)
             .map(|index| Complex64::cis(-2.0 * PI * (index as f64 - (n / 2) as f64) * x))

@@ -4,10 +4,10 @@
 // Every test file is a program of its own and uses a part of this.
 #![allow(dead_code)]
 
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Folded, Plan, Workspace};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra, Workspace};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
@@ -97,7 +97,7 @@ impl<T: Real> Pair<T> {
     /// The pair with the fast path's full rank.
     pub fn new(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
         let plan = Arc::new(Plan::new(a, b, options).unwrap());
-        let folded = Folded::<T>::new(&plan, a, b, Fold::Score);
+        let folded = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
         Self {
             engine: CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank()),
             scorer: ExactScorer::new(&plan.kernel, a, b).unwrap(),

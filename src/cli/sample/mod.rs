@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, Referee};
+use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::weights::{self, FittedWeights};
 use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Step, knots, sample};
 use knotdock_structures::sphere_tree::SphereTree;
@@ -134,7 +134,7 @@ impl Sample {
         sampling.steps.insert(0, reading);
 
         let start = Instant::now();
-        let referee = Referee::new(&solid, &sampling.field);
+        let referee = HausdorffMeter::new(&solid, &sampling.field);
         let fits: Vec<Fit> = sampling
             .sets
             .iter()
@@ -204,7 +204,7 @@ impl Sample {
     }
 
     /// The balls to write: of the chosen set, weighed or thinned out as was asked for.
-    fn finish(&self, sampling: &Sampling, referee: &Referee) -> Result<Finished, Failure> {
+    fn finish(&self, sampling: &Sampling, referee: &HausdorffMeter) -> Result<Finished, Failure> {
         let start = Instant::now();
         let mut finished = Finished {
             balls: self.chosen(sampling)?.balls.clone(),

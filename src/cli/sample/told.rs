@@ -2,7 +2,7 @@
 
 use knotdock::output::report;
 use knotdock_structures::mesh::{Figure, Solid};
-use knotdock_structures::sampler::hausdorff::{Fit, Referee};
+use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::weights::FittedWeights;
 use knotdock_structures::sampler::{Sampling, SetName};
 use serde_json::{Value, json};
@@ -19,7 +19,12 @@ pub(super) struct Told<'a> {
 
 impl<'a> Told<'a> {
     /// What is told of a sampling and its fits.
-    pub fn new(sampling: &'a Sampling, fits: &'a [Fit], solid: &Solid, referee: &Referee) -> Self {
+    pub fn new(
+        sampling: &'a Sampling,
+        fits: &'a [Fit],
+        solid: &Solid,
+        referee: &HausdorffMeter,
+    ) -> Self {
         Self {
             sampling,
             fits,

@@ -31,7 +31,7 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
             "xl",
         ],
         "restraints between two residues are not read; name the residues of each side that are known to be in contact with \
-         `--attract-receptor A:57,A:189-195` and `--attract-ligand`",
+         `--active-receptor A:57,A:189-195` and `--active-ligand`",
     ),
     suggestion(
         &[
@@ -52,7 +52,7 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
             "epitope",
             "paratope",
         ],
-        "name residues that are known to be in contact with `--attract-receptor` and `--attract-ligand`",
+        "name residues that are known to be in contact with `--active-receptor` and `--active-ligand`",
     ),
     suggestion(
         &[

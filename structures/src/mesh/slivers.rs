@@ -15,7 +15,7 @@ const FEWEST: usize = 512;
 
 /// Lengths into which a sliver is cut, on average, and all together at most.
 const LENGTHS: usize = 24;
-const MOST_LENGTHS: usize = 400_000;
+const MAX_LENGTHS: usize = 400_000;
 
 /// No sliver is cut into lengths shorter than this share of the bounding box's longest edge.
 const SHORTEST: f64 = 1.0 / 64.0;
@@ -34,7 +34,7 @@ pub(super) fn cut(mesh: &Mesh) -> Option<Vec<[[f64; 3]; 3]>> {
     if count < FEWEST {
         return None;
     }
-    let limit = (length / (LENGTHS * count).min(MOST_LENGTHS) as f64).max(SHORTEST * mesh.extent());
+    let limit = (length / (LENGTHS * count).min(MAX_LENGTHS) as f64).max(SHORTEST * mesh.extent());
     let mut pieces = Vec::new();
     for corners in triangles {
         match is_thin(&corners) {

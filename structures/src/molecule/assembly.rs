@@ -13,14 +13,14 @@ use serde::Serialize;
 use super::Atom;
 use super::error::ReadError;
 use super::parse::Parsed;
-use super::plain_names::links_nucleotides;
 use super::report::{DropKind, ReadReport, count, show_chain};
 use super::residues::{is_amino_acid, is_nucleotide};
 use super::select;
 use super::squared_distance;
+use super::standard_names::links_nucleotides;
 
 /// Most atoms of an assembly: the largest capsids have some ten million.
-const MOST_ATOMS: usize = 50_000_000;
+const MAX_ATOMS: usize = 50_000_000;
 
 /// Copies of one atom nearer than this, in Å, are one: it lies on an axis of symmetry.
 pub(super) const ON_AXIS: f64 = 0.5;
@@ -161,8 +161,8 @@ pub(super) fn build(
         let mut members: Vec<usize> = members.flatten().copied().collect();
         members.sort_unstable();
         members.dedup();
-        if built.len() + members.len().saturating_mul(part.operators.len()) > MOST_ATOMS {
-            let what = format!("assembly {wanted} has more than {MOST_ATOMS} atoms");
+        if built.len() + members.len().saturating_mul(part.operators.len()) > MAX_ATOMS {
+            let what = format!("assembly {wanted} has more than {MAX_ATOMS} atoms");
             return Err(broken(file, None, what));
         }
         for operator in &part.operators {

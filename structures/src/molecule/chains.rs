@@ -8,11 +8,11 @@ use super::{Molecule, squared_distance};
 const STRETCHED: f64 = 3.8;
 
 /// Longest gap in residues, and in Å, that is taken for one: beyond, one chain ends and another begins.
-const MOST_RESIDUES: i64 = 60;
+const MAX_RESIDUES: i64 = 60;
 const LONGEST: f64 = 40.0;
 
 /// Longest gap in Å where numbers show none: a residue or two that the numbering does not count.
-const LONGEST_UNCOUNTED: f64 = 12.0;
+const MAX_UNCOUNTED_LENGTH: f64 = 12.0;
 
 /// Fewest residues of a chain whose ends are taken to go on and to be loose: a peptide is docked as it is.
 const CHAIN: usize = 20;
@@ -89,7 +89,7 @@ impl Molecule {
     /// Whether the numbers between two residues in a row, so many Å apart, may be of residues that are missing.
     pub(super) fn may_be_gap(before: &Residue<'_>, after: &Residue<'_>, apart: f64) -> bool {
         let counted = after.key.1.saturating_sub(before.key.1).saturating_sub(1);
-        (1..=MOST_RESIDUES).contains(&counted)
+        (1..=MAX_RESIDUES).contains(&counted)
             && apart <= LONGEST
             && apart <= STRETCHED * (counted + 1) as f64
     }
@@ -123,9 +123,9 @@ impl Molecule {
         } else if chain != next_chain
             || next_number < number
             || (missing != counted && self.has_last_oxygen(before))
-            || missing > MOST_RESIDUES
+            || missing > MAX_RESIDUES
             || apart > LONGEST
-            || (missing != counted && apart > LONGEST_UNCOUNTED)
+            || (missing != counted && apart > MAX_UNCOUNTED_LENGTH)
         {
             Between::Ends
         } else if missing == 0 {

@@ -37,7 +37,7 @@ pub(super) enum Provenance {
 /// How a prediction was known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ToldBy {
+pub enum ConfidenceSource {
     /// The file says so: `_ma_qa_metric` of ModelCIF.
     Header,
     /// The values of the B column look like a prediction's: one a residue, or high ones with a tail of low ones.
@@ -50,7 +50,7 @@ pub enum ToldBy {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Confidence {
     /// How it was known that the B column is pLDDT.
-    pub told_by: ToldBy,
+    pub told_by: ConfidenceSource,
     /// Mean pLDDT of the residues, 0 to 100, those that are left out among them.
     pub mean: f64,
     /// Residues.
@@ -84,7 +84,7 @@ fn values(
     residues: &[Residue<'_>],
     provenance: Provenance,
     (least, trusted): (f64, bool),
-) -> Result<(ToldBy, Vec<f64>), String> {
+) -> Result<(ConfidenceSource, Vec<f64>), String> {
     let highest = atoms.iter().map(|atom| atom.b_factor);
     let highest = highest.fold(f64::NEG_INFINITY, f64::max);
     let scale = if highest <= 1.0 { 100.0 } else { 1.0 };
@@ -99,9 +99,9 @@ fn values(
     let first = atoms.first().map_or(0.0, |atom| atom.b_factor);
     match contradiction(atoms, provenance) {
         Some(reason) => Err(reason),
-        None if provenance == Provenance::Confidence => Ok((ToldBy::Header, values)),
+        None if provenance == Provenance::Confidence => Ok((ConfidenceSource::Header, values)),
         None if evidence::tells(atoms, residues, mean(&values), scale) => {
-            Ok((ToldBy::Values, values))
+            Ok((ConfidenceSource::Values, values))
         }
         None if atoms.iter().all(|atom| atom.b_factor == first) => {
             Err(format!("all B values are {first}"))
@@ -111,7 +111,7 @@ fn values(
             "{reaching} of {} residues reach {least}, as of temperature factors",
             values.len()
         )),
-        None if trusted => Ok((ToldBy::User, values)),
+        None if trusted => Ok((ConfidenceSource::User, values)),
         None => Err("neither the file nor its B values say that they are pLDDT".to_owned()),
     }
 }
@@ -140,7 +140,7 @@ pub(super) fn weigh(
                 return atoms;
             }
         };
-    if told_by == ToldBy::User {
+    if told_by == ConfidenceSource::User {
         report.warnings.push(
             "the B values are taken for pLDDT because --min-plddt is given: neither the file nor they say so"
                 .to_owned(),

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::Atom;
 use super::other_names::known_as;
-use super::plain_names::{links_nucleotides, plain_atom_name};
 use super::residues::{is_amino_acid, is_nucleotide};
+use super::standard_names::{links_nucleotides, plain_atom_name};
 
 /// What a residue is, as far as it can be told from its name and atoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

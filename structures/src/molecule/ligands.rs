@@ -9,7 +9,7 @@ use super::report::count;
 use super::residues::is_water;
 
 /// Fewest heavy atoms of what counts as a ligand: caps of chains and small ions have fewer.
-const LEAST_ATOMS: usize = 6;
+const MIN_ATOMS: usize = 6;
 
 /// Most ligands that are named.
 const NAMED: usize = 3;
@@ -23,7 +23,7 @@ pub(super) fn warning(atoms: &[Atom], groups: &[Residue<'_>]) -> Option<String> 
         let heavy = members().filter(|atom| !atom.is_hydrogen()).count();
         let name = group.key.3;
         let is_unknown = group.kind == GroupKind::Cofactor && cofactor(name).is_none();
-        if is_unknown && heavy >= LEAST_ATOMS && !is_water(name) {
+        if is_unknown && heavy >= MIN_ATOMS && !is_water(name) {
             let (residues, atoms) = found.entry(name).or_default();
             *residues += 1;
             *atoms += heavy;

@@ -18,7 +18,7 @@ use growth::Growth;
 const PAST_END: usize = 8;
 
 /// Most residues of a loop: longer ones fold back.
-const LONGEST_LOOP: i64 = 20;
+const MAX_LOOP_LENGTH: i64 = 20;
 
 /// Residues that a molecule's chains have and its file does not show.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -82,7 +82,7 @@ impl Molecule {
         let (before, after) = (chain.residues[gap.after - 1], chain.residues[gap.after]);
         let frame = self.frame(before, "C")?;
         let anchors = [before.atoms.as_slice(), &after.atoms].concat();
-        let length = gap.missing.min(LONGEST_LOOP) as usize;
+        let length = gap.missing.min(MAX_LOOP_LENGTH) as usize;
         growth.courses(frame, &anchors, Some(gap.sides[1]), length)
     }
 

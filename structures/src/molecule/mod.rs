@@ -45,7 +45,6 @@ mod overlap;
 mod parse;
 mod peptidase;
 mod peptidase_families;
-mod plain_names;
 mod policy;
 mod pseudo_atoms;
 mod radii;
@@ -59,6 +58,7 @@ mod select;
 mod sequence;
 mod sieve;
 mod source;
+mod standard_names;
 mod termini;
 mod wanted;
 mod write;
@@ -67,7 +67,7 @@ pub use accessible::PROBE;
 pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
 pub use assembly::BuiltAssembly;
 pub use chain_ends::ChainEnds;
-pub use confidence::{Confidence, LOW, ToldBy};
+pub use confidence::{Confidence, ConfidenceSource, LOW};
 pub use contact_types::{CONTACT_TYPES, atom_kinds};
 pub use copies::CopiesError;
 pub use error::ReadError;
@@ -77,7 +77,6 @@ pub use labels::{LabelReport, Labels};
 pub use missing::MissingResidues;
 pub use models::JoinedModels;
 pub use peptidase::ActiveSite;
-pub use plain_names::{plain_atom_name, plain_residue_name, standard_residue_name};
 pub use policy::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
 };
@@ -87,6 +86,7 @@ pub use report::{
 };
 pub use residue_selection::{ResidueSelection, UnknownResidues};
 pub use source::file_bytes;
+pub use standard_names::{plain_atom_name, plain_residue_name, standard_residue_name};
 pub use write::{
     ChainMap, ChainName, Partner, WriteError, complex_format, fits, write_complex, write_molecule,
     write_renamed,

@@ -11,9 +11,9 @@
 //! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types here.
 
 use super::charge_table::is_modified;
-use super::plain_names::links_nucleotides;
 use super::pseudo_atoms::is_site_name;
 use super::residues::{amino_acid_type, is_amino_acid, is_water, side_chains, standard_atom_name};
+use super::standard_names::links_nucleotides;
 
 /// Amino acids and their states by other names.
 ///

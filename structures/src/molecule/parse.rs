@@ -10,7 +10,7 @@ use pdbtbx::{ContainsAtomConformer, Context, PDB, PDBError, ReadOptions, Strictn
 
 use super::Format;
 use super::error::ReadError;
-use super::sieve::{Carried, Exact, Sieved};
+use super::sieve::{AtomRecord, Exact, Sieved};
 
 /// One atom as pdbtbx and the sieve together know it.
 #[derive(Clone)]
@@ -18,7 +18,7 @@ pub(super) struct Parsed {
     pub(super) name: String,
     pub(super) hetero: bool,
     pub(super) exact: Exact,
-    pub(super) carried: Carried,
+    pub(super) carried: AtomRecord,
 }
 
 /// Reads sieved text by pdbtbx and joins the carried facts by serial number, in file order.

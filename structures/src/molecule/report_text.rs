@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::confidence::ToldBy;
+use super::confidence::ConfidenceSource;
 use super::report::{Altered, DropKind, Dropped, ReadReport, count, show_chain};
 
 /// Joins the first few of a list and counts the rest.
@@ -99,9 +99,9 @@ impl fmt::Display for ReadReport {
         }
         if let Some(confidence) = &self.confidence {
             let told_by = match confidence.told_by {
-                ToldBy::Header => "as the file says",
-                ToldBy::Values => "told by its B column",
-                ToldBy::User => "as --min-plddt says",
+                ConfidenceSource::Header => "as the file says",
+                ConfidenceSource::Values => "told by its B column",
+                ConfidenceSource::User => "as --min-plddt says",
             };
             write!(
                 f,

@@ -3,7 +3,7 @@
 //! Names are those of the wwPDB Chemical Component Dictionary, and the protonation variants of AMBER and CHARMM, which
 //! stand for the same heavy atoms.
 
-use super::plain_names::plain_atom_name;
+use super::standard_names::plain_atom_name;
 
 /// Atom types of Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: element, number of bonds (4:
 /// tetrahedral, 3: trigonal carbon), number of hydrogens.

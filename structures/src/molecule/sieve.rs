@@ -3,7 +3,7 @@
 //! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge columns,
 //! old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks. Only the atoms
 //! of the models that are wanted pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
-//! number. Facts that pdbtbx would change travel beside it in a [`Carried`] of the same index:
+//! number. Facts that pdbtbx would change travel beside it in a [`AtomRecord`] of the same index:
 //!
 //! | fact | what pdbtbx 0.12 does with it |
 //! |---|---|
@@ -50,7 +50,7 @@ pub(super) enum NameColumn {
 
 /// What travels past pdbtbx for one atom.
 #[derive(Clone, Debug)]
-pub(super) struct Carried {
+pub(super) struct AtomRecord {
     pub(super) line: usize,
     /// Its model, counted from 1 in the order of the file.
     pub(super) model: usize,
@@ -83,7 +83,7 @@ pub(super) struct Sieved {
     /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
     pub(super) text: String,
     /// What travels past it; index i belongs to the serial number i.
-    pub(super) carried: Vec<Carried>,
+    pub(super) carried: Vec<AtomRecord>,
     /// Models in the file.
     pub(super) models: usize,
     /// Atom records in the models that are not read.

@@ -16,7 +16,7 @@ use super::{Atom, Molecule, squared_distance};
 pub(super) const BOND: f64 = 2.5;
 
 /// Longest distance in Å of a terminal atom from what is bonded to it.
-pub(super) const LONGEST_CAP: f64 = 1.7;
+pub(super) const MAX_CAP_LENGTH: f64 = 1.7;
 
 /// An atom that may be bonded to the end of a chain.
 struct Cap<'a> {
@@ -133,7 +133,7 @@ impl Molecule {
             let fits = cap
                 .end
                 .is_none_or(|other_end| other_end != name && cap.residue != residue.key);
-            fits && squared_distance(cap.position, end.position) < LONGEST_CAP * LONGEST_CAP
+            fits && squared_distance(cap.position, end.position) < MAX_CAP_LENGTH * MAX_CAP_LENGTH
         })
     }
 
@@ -165,7 +165,7 @@ impl Molecule {
             }
         }
         Caps {
-            cells: Cells::new(atoms.iter().map(|cap| cap.position), LONGEST_CAP),
+            cells: Cells::new(atoms.iter().map(|cap| cap.position), MAX_CAP_LENGTH),
             atoms,
         }
     }

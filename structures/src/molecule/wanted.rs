@@ -9,8 +9,8 @@ use super::groups::ResidueKey;
 use super::parse::Parsed;
 use super::report::{DropKind, show_chain};
 use super::residue_selection::{Picked, ResidueSelection};
-use super::sieve::Carried;
-use super::termini::LONGEST_CAP;
+use super::sieve::AtomRecord;
+use super::termini::MAX_CAP_LENGTH;
 use super::{Atom, squared_distance};
 
 /// An end that a selection of residues made of a bond: a residue that is kept, and its atom whose partner is not.
@@ -41,14 +41,15 @@ pub(super) fn cut_ends(kept: &[Atom], left_out: &[Atom]) -> Vec<CutEnd> {
     if partners.is_empty() {
         return Vec::new();
     }
-    let cells = Cells::new(partners.iter().map(|atom| atom.position), LONGEST_CAP);
+    let cells = Cells::new(partners.iter().map(|atom| atom.position), MAX_CAP_LENGTH);
     let is_cut = |atom: &Atom| {
         let mut near = cells
             .around(atom.position)
             .filter_map(|index| partners.get(index));
         near.any(|partner| {
             partner.name != atom.name
-                && squared_distance(partner.position, atom.position) < LONGEST_CAP * LONGEST_CAP
+                && squared_distance(partner.position, atom.position)
+                    < MAX_CAP_LENGTH * MAX_CAP_LENGTH
         })
     };
     kept.iter()
@@ -98,7 +99,7 @@ impl Wanted {
                 records.filter(|carried| carried.chain == picked.chain)
             };
             let is_there =
-                |carried: &Carried| picked.holds(carried.residue_number, carried.insertion_code);
+                |carried: &AtomRecord| picked.holds(carried.residue_number, carried.insertion_code);
             if !of_chain().any(is_there) {
                 let numbers = || of_chain().map(|carried| carried.residue_number);
                 let (first, last) = (numbers().min(), numbers().max());
@@ -115,7 +116,7 @@ impl Wanted {
     }
 
     /// Why an atom is not asked for, if it is not.
-    pub(super) fn leaves_out(&self, carried: &Carried) -> Option<DropKind> {
+    pub(super) fn leaves_out(&self, carried: &AtomRecord) -> Option<DropKind> {
         let Some(parts) = self.0.get(&carried.chain) else {
             return Some(DropKind::Chain);
         };

@@ -26,7 +26,7 @@ use crate::mesh::{Solid, is_beside};
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
-/// What [`Referee::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
+/// What [`HausdorffMeter::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Farthest distance of a point of the solid from the balls.
@@ -44,7 +44,7 @@ pub struct Fit {
 }
 
 /// A solid prepared for judging sets of balls.
-pub struct Referee<'a> {
+pub struct HausdorffMeter<'a> {
     solid: &'a Solid,
     field: &'a DepthField,
     fine: FineGrid,
@@ -97,7 +97,7 @@ impl FineGrid {
     }
 }
 
-impl<'a> Referee<'a> {
+impl<'a> HausdorffMeter<'a> {
     /// Finds which points of the fine grid are inside.
     pub fn new(solid: &'a Solid, field: &'a DepthField) -> Self {
         let fine = FineGrid::new(field);

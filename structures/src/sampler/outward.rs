@@ -13,10 +13,10 @@ use crate::mesh::Solid;
 use crate::mesh::vector::{add, along, distance, norm, scale};
 
 /// Points that are looked at for all balls together, at most.
-const MOST_POINTS: usize = 200_000;
+const MAX_POINTS: usize = 200_000;
 
 /// Points that are looked at for one ball, at most.
-const MOST_OF_ONE: usize = 20_000;
+const MAX_OF_ONE: usize = 20_000;
 
 /// A triangle on the unit sphere, and the distance that none of its points exceeds.
 struct Patch {
@@ -55,12 +55,12 @@ pub(super) fn farthest(
 ) -> f64 {
     balls.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut seen = seen;
-    let mut left = MOST_POINTS;
+    let mut left = MAX_POINTS;
     for (bound, ball) in balls {
         if bound <= seen + tolerance || left == 0 {
             break;
         }
-        let mut points = left.min(MOST_OF_ONE);
+        let mut points = left.min(MAX_OF_ONE);
         left -= points;
         farthest_of(solid, &ball, &mut seen, tolerance, &mut points);
         left += points;

@@ -37,7 +37,7 @@ pub(super) struct Batch {
 }
 
 /// Turns in a batch: enough to fill a large card, few enough that no batch takes seconds.
-const MOST_TURNS: usize = 32;
+const MAX_TURNS: usize = 32;
 
 impl Sizes {
     /// Of an engine, with so many peaks an image that keep `reach` voxels free on each side.
@@ -112,7 +112,7 @@ impl Sizes {
             turns,
             images: 4 * turns,
         };
-        let chosen = (1..=MOST_TURNS).rev().map(of).find(|&batch| fits(batch));
+        let chosen = (1..=MAX_TURNS).rev().map(of).find(|&batch| fits(batch));
         // A grid so large that the four images of one turn do not fit goes image by image.
         let least = Batch {
             turns: 1,

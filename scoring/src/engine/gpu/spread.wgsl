@@ -28,7 +28,7 @@ fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let item = (group.y * MOST_GROUPS + group.x) * WIDTH + lane;
+    let item = (group.y * MAX_GROUPS + group.x) * WIDTH + lane;
     let knot = item / (WINDOW * WINDOW);
     let turn = group.z;
     if (knot >= KNOTS) {

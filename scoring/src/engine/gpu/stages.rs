@@ -7,9 +7,9 @@ use std::ops::Range;
 use wgpu::util::DeviceExt;
 
 /// Most workgroups along one axis of a dispatch, of any adapter.
-const MOST_GROUPS: usize = 65_535;
+const MAX_GROUPS: usize = 65_535;
 /// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
-const MOST_LINES: usize = 16;
+const MAX_LINES: usize = 16;
 
 /// A compiled stage with its buffers.
 struct Stage {
@@ -56,7 +56,7 @@ impl Stages {
                     16 * length
                 )));
             }
-            *lines = most.clamp(1, MOST_LINES);
+            *lines = most.clamp(1, MAX_LINES);
         }
         use Direction::{Forward, Inverse};
         let b = buffers;
@@ -68,7 +68,7 @@ impl Stages {
                 buffers: &[&b.knots, &b.weights, &b.window, &b.turns, &b.block],
                 groups: |sizes, _, turns, _| {
                     let groups = (sizes.knots * sizes.window * sizes.window).div_ceil(WIDTH);
-                    [groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), turns]
+                    [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
                 },
             },
             Recipe {
@@ -247,7 +247,7 @@ fn header(sizes: &Sizes) -> String {
     let [reach_x, reach_y, reach_z] = sizes.reach;
     let constants = [
         ("WIDTH", WIDTH),
-        ("MOST_GROUPS", MOST_GROUPS),
+        ("MAX_GROUPS", MAX_GROUPS),
         ("FIELDS", sizes.fields),
         ("KNOTS", sizes.knots),
         ("WINDOW", sizes.window),

@@ -4,7 +4,7 @@ use super::EngineOptions;
 use super::error::PlanError;
 use crate::effect::ActiveTerm;
 use crate::exact::center;
-use crate::kernel::product::rim_and_reach;
+use crate::kernel::product::peak_score_and_reach;
 use crate::kernel::table::Table;
 use crate::kernel::{Band, ProductKernel, RankingKernel};
 use crate::transform::fast_size;
@@ -27,11 +27,11 @@ pub(super) struct Extents {
 }
 
 /// Most points of a grid: voxels are numbered in 32 bits.
-const MOST_POINTS: f64 = u32::MAX as f64;
+const MAX_POINTS: f64 = u32::MAX as f64;
 /// Most points along an axis: transforms of that length are planned without delay.
-const MOST_ALONG: f64 = 1e6;
+const MAX_ALONG: f64 = 1e6;
 /// Most pairs (y, z) of points, half of which become columns of modes: these are made before anyone can ask how much memory a plan takes, and are 400 MB by then.
-const MOST_ROWS: f64 = (1u32 << 25) as f64;
+const MAX_ROWS: f64 = (1u32 << 25) as f64;
 
 impl Extents {
     pub fn of(receptor: &Knots, ligand: &Knots) -> Self {
@@ -64,19 +64,19 @@ impl Extents {
         });
         let asked: f64 = counts.iter().product();
         // Good sizes are sought for such alone as can be: that would not end for absurd ones. Written so that NaN is refused with the rest.
-        if !counts.iter().all(|count| (0.0..MOST_ALONG).contains(count)) || asked > MOST_POINTS {
+        if !counts.iter().all(|count| (0.0..MAX_ALONG).contains(count)) || asked > MAX_POINTS {
             return Err(PlanError::TooLarge(asked));
         }
         let size = counts.map(|count| fast_size(count as usize));
         let [nx, ny, nz] = size.map(|n| n as f64);
-        if nx * ny * nz > MOST_POINTS || ny * nz > MOST_ROWS {
+        if nx * ny * nz > MAX_POINTS || ny * nz > MAX_ROWS {
             return Err(PlanError::TooLarge(nx * ny * nz));
         }
         Ok(size)
     }
 }
 
-/// The modes of such a grid, and the points per axis of the nonequispaced transforms' fine one, `ratio` times as fine.
+/// The modes of such a grid, and the points per axis of the nufft transforms' fine one, `ratio` times as fine.
 ///
 /// # Errors
 /// As [`Extents::grid`].
@@ -105,12 +105,12 @@ pub(super) fn oversampling(tolerance: f64, band: Option<Band>) -> f64 {
     }
 }
 
-/// Width of the spreading window in fine cells; `severity` is by how much the largest |G| exceeds the best score more than usual.
-pub(super) fn window_width(tolerance: f64, severity: f64, oversampling: f64) -> usize {
+/// Width of the spreading window in fine cells; `dynamic_range` is by how much the largest |G| exceeds the best score more than usual.
+pub(super) fn window_width(tolerance: f64, dynamic_range: f64, oversampling: f64) -> usize {
     // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
     // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
     let usual = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
-    let share = usual / severity;
+    let share = usual / dynamic_range;
     SpreadingKernel::<f64>::width_for(share * tolerance, oversampling * 1.2).min(MAX_WIDTH)
 }
 
@@ -119,14 +119,18 @@ pub(super) struct Widest {
     sum: f64,
     table: Table<4>,
     /// What that pair earns at most; not 0.
-    rim: f64,
+    peak_score: f64,
 }
 
 impl Widest {
     pub fn new(kernel: &RankingKernel, sum: f64) -> Self {
         let table = kernel.distance_table(sum);
-        let rim = kernel.rim(&table).max(f64::MIN_POSITIVE);
-        Self { sum, table, rim }
+        let peak_score = kernel.peak_score(&table).max(f64::MIN_POSITIVE);
+        Self {
+            sum,
+            table,
+            peak_score,
+        }
     }
 }
 
@@ -137,13 +141,13 @@ pub(super) fn longest_reach(
     widest: &Widest,
     tolerance: f64,
 ) -> f64 {
-    let rim = widest.rim;
+    let peak_score = widest.peak_score;
     let of_effects = effects.iter().map(|ActiveTerm { term, kernel }| {
         let largest = term.largest().max(f64::MIN_POSITIVE);
-        kernel.effective_reach(tolerance * rim / largest)
+        kernel.effective_reach(tolerance * peak_score / largest)
     });
     of_effects.fold(
-        kernel.effective_reach(&widest.table, tolerance * rim),
+        kernel.effective_reach(&widest.table, tolerance * peak_score),
         f64::max,
     )
 }
@@ -152,20 +156,20 @@ pub(super) fn longest_reach(
 /// (1 to 160 balls, `cut_modes_stay_within_the_tolerance` in tests/fast_path.rs).
 const SLACK: f64 = 6.0;
 
-/// Grid spacing that keeps all modes of the ranking kernel that count; `severity` as for [`window_width`].
+/// Grid spacing that keeps all modes of the ranking kernel that count; `dynamic_range` as for [`window_width`].
 pub(super) fn ranking_spacing(
     kernel: &RankingKernel,
     widest: &Widest,
     tolerance: f64,
-    severity: f64,
+    dynamic_range: f64,
 ) -> f64 {
     // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any tolerance.
     let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
         kernel.stop()
     } else {
         // Beyond the usual penalty there is none: with it, lambda = 1,000 misses 1e-3 by a twentieth (tests/hard_cases/kernel.rs).
-        let slack = if severity > 1.0 { 1.0 } else { SLACK };
-        kernel.band_end(widest.sum, slack * tolerance * widest.rim)
+        let slack = if dynamic_range > 1.0 { 1.0 } else { SLACK };
+        kernel.band_end(widest.sum, slack * tolerance * widest.peak_score)
     };
     0.5 / cut
 }
@@ -186,9 +190,9 @@ pub(super) fn product_kernel(
     let spacing = chosen.unwrap_or_else(|| match band {
         Band::LowPass => 0.5 * options.kernel.resolution,
         Band::Whole => {
-            let (rim, _) = rim_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
+            let (peak_score, _) = peak_score_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
             // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2 to 1e-4).
-            let allowed = 10.0 * options.tolerance * rim;
+            let allowed = 10.0 * options.tolerance * peak_score;
             let cut = (1..100)
                 .map(|i| 0.01 * f64::from(i) * finest)
                 .find(|&f| kernel.leak_beyond(r_low, s_low, f) <= allowed)
@@ -198,7 +202,9 @@ pub(super) fn product_kernel(
     });
     let reach = match band {
         Band::Whole => kernel.reach(r_high, s_high),
-        Band::LowPass => rim_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1,
+        Band::LowPass => {
+            peak_score_and_reach(&kernel.pair_table(r_high, s_high), options.tolerance).1
+        }
     };
     Ok((kernel, spacing, reach))
 }

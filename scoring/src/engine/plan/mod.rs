@@ -15,7 +15,7 @@ mod radii;
 use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
 use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
-use crate::lifted_axis::{Fold, LiftedAxis, RadiusBasis};
+use crate::lifted_axis::{LiftedAxis, Quantity, RadiusBasis};
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_tolerance, checked_spacing};
@@ -73,7 +73,7 @@ pub struct Plan {
     pub modes: Arc<ModeSet>,
     /// Grid spacing in Å.
     pub spacing: f64,
-    /// Fine grid of the nonequispaced transforms, points per axis.
+    /// Fine grid of the nufft transforms, points per axis.
     pub fine: [usize; 3],
     /// Width of the spreading window, fine cells.
     pub width: usize,
@@ -167,9 +167,9 @@ impl Plan {
         let tolerance = options.tolerance;
         let radii = Radii::of(receptor, ligand);
         // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors, by lambda.
-        let severity = (options.kernel.lambda.abs() / 20.0).max(1.0);
+        let dynamic_range = (options.kernel.lambda.abs() / 20.0).max(1.0);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
-        let reach_factor = 1.15 + 0.75 * (1e-2 * severity / kernel_tolerance).log10().max(0.0);
+        let reach_factor = 1.15 + 0.75 * (1e-2 * dynamic_range / kernel_tolerance).log10().max(0.0);
         let (least, widest) = radii.sums();
         let kernel = RankingKernel::new(options.kernel, least, widest, reach_factor)?;
         let effects: Vec<ActiveTerm> = terms
@@ -184,7 +184,7 @@ impl Plan {
             None => {
                 let widest = Widest::new(&kernel, widest);
                 let spacing = chosen
-                    .unwrap_or_else(|| ranking_spacing(&kernel, &widest, tolerance, severity));
+                    .unwrap_or_else(|| ranking_spacing(&kernel, &widest, tolerance, dynamic_range));
                 let reach = longest_reach(&kernel, &effects, &widest, tolerance);
                 (PairKernel::Lifted, spacing, reach)
             }
@@ -196,7 +196,7 @@ impl Plan {
         };
         let extents = Extents::of(receptor, ligand);
         let ratio = oversampling(tolerance, band);
-        let width = window_width(tolerance, severity, ratio);
+        let width = window_width(tolerance, dynamic_range, ratio);
         let (modes, fine) = modes_at(spacing, &extents, effective_reach, width, ratio)?;
         let (axis, basis, axis_error) = radii.meet(&kernel, &pair, modes.cut, 1e-3 * tolerance);
         Ok(Self {
@@ -277,7 +277,7 @@ impl Plan {
 
     /// Radial spectrum that couples receptor function a with ligand function b of [`Plan::basis`] in the folded kernel, on all modes
     /// kept; `None` where it is zero.
-    pub fn coupling(&self, fold: Fold, (a, b): (usize, usize)) -> Option<Table<1>> {
+    pub fn coupling(&self, fold: Quantity, (a, b): (usize, usize)) -> Option<Table<1>> {
         let w_max = self.modes.cut;
         match &self.pair {
             PairKernel::Lifted => {

@@ -32,14 +32,14 @@ mod tail_integral;
 mod tests;
 
 pub use lens::lens_volume;
-pub use pairs::rim_and_reach;
+pub use pairs::peak_score_and_reach;
 
 use super::bump::Bump;
 use super::low_pass::smooth_step_down;
 use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
 use super::table::Table;
-use crate::lifted_axis::Fold;
+use crate::lifted_axis::Quantity;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use tail_integral::TailIntegral;
@@ -68,14 +68,14 @@ pub enum Body {
 
 /// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by the offset have
 /// none: they are taken along the lifted axis, which the product kernel lacks.
-pub fn factors(fold: Fold) -> &'static [(Body, Body, f64)] {
+pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
     use Body::{DoubleSkin, Grown, Solid};
     match fold {
-        Fold::Score => &[(DoubleSkin, DoubleSkin, -1.0)],
-        Fold::Slice(0) => &[(Solid, Solid, 1.0)],
-        Fold::Slice(1) => &[(Grown, Solid, 0.5), (Solid, Grown, 0.5)],
-        Fold::Slice(_) => &[(Grown, Grown, 1.0)],
-        Fold::ScoreByOffset | Fold::SliceByOffset(_) => &[],
+        Quantity::Score => &[(DoubleSkin, DoubleSkin, -1.0)],
+        Quantity::Slice(0) => &[(Solid, Solid, 1.0)],
+        Quantity::Slice(1) => &[(Grown, Solid, 0.5), (Solid, Grown, 0.5)],
+        Quantity::Slice(_) => &[(Grown, Grown, 1.0)],
+        Quantity::ScoreByOffset | Quantity::SliceByOffset(_) => &[],
     }
 }
 
@@ -211,7 +211,7 @@ impl ProductKernel {
     }
 
     /// Transform of a fold's pair kernel for radii r and s at frequency w, low-pass included: what couples the two bodies' modes.
-    pub fn coupling(&self, fold: Fold, r: f64, s: f64, w: f64) -> f64 {
+    pub fn coupling(&self, fold: Quantity, r: f64, s: f64, w: f64) -> f64 {
         let products: f64 = factors(fold)
             .iter()
             .map(|&(a, b, factor)| factor * self.spectrum(a, r, w) * self.spectrum(b, s, w))

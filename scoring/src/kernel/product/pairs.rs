@@ -3,14 +3,14 @@
 use super::{Band, ProductKernel};
 use crate::kernel::radial_transform::sinc;
 use crate::kernel::table::Table;
-use crate::lifted_axis::Fold;
+use crate::lifted_axis::Quantity;
 use std::f64::consts::PI;
 
-/// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its rim is left there.
+/// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its peak is left there.
 const RINGS: f64 = 24.0;
 
 impl ProductKernel {
-    /// Distance in Å from which a pair's kernel counts as 0: exactly without a low-pass, to 1e-8 of its rim with one.
+    /// Distance in Å from which a pair's kernel counts as 0: exactly without a low-pass, to 1e-8 of its peak with one.
     pub fn reach(&self, r: f64, s: f64) -> f64 {
         let plain = r + s + 2.0 * self.options.offset;
         match self.band {
@@ -36,7 +36,7 @@ impl ProductKernel {
                 let weight = 4.0 * PI * w * w * step;
                 (
                     w,
-                    [0, 1, 2].map(|slice| weight * self.coupling(Fold::Slice(slice), r, s, w)),
+                    [0, 1, 2].map(|slice| weight * self.coupling(Quantity::Slice(slice), r, s, w)),
                 )
             })
             .collect()
@@ -81,21 +81,21 @@ impl ProductKernel {
         (0..)
             .map(|i| frequency + f64::from(i) * step)
             .take_while(|&w| w < self.w_max)
-            .map(|w| 4.0 * PI * w * w * self.coupling(Fold::Score, r, s, w).abs() * step)
+            .map(|w| 4.0 * PI * w * w * self.coupling(Quantity::Score, r, s, w).abs() * step)
             .sum()
     }
 }
 
 /// Largest value of the score kernel in a pair's table, and the distance beyond which it stays below `share` of that.
-pub fn rim_and_reach(table: &Table<4>, share: f64) -> (f64, f64) {
+pub fn peak_score_and_reach(table: &Table<4>, share: f64) -> (f64, f64) {
     let samples = 2000;
     let distance = |i: usize| table.end() * i as f64 / samples as f64;
-    let rim = (0..samples)
+    let peak_score = (0..samples)
         .map(|i| table.value(distance(i))[3])
         .fold(f64::MIN_POSITIVE, f64::max);
     let reach = (0..samples)
         .rev()
-        .find(|&i| table.value(distance(i))[3].abs() > share * rim)
+        .find(|&i| table.value(distance(i))[3].abs() > share * peak_score)
         .map_or(0.0, |i| distance(i + 1));
-    (rim, reach)
+    (peak_score, reach)
 }

@@ -57,7 +57,7 @@ fn space_and_frequency_agree() {
                     * w
                     * step
                     * sinc(2.0 * w * d)
-                    * kernel.coupling(Fold::Slice(0), 1.5, 1.9, w)
+                    * kernel.coupling(Quantity::Slice(0), 1.5, 1.9, w)
             })
             .sum();
         let direct = kernel.overlap(d, 1.5, 1.9);
@@ -81,7 +81,7 @@ fn tables_follow_the_definition_and_end_where_they_say() {
         for alpha in [2.0, 4.0] {
             let kernel = kernel(alpha, band);
             let table = kernel.pair_table(1.5, 1.9);
-            let (rim, _) = rim_and_reach(&table, 1e-3);
+            let (peak_score, _) = peak_score_and_reach(&table, 1e-3);
             let mut worst: f64 = 0.0;
             for i in 0..200 {
                 let d = 0.0137 + 0.05 * f64::from(i);
@@ -92,7 +92,7 @@ fn tables_follow_the_definition_and_end_where_they_say() {
             }
             let tail = table.value(0.999 * table.end())[3].abs();
             assert!(
-                worst < 1e-6 * rim && tail < 1e-7 * rim,
+                worst < 1e-6 * peak_score && tail < 1e-7 * peak_score,
                 "{band:?} {alpha}: {worst:e} {tail:e}"
             );
         }
@@ -106,9 +106,9 @@ fn score_is_the_weighted_slices() {
     let weights = kernel.options().slice_weights();
     for w in [0.0, 0.05, 0.12, 0.2, 0.24] {
         let sum: f64 = (0..3)
-            .map(|i| weights[i] * kernel.coupling(Fold::Slice(i), 1.5, 1.9, w))
+            .map(|i| weights[i] * kernel.coupling(Quantity::Slice(i), 1.5, 1.9, w))
             .sum();
-        let score = kernel.coupling(Fold::Score, 1.5, 1.9, w);
+        let score = kernel.coupling(Quantity::Score, 1.5, 1.9, w);
         assert!((sum - score).abs() < 1e-12 * score.abs().max(1.0));
     }
     assert_eq!(kernel.low_pass(0.25), 0.0);

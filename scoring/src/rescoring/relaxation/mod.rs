@@ -24,7 +24,7 @@ const OVERLAP: f64 = 0.1;
 /// What overlapping further costs, RT per Å²: a cushion, not a wall, for atoms of unbound surfaces stand where the other body's will be.
 const STIFFNESS: f64 = 0.8;
 /// The same while the pose gives way: softer, so that single overlaps do not hold back what the whole interface gains.
-const YIELDING: f64 = 0.2;
+const SOFT_CORE_STIFFNESS: f64 = 0.2;
 /// Radius in Å up to which an atom is a hydrogen, which reaches into what it is bonded to by: where hydrogens are kept they take no part.
 const HYDROGEN: f64 = 1.15;
 
@@ -34,7 +34,7 @@ const SLACK: f64 = FARTHEST + 0.6;
 /// Listed atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
 /// Least radius in Å about which an interface turns.
-const LEAST_RADIUS: f64 = 3.0;
+const MIN_RADIUS: f64 = 3.0;
 
 /// Two bodies prepared for relaxing poses.
 ///
@@ -166,7 +166,9 @@ impl Relaxation {
             pose: *pose,
             energy: slope(&UnitQuaternion::identity(), &Vector3::zeros(), STIFFNESS).energy,
         };
-        let (turn, shift) = descend(radius, |turn, shift| slope(turn, shift, YIELDING));
+        let (turn, shift) = descend(radius, |turn, shift| {
+            slope(turn, shift, SOFT_CORE_STIFFNESS)
+        });
         // About the interface's middle, in the receptor's file frame.
         let about = middle + self.receptor_center;
         let pose = Pose {
@@ -217,7 +219,7 @@ impl Relaxation {
             atom.arm -= middle;
         }
         let spread = (squares / count - middle.norm_squared()).max(0.0);
-        Some((middle, spread.sqrt().max(LEAST_RADIUS)))
+        Some((middle, spread.sqrt().max(MIN_RADIUS)))
     }
 
     /// Energy and gradient over the listed pairs, the arms turned and laid at a place.

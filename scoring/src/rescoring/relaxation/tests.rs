@@ -83,7 +83,7 @@ fn the_slope_is_that_of_the_energy() {
             &workspace,
             &Rotation3::new(turn),
             &(middle + shift),
-            YIELDING,
+            SOFT_CORE_STIFFNESS,
         )
     };
     let none = Vector3::zeros();

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// Share of control characters above which bytes are no text.
-const MOST_CONTROL: f64 = 0.01;
+const MAX_CONTROL: f64 = 0.01;
 
 /// Whether a byte is one that text does not have.
 fn is_control(byte: u8) -> bool {
@@ -57,7 +57,7 @@ pub fn text_of(bytes: &[u8]) -> Option<Cow<'_, str>> {
         .map_or(0, |last| last + 1);
     let bytes = bytes.get(..end).unwrap_or_default();
     let control = bytes.iter().filter(|&&byte| is_control(byte)).count();
-    if control as f64 > MOST_CONTROL * bytes.len() as f64 {
+    if control as f64 > MAX_CONTROL * bytes.len() as f64 {
         return None;
     }
     if control == 0 {

@@ -1,6 +1,6 @@
 //! Points by the cell that they lie in, to find those near a place.
 
-use super::{MOST_NEAR, apart};
+use super::{MAX_NEAR, apart};
 
 /// Points by the cell that they lie in.
 pub struct Grid<'a> {
@@ -46,7 +46,7 @@ impl<'a> Grid<'a> {
                         if apart(self.positions[point as usize], position) <= self.reach {
                             near.push(point);
                         }
-                        if near.len() > MOST_NEAR {
+                        if near.len() > MAX_NEAR {
                             return near.clear();
                         }
                     }

@@ -8,7 +8,7 @@
 //!   edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in the file.
 //! - All the vertices that become one lie in a cube as wide as the reach: no chain leads farther.
 //! - Two vertices that follow each other on a face are not joined, so no sliver is lost.
-//! - Where more than [`MOST_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and nothing is joined.
+//! - Where more than [`MAX_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and nothing is joined.
 //! - Last, a hole that lies in a cube as wide as the reach is closed: its rim becomes one vertex, unless a whole face lies in it.
 //!
 //! The earliest vertex stands for those joined with it. Time and memory are about proportional to the number of edges.
@@ -22,7 +22,7 @@ use border::Border;
 use clusters::Clusters;
 
 /// Open vertices within reach of one, at most. Numbers rounded to a unit allow 125 different ones within two units.
-const MOST_NEAR: usize = 128;
+const MAX_NEAR: usize = 128;
 
 /// Which vertex each becomes, the earliest of those that are one; none where nothing is joined.
 ///

@@ -8,7 +8,7 @@ use super::tokens::Token;
 use crate::molecule::assembly::{Assemblies, Assembly, Operator, Part};
 
 /// Most copies that one row may ask for.
-const MOST_COPIES: usize = 100_000;
+const MAX_COPIES: usize = 100_000;
 
 /// Collects the two categories value by value, from loops and from single items alike.
 #[derive(Default)]
@@ -122,9 +122,9 @@ fn expression(text: &str, operators: &HashMap<&str, Operator>) -> Result<Vec<Ope
         .filter(|group| !group.is_empty());
     for group in groups {
         let members = group_members(group, operators)?;
-        if combined.len().saturating_mul(members.len()) > MOST_COPIES {
+        if combined.len().saturating_mul(members.len()) > MAX_COPIES {
             return Err(format!(
-                "oper_expression `{text}` makes more than {MOST_COPIES} copies"
+                "oper_expression `{text}` makes more than {MAX_COPIES} copies"
             ));
         }
         combined = combined

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::tokens::Token;
-use super::{Carried, Exact, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
+use super::{AtomRecord, Exact, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::error::ReadError;
 use crate::molecule::policy::ModelChoice;
 
@@ -281,7 +281,7 @@ impl<'a> Row<'_, 'a> {
         }) {
             sieved.chain_ends.push(self.line());
         }
-        sieved.carried.push(Carried {
+        sieved.carried.push(AtomRecord {
             line: self.line(),
             model,
             chain: chain.to_string(),

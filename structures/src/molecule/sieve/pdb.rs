@@ -11,7 +11,7 @@ use super::displaced::{Displaced, displaced, shifted};
 use super::element_column::element;
 use super::provenance::is_measured;
 use super::residue_columns::{has_wide_chains, residue_and_chain, residue_number};
-use super::{Carried, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
+use super::{AtomRecord, NO_ALTERNATE, NameColumn, Sieved, coordinate, field};
 use crate::molecule::confidence::Provenance;
 use crate::molecule::error::ReadError;
 use crate::molecule::policy::ModelChoice;
@@ -37,7 +37,7 @@ pub(in crate::molecule) fn sieve(
     let mut assemblies = Remark::default();
     let wide_chains = has_wide_chains(text);
     for (line, record) in lines(text) {
-        if let Some(place) = AtomRecord::of(record) {
+        if let Some(place) = AtomLine::of(record) {
             sieved.recognised = true;
             let number = models.of(place.text().unwrap_or(record));
             if !model.takes(number) {
@@ -50,7 +50,7 @@ pub(in crate::molecule) fn sieve(
                     line,
                 });
             };
-            if matches!(place, AtomRecord::Moved(_)) {
+            if matches!(place, AtomLine::Moved(_)) {
                 sieved.displaced.push(line);
             }
             atom(file, line, text, wide_chains, number, &mut sieved)?;
@@ -73,7 +73,7 @@ pub(in crate::molecule) fn sieve(
 }
 
 /// An atom's record, and where it stands.
-enum AtomRecord<'a> {
+enum AtomLine<'a> {
     /// In its columns, as far as can be seen.
     InPlace(&'a str),
     /// Moved to them.
@@ -82,7 +82,7 @@ enum AtomRecord<'a> {
     Lost,
 }
 
-impl<'a> AtomRecord<'a> {
+impl<'a> AtomLine<'a> {
     /// The atom record of a line, if it holds one.
     fn of(line: &'a str) -> Option<Self> {
         if is_atom(line) {
@@ -284,7 +284,7 @@ fn atom(
         residue_name,
         "",
     );
-    sieved.carried.push(Carried {
+    sieved.carried.push(AtomRecord {
         line,
         model,
         chain: chain.to_string(),

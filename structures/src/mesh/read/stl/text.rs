@@ -19,7 +19,7 @@ fn plain_lines(text: &str) -> impl Iterator<Item = Line<'_>> {
 }
 
 /// Lines in which the first solid or facet must begin.
-const MOST_LINES_BEFORE: usize = 100;
+const MAX_LINES_BEFORE: usize = 100;
 
 /// Whether a line begins a solid, with any name, or a facet.
 fn is_first(line: &Line<'_>) -> bool {
@@ -76,7 +76,7 @@ impl<'a> Words<'a> {
 
 /// Reads a text.
 pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
-    let mut before = plain_lines(text).take(MOST_LINES_BEFORE);
+    let mut before = plain_lines(text).take(MAX_LINES_BEFORE);
     let Some(before) = before.position(|line| is_first(&line)) else {
         return Err(not_stl(text));
     };

@@ -1,12 +1,12 @@
 //! The receptor's field: for each function of the ligand's radius a smooth potential over space, to be read anywhere.
 //!
-//! The score of a pose is sum_j d_j phi_{s_j}(R y_j + t): the adjoint (type 2) of the nonequispaced transform evaluates phi and its
+//! The score of a pose is sum_j d_j phi_{s_j}(R y_j + t): the adjoint (type 2) of the nufft transform evaluates phi and its
 //! gradient at every ligand knot by the same window that spreads them. O(ligand knots), whatever the receptor's size, which is what
 //! makes climbing thousands of peaks in six degrees of freedom cheap. Accuracy is that of the fast path.
 
 use crate::effect::Effect;
-use crate::engine::Folded;
 use crate::engine::Plan;
+use crate::engine::ReceptorSpectra;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::modes::place;
@@ -29,7 +29,7 @@ const LANES: usize = 8;
 type FieldKnot = (Vector3<f64>, Vec<(usize, f64)>);
 
 /// Sampled potentials of one receptor for one ligand.
-pub struct ReceptorField {
+pub struct PotentialGrid {
     size: [usize; 3],
     /// Row length in memory: the grid's, plus `LANES` that repeat its start so that a row's window never wraps.
     stride: usize,
@@ -45,7 +45,7 @@ pub struct ReceptorField {
     ligand_center: Vector3<f64>,
 }
 
-impl ReceptorField {
+impl PotentialGrid {
     /// Bytes that the field of a plan takes.
     pub fn bytes(plan: &Plan) -> usize {
         let size = fine_size(plan);
@@ -53,7 +53,7 @@ impl ReceptorField {
     }
 
     /// Samples the potentials from the folded spectra.
-    pub fn new<T: Real>(plan: &Plan, folded: &Folded<T>, ligand: &Knots) -> Self {
+    pub fn new<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Self {
         let modes = &plan.modes;
         let size = fine_size(plan);
         let [mx, my, mz] = size;
@@ -243,7 +243,7 @@ struct Fields {
 
 /// Knots of one radius and one class see one potential: the functions that tell classes apart are added up beforehand, so that a knot
 /// reads one grid for all of them. Charges, of which there are many, keep a grid of their own.
-fn fields<T: Real>(folded: &Folded<T>, count: usize) -> Fields {
+fn fields<T: Real>(folded: &ReceptorSpectra<T>, count: usize) -> Fields {
     let (charges, classes): (Vec<usize>, Vec<usize>) = (0..folded.full_rank())
         .partition(|&function| folded.effect(function) == Effect::Electrostatics);
     let mut keys: BTreeMap<Vec<(usize, u64)>, usize> = BTreeMap::new();

@@ -3,9 +3,9 @@
 //! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I section 4.3
 //! and Fig. 9). There are two ways through:
 //!
-//! - [`Configuration::prepare`] sums the ligand's knots into the spectrum of one rotation; each translation then costs O(m') by
-//!   [`Prepared::gradient`], with the force.
-//! - [`Configuration::gradient`] takes a pose with a rotation that is new: every knot reads the receptor's field and its slope, which
+//! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation; each translation then costs O(m') by
+//!   [`RotationSpectrum::gradient`], with the force.
+//! - [`TruncatedCorrelation::gradient`] takes a pose with a rotation that is new: every knot reads the receptor's field and its slope, which
 //!   gives force and torque together, O(m' x ligand knots).
 //!
 //! # Conventions
@@ -19,13 +19,13 @@ mod fields;
 mod gather;
 mod knots;
 mod place;
-mod prepared;
 mod read;
+mod rotation_spectrum;
 
-pub use prepared::Prepared;
+pub use rotation_spectrum::RotationSpectrum;
 
-use crate::engine::Folded;
 use crate::engine::Plan;
+use crate::engine::ReceptorSpectra;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::Real;
@@ -38,7 +38,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 /// One pair of knot sets at chosen modes, ready for one pose at a time.
-pub struct Configuration {
+pub struct TruncatedCorrelation {
     layout: Arc<Layout>,
     frame: Frame,
     /// The receptor's fields that knots read: E and O of each kept mode, over the volume.
@@ -88,11 +88,11 @@ impl Workspace {
     }
 }
 
-impl Configuration {
-    /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Fold`] says of what: score, slice or sensitivity).
+impl TruncatedCorrelation {
+    /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Quantity`] says of what: score, slice or sensitivity).
     pub fn new<T: Real>(
         plan: &Plan,
-        folded: &Folded<T>,
+        folded: &ReceptorSpectra<T>,
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
@@ -131,7 +131,7 @@ impl Configuration {
         self.layout.modes
     }
 
-    /// Buffers; nothing else is allocated by [`Self::gradient`] and [`Prepared::gradient`].
+    /// Buffers; nothing else is allocated by [`Self::gradient`] and [`RotationSpectrum::gradient`].
     pub fn workspace(&self) -> Workspace {
         Workspace::new(&self.layout, self.blocks.len())
     }
@@ -159,7 +159,11 @@ impl Configuration {
     }
 
     /// The spectrum G^(w; R) of one rotation.
-    pub fn prepare(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> Prepared {
+    pub fn prepare(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+        work: &mut Workspace,
+    ) -> RotationSpectrum {
         let mut values = vec![[0.0; 4]; self.layout.harmonics.len()];
         vectorized(
             #[inline(always)]
@@ -173,13 +177,13 @@ impl Configuration {
                 );
             },
         );
-        Prepared::new(Arc::clone(&self.layout), self.frame, *rotation, values)
+        RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
     }
 }
 
 /// For every mode the most that |G^(w; R)| / volume can be at any rotation: sum over fields of |H| times the knots' weights. With
 /// [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
-pub fn envelope<T: Real>(plan: &Plan, folded: &Folded<T>, ligand: &Knots) -> Vec<f64> {
+pub fn envelope<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
     let fields = fields::of(plan, folded, ligand.len());
     let mut envelope = vec![0.0; plan.modes.count];
     for field in &fields {

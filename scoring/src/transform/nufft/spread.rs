@@ -1,7 +1,7 @@
 //! Points onto the rows of the fine grid: the adjoint of `interpolate`.
 
 use super::super::Real;
-use super::{Located, Plan, Workspace};
+use super::{Plan, SortedPoints, Workspace};
 use num_complex::Complex;
 
 /// Where a point's window stands: rows of the grid with their shares.
@@ -85,7 +85,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         const NUMBERS: usize,
     >(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         range: std::ops::Range<usize>,
         weights: &[W],
         slots: &[usize],
@@ -126,7 +126,7 @@ pub(super) trait Weight<T: Real, const PARTS: usize>: Copy {
     /// Adds the sorted points `range` to the workspace's ring.
     fn spread<const D: usize>(
         plan: &Plan<T, D>,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         range: std::ops::Range<usize>,
         weights: &[Self],
         work: &mut Workspace<T, D>,
@@ -139,7 +139,7 @@ macro_rules! spread_by_width {
         #[inline(always)]
         fn spread<const D: usize>(
             plan: &Plan<T, D>,
-            points: &Located<D>,
+            points: &SortedPoints<D>,
             range: std::ops::Range<usize>,
             weights: &[Self],
             work: &mut Workspace<T, D>,

@@ -1,7 +1,7 @@
 //! The buffers of one transform in flight.
 
 use super::super::Real;
-use super::located::Grid;
+use super::sorted_points::Grid;
 use super::{FIRST_GROUP, Plan};
 use num_complex::Complex;
 

@@ -1,7 +1,7 @@
 //! Values at points from the rows of the fine grid: the adjoint of `spread`.
 
 use super::super::Real;
-use super::{Located, Plan};
+use super::{Plan, SortedPoints};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
@@ -10,7 +10,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     #[allow(clippy::too_many_arguments)]
     pub(super) fn interpolate<const LANES: usize, const NUMBERS: usize>(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         range: std::ops::Range<usize>,
         slots: &[usize],
         row: usize,

@@ -6,12 +6,12 @@
 
 mod example;
 
-use knotdock_scoring::configuration::Configuration;
-use knotdock_scoring::engine::Folded;
 use knotdock_scoring::engine::Plan;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::engine::ReceptorSpectra;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, total};
+use knotdock_scoring::truncated::TruncatedCorrelation;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
 use std::time::Instant;
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut options = knotdock::search::DockOptions::default().engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;
-    let folded = Folded::<f64>::new(&plan, &receptor, &ligand, Fold::Score);
+    let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);
     println!(
         "{} receptor and {} ligand knots, {} modes in all; medians",
         receptor.len(),
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut most = 256;
     while most <= 65_536 && most <= total(&plan.modes) {
         let selection = Selection::low_frequency(&plan.modes, most);
-        let few = Configuration::new(&plan, &folded, &ligand, &selection);
+        let few = TruncatedCorrelation::new(&plan, &folded, &ligand, &selection);
         let mut work = few.workspace();
         let rotation = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
         let prepared = few.prepare(&rotation, &mut work);

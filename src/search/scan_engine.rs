@@ -13,7 +13,7 @@ use super::peaks::NEIGHBOURS;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
 
 /// An engine that is ready to scan.
-pub(super) struct Correlator<T: Real> {
+pub(super) struct ScanEngine<T: Real> {
     /// Maps voxels to places, and scans where there is nothing else to.
     pub cpu: CpuEngine<T>,
     #[cfg(feature = "gpu")]
@@ -30,7 +30,7 @@ impl From<GpuError> for SearchError {
 }
 
 #[cfg(feature = "gpu")]
-impl<T: Real> Correlator<T> {
+impl<T: Real> ScanEngine<T> {
     /// Takes an engine to where the plan wants it.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl<T: Real> Correlator<T> {
 }
 
 #[cfg(not(feature = "gpu"))]
-impl<T: Real> Correlator<T> {
+impl<T: Real> ScanEngine<T> {
     /// The engine as it is.
     ///
     /// # Errors

@@ -11,14 +11,14 @@ use std::sync::Arc;
 
 /// The spectrum of one rotation.
 #[derive(Clone, Debug)]
-pub struct Prepared {
+pub struct RotationSpectrum {
     layout: Arc<Layout>,
     frame: Frame,
     rotation: UnitQuaternion<f64>,
     values: Vec<Harmonic>,
 }
 
-impl Prepared {
+impl RotationSpectrum {
     pub(super) fn new(
         layout: Arc<Layout>,
         frame: Frame,
@@ -51,7 +51,7 @@ impl Prepared {
         Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
     }
 
-    /// Buffers for [`Self::gradient`], where no [`super::Configuration`] has made them.
+    /// Buffers for [`Self::gradient`], where no [`super::TruncatedCorrelation`] has made them.
     pub fn workspace(&self) -> Workspace {
         Workspace::new(&self.layout, 0)
     }

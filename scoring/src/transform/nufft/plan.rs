@@ -1,10 +1,10 @@
 //! Choosing grid and window for a tolerance, and the calls.
 
 use super::super::{Real, fast_size, spreading::MAX_WIDTH};
-use super::located::Grid;
+use super::sorted_points::Grid;
 use super::vectorized::{Adjoint, Forward, Sort};
 use super::window::{Quality, Window, best};
-use super::{Located, PlanError, TransformError, Workspace};
+use super::{PlanError, SortedPoints, TransformError, Workspace};
 use num_complex::Complex;
 use rustfft::Fft;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ const LARGEST_GRID: usize = u32::MAX as usize;
 ///
 /// ```compile_fail
 /// // Fewer than three axes do not compile.
-/// let plan = knotdock_scoring::transform::nonequispaced::Plan::<f64, 2>::new([8, 8], 1e-3, 10);
+/// let plan = knotdock_scoring::transform::nufft::Plan::<f64, 2>::new([8, 8], 1e-3, 10);
 /// ```
 pub struct Plan<T: Real, const D: usize> {
     pub(super) modes: [usize; D],
@@ -212,8 +212,8 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// # Errors
     ///
     /// [`TransformError`] when a coordinate is not finite or there are more than 2^32 - 1 points.
-    pub fn locate(&self, points: &[[f64; D]]) -> Result<Located<D>, TransformError> {
-        let mut located = Located::new(self.grid);
+    pub fn locate(&self, points: &[[f64; D]]) -> Result<SortedPoints<D>, TransformError> {
+        let mut located = SortedPoints::new(self.grid);
         self.locate_into(points, &mut located)?;
         Ok(located)
     }
@@ -226,7 +226,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     pub fn locate_into(
         &self,
         points: &[[f64; D]],
-        located: &mut Located<D>,
+        located: &mut SortedPoints<D>,
     ) -> Result<(), TransformError> {
         located.grid = self.grid;
         pulp::Arch::new().dispatch(Sort { located, points })
@@ -239,7 +239,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// [`TransformError`] when an array has another length than points or modes, or belongs to another plan.
     pub fn forward(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         weights: &[Complex<T>],
         work: &mut Workspace<T, D>,
         output: &mut [Complex<T>],
@@ -262,7 +262,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// As [`Self::forward`].
     pub fn forward_real(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         weights: &[T],
         work: &mut Workspace<T, D>,
         output: &mut [Complex<T>],
@@ -285,7 +285,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// As [`Self::forward`].
     pub fn adjoint(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         modes: &[Complex<T>],
         work: &mut Workspace<T, D>,
         values: &mut [Complex<T>],
@@ -303,7 +303,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
 
     fn check(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         values: usize,
         modes: usize,
         work: &Workspace<T, D>,

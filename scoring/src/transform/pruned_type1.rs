@@ -1,4 +1,4 @@
-//! The nonequispaced fast Fourier transform, type 1 (knots to modes), pruned at both ends.
+//! The nufft fast Fourier transform, type 1 (knots to modes), pruned at both ends.
 //!
 //! Knots are spread with a Kaiser-Bessel window onto a grid finer than the modes need, but only over the block that they
 //! occupy; the three one-dimensional transforms then skip the lines that hold nothing and the modes that nobody keeps. Several

@@ -7,7 +7,7 @@ const BIN: usize = 8;
 
 /// Points in cells of one plan's fine grid, sorted; made by [`super::Plan::locate`].
 #[derive(Clone, Debug)]
-pub struct Located<const D: usize> {
+pub struct SortedPoints<const D: usize> {
     /// Where each sorted point stands in the caller's order.
     pub(super) order: Vec<u32>,
     /// Lower end of each sorted point's window in cells; its ceiling is the first grid point, in 0..fine.
@@ -28,7 +28,7 @@ pub(super) struct Grid<const D: usize> {
     pub(super) slab: usize,
 }
 
-impl<const D: usize> Located<D> {
+impl<const D: usize> SortedPoints<D> {
     pub(super) fn new(grid: Grid<D>) -> Self {
         Self {
             order: Vec::new(),

@@ -4,7 +4,7 @@
 //! factorisation of the lifted axis then stands for them.
 
 use crate::engine::Plan;
-use crate::engine::{Factors, Folded};
+use crate::engine::{Factors, ReceptorSpectra};
 use crate::transform::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ pub(super) struct Field {
 
 impl Field {
     /// H of the field at a mode.
-    pub fn mode<T: Real>(&self, folded: &Folded<T>, place: usize) -> Complex64 {
+    pub fn mode<T: Real>(&self, folded: &ReceptorSpectra<T>, place: usize) -> Complex64 {
         self.terms
             .iter()
             .map(|&(function, coefficient)| {
@@ -35,7 +35,7 @@ impl Field {
 }
 
 /// The fields of a folded correlation.
-pub(super) fn of<T: Real>(plan: &Plan, folded: &Folded<T>, knots: usize) -> Vec<Field> {
+pub(super) fn of<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, knots: usize) -> Vec<Field> {
     let functions = folded.full_rank();
     let direct: Vec<Field> = (0..functions)
         .map(|function| Field {
@@ -75,7 +75,10 @@ fn nonzero(knots: usize, weight: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
 }
 
 /// exp(+2 pi i w.c) by place of the mode, c the middle of the receptor in the box.
-pub(super) fn centering<T: Real>(plan: &Plan, folded: &Folded<T>) -> impl Fn(usize) -> Complex64 {
+pub(super) fn centering<T: Real>(
+    plan: &Plan,
+    folded: &ReceptorSpectra<T>,
+) -> impl Fn(usize) -> Complex64 {
     let center = folded.center();
     let mut turns = Vec::with_capacity(plan.modes.count);
     plan.modes.for_each(|_, w, _| {

@@ -5,7 +5,7 @@ use super::outcome::EffectCost;
 use super::plan::DockPlan;
 use super::scan::{Chosen, choose_rank};
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::{CpuEngine, Folded};
+use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ const ENOUGH: u128 = 100;
 /// An effect may share fields with others, so the parts need not add up to the whole.
 pub(super) fn costs<T: Real>(
     plan: &DockPlan,
-    folded: &Folded<T>,
+    folded: &ReceptorSpectra<T>,
     engine: &CpuEngine<T>,
 ) -> Vec<EffectCost> {
     let on = |decision: &&Decision| decision.on;

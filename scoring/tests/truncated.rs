@@ -2,13 +2,13 @@
 
 mod scene;
 
-use knotdock_scoring::configuration::{Configuration, envelope};
-use knotdock_scoring::engine::Folded;
+use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Fold;
+use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, Tail, total};
+use knotdock_scoring::truncated::{TruncatedCorrelation, envelope};
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -28,13 +28,13 @@ struct Pair {
     receptor: Knots,
     ligand: Knots,
     plan: Arc<Plan>,
-    folded: Folded<f64>,
+    folded: ReceptorSpectra<f64>,
 }
 
 impl Pair {
-    fn new(receptor: Knots, ligand: Knots, tolerance: f64, fold: Fold) -> Self {
+    fn new(receptor: Knots, ligand: Knots, tolerance: f64, fold: Quantity) -> Self {
         let plan = Arc::new(Plan::new(&receptor, &ligand, options(tolerance)).unwrap());
-        let folded = Folded::<f64>::new(&plan, &receptor, &ligand, fold);
+        let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, fold);
         Self {
             receptor,
             ligand,
@@ -43,16 +43,16 @@ impl Pair {
         }
     }
 
-    fn clouds(tolerance: f64, fold: Fold, seed: u64) -> Self {
+    fn clouds(tolerance: f64, fold: Quantity, seed: u64) -> Self {
         let receptor = cloud(70, 8.0, &RADII, seed);
         Self::new(receptor, cloud(29, 5.0, &RADII, seed + 1), tolerance, fold)
     }
 
-    fn configuration(&self, selection: &Selection) -> Configuration {
-        Configuration::new(&self.plan, &self.folded, &self.ligand, selection)
+    fn configuration(&self, selection: &Selection) -> TruncatedCorrelation {
+        TruncatedCorrelation::new(&self.plan, &self.folded, &self.ligand, selection)
     }
 
-    fn whole(&self) -> Configuration {
+    fn whole(&self) -> TruncatedCorrelation {
         self.configuration(&Selection::all(&self.plan.modes))
     }
 
@@ -77,7 +77,7 @@ fn turn(seed: f64) -> UnitQuaternion<f64> {
 
 #[test]
 fn at_voxels_it_is_the_engines_grid() {
-    let pair = Pair::clouds(1e-6, Fold::Score, 1);
+    let pair = Pair::clouds(1e-6, Quantity::Score, 1);
     let (engine, whole) = (pair.engine(), pair.whole());
     assert_eq!(whole.modes(), total(&pair.plan.modes));
     let (mut grid, mut work) = (engine.workspace(), whole.workspace());
@@ -105,7 +105,7 @@ fn every_knot_its_own_radius() {
         cloud(90, 9.0, &many, 5),
         cloud(40, 5.0, &many, 6),
         1e-3,
-        Fold::Score,
+        Quantity::Score,
     );
     let (whole, engine) = (pair.whole(), pair.engine());
     let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
@@ -132,7 +132,7 @@ fn every_knot_its_own_radius() {
 
 #[test]
 fn gradients_are_the_slopes_of_the_value() {
-    let pair = Pair::clouds(1e-3, Fold::Score, 11);
+    let pair = Pair::clouds(1e-3, Quantity::Score, 11);
     let modes = &pair.plan.modes;
     let some = Selection::low_frequency(modes, 700);
     for selection in [Selection::all(modes), some] {
@@ -169,7 +169,7 @@ fn gradients_are_the_slopes_of_the_value() {
 /// A ladder in both orders ends at the exact score; the l1 tail bounds every error on the way.
 #[test]
 fn ladders_converge_to_the_exact_score_within_their_bounds() {
-    let pair = Pair::clouds(1e-4, Fold::Score, 21);
+    let pair = Pair::clouds(1e-4, Quantity::Score, 21);
     let modes = &pair.plan.modes;
     let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
     let whole = pair.whole();
@@ -227,7 +227,7 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
 /// do not, as the grid holds every mode of the set.
 #[test]
 fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says() {
-    let mut pair = Pair::clouds(1e-6, Fold::Score, 31);
+    let mut pair = Pair::clouds(1e-6, Quantity::Score, 31);
     let whole = pair.whole();
     let mut work = whole.workspace();
     let rotation = turn(0.4);
@@ -263,7 +263,8 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
         // Cut to a ball, transforms and all, it is that ball's own low-frequency selection.
         let cut = Arc::new(plan.truncated(most));
         assert!(total(&cut.modes) <= most);
-        let folded = Folded::<f64>::new(&cut, &pair.receptor, &pair.ligand, Fold::Score);
+        let folded =
+            ReceptorSpectra::<f64>::new(&cut, &pair.receptor, &pair.ligand, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&cut), &folded, &pair.ligand, folded.full_rank());
         let mut ball = engine.workspace();
         engine.correlate(&rotation, &mut ball);
@@ -288,10 +289,10 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
 fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let h = 1e-3;
     let pairs = [
-        Fold::SliceByOffset(0),
-        Fold::SliceByOffset(1),
-        Fold::SliceByOffset(2),
-        Fold::ScoreByOffset,
+        Quantity::SliceByOffset(0),
+        Quantity::SliceByOffset(1),
+        Quantity::SliceByOffset(2),
+        Quantity::ScoreByOffset,
     ]
     .map(|fold| Pair::clouds(1e-5, fold, 41));
     let first = &pairs[0];
@@ -328,7 +329,7 @@ fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
 /// Beyond the box the polynomial repeats; the pair does not.
 #[test]
 fn a_ligand_far_away_scores_nothing() {
-    let pair = Pair::clouds(1e-2, Fold::Score, 51);
+    let pair = Pair::clouds(1e-2, Quantity::Score, 51);
     let whole = pair.whole();
     let mut work = whole.workspace();
     let prepared = whole.prepare(&turn(0.0), &mut work);
@@ -351,7 +352,7 @@ proptest! {
     /// Whatever the knots, the rotation and the count: the tail bounds the error at every place tried.
     #[test]
     fn tails_bound_errors(seed in 0u64..1000, most in 1usize..3000, q in prop::array::uniform4(0.05..1.0f64)) {
-        let pair = Pair::new(cloud(25, 6.0, &RADII, seed), cloud(11, 4.0, &RADII, seed + 7), 1e-2, Fold::Score);
+        let pair = Pair::new(cloud(25, 6.0, &RADII, seed), cloud(11, 4.0, &RADII, seed + 7), 1e-2, Quantity::Score);
         let modes = &pair.plan.modes;
         let rotation = Pose::from_parts(q, [0.0; 3]).rotation;
         let whole = pair.whole();

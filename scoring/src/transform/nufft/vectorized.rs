@@ -4,13 +4,13 @@
 //! of its own, which the compiler left out of line and thus without vector instructions.
 
 use super::super::Real;
-use super::{Located, Plan, TransformError, Workspace};
+use super::{Plan, SortedPoints, TransformError, Workspace};
 use num_complex::Complex;
 use pulp::{Simd, WithSimd};
 
 /// Folding and sorting points.
 pub(super) struct Sort<'a, const D: usize> {
-    pub(super) located: &'a mut Located<D>,
+    pub(super) located: &'a mut SortedPoints<D>,
     pub(super) points: &'a [[f64; D]],
 }
 
@@ -26,7 +26,7 @@ impl<const D: usize> WithSimd for Sort<'_, D> {
 /// Points to modes, with weights of type `W`: real or complex.
 pub(super) struct Forward<'a, T: Real, W, const D: usize> {
     pub(super) plan: &'a Plan<T, D>,
-    pub(super) points: &'a Located<D>,
+    pub(super) points: &'a SortedPoints<D>,
     pub(super) weights: &'a [W],
     pub(super) work: &'a mut Workspace<T, D>,
     pub(super) output: &'a mut [Complex<T>],
@@ -55,7 +55,7 @@ impl<T: Real, const D: usize> WithSimd for Forward<'_, T, T, D> {
 /// Modes to values at the points.
 pub(super) struct Adjoint<'a, T: Real, const D: usize> {
     pub(super) plan: &'a Plan<T, D>,
-    pub(super) points: &'a Located<D>,
+    pub(super) points: &'a SortedPoints<D>,
     pub(super) modes: &'a [Complex<T>],
     pub(super) work: &'a mut Workspace<T, D>,
     pub(super) values: &'a mut [Complex<T>],

@@ -3,10 +3,10 @@
 use super::plan::Plan;
 use crate::effect::{ActiveTerm, Effect, Label, Term};
 use crate::kernel::table::Table;
-use crate::lifted_axis::Fold;
+use crate::lifted_axis::Quantity;
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
-use crate::transform::nfft::{Forward, ForwardWorkspace};
+use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
 use crate::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 ///
 /// The first functions are those of the lifted axis; each further effect adds one for every class that the ligand has.
 #[derive(Clone)]
-pub struct Folded<T> {
+pub struct ReceptorSpectra<T> {
     /// Shared with copies that leave an effect out.
     pub(super) spectra: Vec<Arc<Vec<Complex<T>>>>,
     /// d_j v_b(s_j): (knots, functions).
@@ -38,10 +38,10 @@ pub struct Factors {
     pub singular: Vec<f64>,
 }
 
-impl<T: Real> Folded<T> {
+impl<T: Real> ReceptorSpectra<T> {
     /// Transforms the receptor and folds the lifted kernel into it; the plan's further terms belong to the score alone, not to slices and
     /// sensitivities.
-    pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Fold) -> Self {
+    pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
         let modes = &plan.modes;
         let (receptor_size, ligand_size) = plan.basis.sizes(&plan.axis);
         let fine = plan.fine;
@@ -95,7 +95,7 @@ impl<T: Real> Folded<T> {
             .collect();
         let mut effects = vec![Effect::Shape; ligand_size];
         let terms = match fold {
-            Fold::Score => plan.effects.as_slice(),
+            Quantity::Score => plan.effects.as_slice(),
             _ => &[],
         };
         for ActiveTerm { term, kernel } in terms {

@@ -1,14 +1,14 @@
 //! What a pose should touch: residues that the user names, or else the active site of a peptidase.
 
 use super::options::DockOptions;
-use knotdock_scoring::effect::restraint::Mark;
+use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_scoring::rescoring::Residues;
 use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
 use serde::Serialize;
 
 /// Sets of residues, of which poses should touch all of one, and what those earn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Attracted {
+pub struct ActiveResidues {
     /// Residues of receptor and ligand, each as the places of its knots.
     pub(super) sets: Vec<Residues>,
     /// What a pose earns in which all of a set touch: score.
@@ -26,13 +26,13 @@ pub struct AssumedSite {
     pub sites: Vec<ActiveSite>,
 }
 
-impl Attracted {
+impl ActiveResidues {
     /// Residues that were named.
     pub(super) fn named(residues: Residues, options: &DockOptions) -> Self {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.attraction_weight,
+            weight: options.active_weight,
             assumed: None,
         }
     }
@@ -40,7 +40,7 @@ impl Attracted {
     /// The active sites of a peptidase, where one of the two is one and nothing speaks against it; `marks` say which atoms are kept free of contact.
     pub(super) fn assumed(
         molecules: [&Molecule; 2],
-        marks: [&[Mark]; 2],
+        marks: [&[ResidueRole]; 2],
         options: &DockOptions,
     ) -> Self {
         let weight = options.peptidase_weight;
@@ -66,7 +66,7 @@ impl Attracted {
 impl AssumedSite {
     /// Where one of the two is a peptidase and the other is none, sites left out that are to stay free of contact. What an antibody was raised against is as
     /// likely to be anywhere.
-    fn of(molecules: [&Molecule; 2], marks: [&[Mark]; 2]) -> Option<Self> {
+    fn of(molecules: [&Molecule; 2], marks: [&[ResidueRole]; 2]) -> Option<Self> {
         let (partner, mut sites, marks) = match molecules.map(Molecule::active_sites) {
             [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
             [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
@@ -74,7 +74,7 @@ impl AssumedSite {
         };
         sites.retain(|site| {
             let mut atoms = site.atoms.iter().flatten();
-            !atoms.any(|&atom| marks.get(atom) == Some(&Mark::Blocked))
+            !atoms.any(|&atom| marks.get(atom) == Some(&ResidueRole::Excluded))
         });
         let none = sites.is_empty() || molecules.iter().any(|m| m.antibody().is_some());
         (!none).then_some(Self { partner, sites })
@@ -167,10 +167,10 @@ mod tests {
             |options| options.peptidase_weight = 0.0,
             |options| options.effects = "shape,electrostatics".parse().unwrap(),
             |options| options.block_receptor = Some("A:195".parse().unwrap()),
-            |options| options.attract_ligand = Some("B:5".parse().unwrap()),
+            |options| options.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
-                options.attract_receptor = Some("A:20".parse().unwrap());
-                options.attraction_weight = 0.0;
+                options.active_receptor = Some("A:20".parse().unwrap());
+                options.active_weight = 0.0;
             },
         ];
         for change in changes {

@@ -1,14 +1,14 @@
 //! Modes to values at points: the passes of `forward` backwards, each transposed.
 
 use super::super::Real;
-use super::{FIRST_GROUP, GROUP, Located, Plan, Workspace, place};
+use super::{FIRST_GROUP, GROUP, Plan, SortedPoints, Workspace, place};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
     #[inline(always)]
     pub(super) fn run_adjoint(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         modes: &[Complex<T>],
         work: &mut Workspace<T, D>,
         values: &mut [Complex<T>],

@@ -1,4 +1,4 @@
-//! The general nonequispaced fast Fourier transform in three or four dimensions, single or double precision.
+//! The general nufft fast Fourier transform in three or four dimensions, single or double precision.
 //!
 //! # Conventions
 //!
@@ -24,7 +24,7 @@
 //! cache, each axis leaving only the modes that are kept. The first axis goes last.
 //!
 //! ```
-//! use knotdock_scoring::transform::nonequispaced::Plan;
+//! use knotdock_scoring::transform::nufft::Plan;
 //! use num_complex::Complex64;
 //! let plan = Plan::<f64, 3>::new([8, 9, 1], 1e-6, 2)?;
 //! let points = plan.locate(&[[0.1, 0.2, 0.3], [0.5, 0.75, 0.0]])?;
@@ -40,16 +40,16 @@ mod adjoint;
 mod error;
 mod forward;
 mod interpolate;
-mod located;
 mod plan;
+mod sorted_points;
 mod spread;
 mod vectorized;
 mod window;
 mod workspace;
 
 pub use error::{PlanError, TransformError};
-pub use located::Located;
 pub use plan::Plan;
+pub use sorted_points::SortedPoints;
 pub use workspace::Workspace;
 
 /// Lines that are transformed together: their transposed writes then fill whole cache lines.

@@ -2,14 +2,14 @@
 
 use super::super::Real;
 use super::spread::Weight;
-use super::{FIRST_GROUP, GROUP, Located, Plan, Workspace, place};
+use super::{FIRST_GROUP, GROUP, Plan, SortedPoints, Workspace, place};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
     #[inline(always)]
     pub(super) fn run_forward<W: Weight<T, PARTS>, const PARTS: usize>(
         &self,
-        points: &Located<D>,
+        points: &SortedPoints<D>,
         weights: &[W],
         work: &mut Workspace<T, D>,
         output: &mut [Complex<T>],
