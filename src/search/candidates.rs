@@ -1,8 +1,8 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
 use super::cluster::{PlacedBody, RigidBody, greedy};
-use super::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;

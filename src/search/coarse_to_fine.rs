@@ -6,11 +6,11 @@
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
 use super::error::SearchError;
-use super::peaks::{NEIGHBOURS, Peak};
 use super::plan::DockPlan;
 use super::run::Progress;
 use super::scan::{Quartet, scan};
 use super::scan_engine::ScanEngine;
+use knotdock_scoring::peaks::{NEIGHBOURS, Peak};
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -138,8 +138,8 @@ fn nearest(fine: &[UnitQuaternion<f64>], coarse: &[UnitQuaternion<f64>]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::rotations::{rotation_set, spiral_set};
     use super::*;
+    use knotdock_scoring::so3::{rotation_set, spiral_set};
 
     #[test]
     fn cells_are_those_of_the_nearest_rotation() {

@@ -2,9 +2,9 @@
 
 use super::coarse_to_fine::FineSearched;
 use super::options::Stopped;
-use super::peaks::Peak;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use serde::Serialize;
 

@@ -5,18 +5,18 @@ use super::effects::{Decision, LengthUnit, Scene};
 use super::error::SearchError;
 use super::loose::Loose;
 use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
-use super::peaks::Peak;
 use super::rescoring::Asked;
 use super::ring::Rings;
-use super::rotations::{
-    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
-};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::so3::{
+    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
+};
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;

@@ -237,9 +237,9 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::super::candidates::{RefinedPose, candidates};
-    use super::super::peaks::Peak;
     use super::*;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+    use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
 

@@ -8,19 +8,19 @@ use super::effect_timings::costs;
 use super::error::SearchError;
 use super::options::{Precision, Stopped};
 use super::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
-use super::peaks::Peak;
 use super::plan::DockPlan;
 use super::ranking::{PoseScorer, cluster_temperature, report};
 use super::refine::{ClimbLimits, maximize, rigid_body};
-use super::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use super::scan::{Quartet, Scanned, choose_rank, scan};
 use super::scan_engine::ScanEngine;
 use super::schedule::{Deadline, schedule};
 use super::time_left::poses_in_time;
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::ReceptorSpectra;
+use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
@@ -120,7 +120,7 @@ fn dock_in<T: Real>(
     progress.stage("prepare", 1);
     let folded =
         ReceptorSpectra::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Quantity::Score);
-    let Chosen {
+    let ChosenRank {
         engine,
         error: rank_error,
     } = choose_rank(plan, &folded);

@@ -8,9 +8,9 @@ use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::transform::Real;
 
 #[cfg(feature = "gpu")]
-use super::peaks::NEIGHBOURS;
-#[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
+#[cfg(feature = "gpu")]
+use knotdock_scoring::peaks::NEIGHBOURS;
 
 /// An engine that is ready to scan.
 pub(super) struct ScanEngine<T: Real> {

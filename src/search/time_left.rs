@@ -6,8 +6,8 @@
 use super::candidates::{RefinedPose, candidates, clusters_of};
 use super::cluster::RigidBody;
 use super::options::DockOptions;
-use super::peaks::Peak;
 use super::schedule::Deadline;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::rescoring::Rescorer;
 use std::time::Instant;
 
