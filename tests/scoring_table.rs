@@ -126,7 +126,7 @@ fn scored(
     let engine = options.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
-        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
+        ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
     let on = Effect::ALL.map(|effect| decisions.iter().any(|d| d.effect == effect && d.on));
     let scores = poses.iter().map(|(_, pose)| scorer.score(pose)).collect();
     (on, scores, rescored)

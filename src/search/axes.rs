@@ -74,9 +74,9 @@ impl RingVoxels {
         };
         Self {
             places: [along(0, nx, ny * nz), along(1, ny, nz), along(2, nz, 1)],
-            receptor_center: plan.receptor_center,
-            ligand_center: plan.ligand_center,
-            spacing: plan.spacing,
+            receptor_center: plan.receptor_center(),
+            ligand_center: plan.ligand_center(),
+            spacing: plan.spacing(),
             across,
         }
     }
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
     use crate::search::DockOptions;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
-    use knotdock_scoring::lifted_axis::Quantity;
+    use knotdock_scoring::quantity::Quantity;
     use knotdock_scoring::se3::Pose;
     use knotdock_scoring::symmetry::Symmetry;
     use knotdock_structures::Knots;
@@ -170,10 +170,10 @@ mod tests {
             let mut kept = 0;
             for (voxel, &left) in grid.iter().enumerate() {
                 let slide = |corner: [f64; 3]| {
-                    let place = plan.receptor_center
+                    let place = plan.receptor_center()
                         + engine.position(voxel)
-                        + 0.5 * plan.spacing * Vector3::from(corner);
-                    let pose = Pose::about(rotation, plan.ligand_center, place);
+                        + 0.5 * plan.spacing() * Vector3::from(corner);
+                    let pose = Pose::about(rotation, plan.ligand_center(), place);
                     axis.dot(&pose.translation)
                 };
                 let signs = [-1.0, 1.0];
@@ -224,10 +224,10 @@ mod tests {
             let mut heights = Vec::new();
             for voxel in (0..line.len()).filter(|&voxel| line[voxel]) {
                 assert!(layer[voxel]);
-                let place = plan.receptor_center + engine.position(voxel);
-                let pose = Pose::about(rotation, plan.ligand_center, place);
+                let place = plan.receptor_center() + engine.position(voxel);
+                let pose = Pose::about(rotation, plan.ligand_center(), place);
                 let off = axis.nearest(&pose).translation - pose.translation;
-                assert!(off.norm() < 1.8 * plan.spacing, "{off}");
+                assert!(off.norm() < 1.8 * plan.spacing(), "{off}");
                 heights.push(pose.translation.z);
             }
             // The ring's axis is that of z, along which the voxels go from end to end.
@@ -236,7 +236,7 @@ mod tests {
             assert!(
                 heights
                     .windows(2)
-                    .all(|pair| pair[1] - pair[0] < 1.5 * plan.spacing)
+                    .all(|pair| pair[1] - pair[0] < 1.5 * plan.spacing())
             );
         }
     }

@@ -155,7 +155,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         let per_rotation = workspace_estimate(engine, rank) as u64;
         // The functions, one in the making, and the compressed ones in either order of modes, packed.
         let fixed =
-            2 * real_bytes * engine.modes.count as u64 * (functions + 1 + 5 * rank / 2) as u64
+            2 * real_bytes * engine.modes().count as u64 * (functions + 1 + 5 * rank / 2) as u64
                 + PotentialGrid::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
                 + 64 * options.rotations as u64
@@ -171,7 +171,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         let fits = least_coarse(|step| {
             let coarser = coarser(options, step, angstrom);
             let plan = planned(&coarser).ok()?;
-            let spacing = rounded_up(plan.spacing, angstrom);
+            let spacing = rounded_up(plan.spacing(), angstrom);
             let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
             (fixed + per_rotation <= allowed).then_some(DockOptions {
                 spacing: Some(spacing),
@@ -223,11 +223,11 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         }
     };
     let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
-    let (a, b) = match &engine.basis {
+    let (a, b) = match engine.basis() {
         knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
             (receptor.len(), ligand.len())
         }
-        _ => engine.basis.sizes(&engine.axis),
+        _ => engine.basis().sizes(engine.axis()),
     };
     Ok(DockPlan {
         unit,
@@ -236,14 +236,14 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         rotation_set: set_name,
         covering_radius_degrees: covering_radius.to_degrees(),
         grid: engine.size(),
-        spacing: engine.spacing,
-        fine_grid: engine.fine,
-        spreading_width: engine.width,
-        modes: engine.modes.count,
-        lifted_modes: engine.axis.modes(),
-        kernel_reach: engine.kernel.reach(),
-        pass_frequency: 1.0 / engine.options.kernel.pass_length,
-        stop_frequency: engine.kernel.stop(),
+        spacing: engine.spacing(),
+        fine_grid: engine.fine(),
+        spreading_width: engine.width(),
+        modes: engine.modes().count,
+        lifted_modes: engine.axis().modes(),
+        kernel_reach: engine.kernel().reach(),
+        pass_frequency: 1.0 / engine.options().kernel.pass_length,
+        stop_frequency: engine.kernel().stop(),
         radii: [a, b],
         in_flight,
         fixed_bytes: fixed,
@@ -341,10 +341,10 @@ impl DockPlan {
     /// [`SearchError::Knots`] on knots that cannot be summed.
     pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
         Ok(ExactScorer::with_effects(
-            &self.engine.kernel,
+            self.engine.kernel(),
             &self.receptor,
             &self.ligand,
-            &self.engine.effects,
+            self.engine.effects(),
         )?)
     }
 
@@ -428,7 +428,7 @@ impl std::fmt::Display for DockPlan {
             self.grid[2],
             self.spacing,
             self.modes,
-            self.engine.modes.cut,
+            self.engine.modes().cut,
             self.spreading_width,
             self.fine_grid[0],
             self.fine_grid[1],

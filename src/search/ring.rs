@@ -108,7 +108,7 @@ mod tests {
     use crate::search::scan::{all_rotations, choose_rank, scan};
     use crate::search::scan_engine::ScanEngine;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
-    use knotdock_scoring::lifted_axis::Quantity;
+    use knotdock_scoring::quantity::Quantity;
     use knotdock_structures::Knots;
     use knotdock_structures::molecule::{Format, Molecule};
     use nalgebra::UnitQuaternion;
@@ -129,7 +129,7 @@ mod tests {
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &folded, &knots);
-        let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
+        let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
         };
@@ -144,7 +144,7 @@ mod tests {
         assert!(other_copies(symmetry, &scorer, &start).unwrap().abs() > 1.0);
         assert_eq!(other_copies("C3".parse().unwrap(), &scorer, &start), None);
 
-        let center = plan.ligand_center;
+        let center = plan.ligand_center();
         let (_, gradient) = whole(symmetry, &field, center, &start);
         let step = 1e-3;
         let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
@@ -223,11 +223,12 @@ mod tests {
             .unwrap()
             .peaks;
         assert_eq!(peaks.len(), 20);
-        let center = plan.engine.ligand_center;
+        let center = plan.engine.ligand_center();
         let starts: Vec<Pose> = peaks
             .iter()
             .map(|peak| {
-                let place = plan.engine.receptor_center + engine.cpu.position(peak.voxel as usize);
+                let place =
+                    plan.engine.receptor_center() + engine.cpu.position(peak.voxel as usize);
                 Pose::about(plan.rotation(peak.rotation as usize).0, center, place)
             })
             .collect();

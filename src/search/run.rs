@@ -19,9 +19,9 @@ use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScore;
-use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
@@ -152,8 +152,8 @@ fn dock_in<T: Real>(
         .map(|peak| {
             let (rotation, half_turn) = plan.rotation(peak.rotation as usize);
             let position = engine.cpu.position_after(half_turn, peak.voxel as usize);
-            let place = plan.engine.receptor_center + position;
-            Pose::about(rotation, plan.engine.ligand_center, place)
+            let place = plan.engine.receptor_center() + position;
+            Pose::about(rotation, plan.engine.ligand_center(), place)
         })
         .collect();
 
@@ -283,7 +283,7 @@ fn refine<T: Real>(
         gyration: body.gyration(),
         angstrom: plan.angstrom,
     };
-    let center = plan.engine.ligand_center;
+    let center = plan.engine.ligand_center();
     let place = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
         let Some(field) = field.as_ref().filter(|_| index < count) else {
             return RefinedPose::best_of((printed(pose), peak.score), None);

@@ -34,9 +34,13 @@ fn named_residues_are_kept_free_or_touched() {
         terms,
     )
     .unwrap();
-    let scorer =
-        ExactScorer::with_effects(&plan.kernel, &scene.receptor, &scene.ligand, &plan.effects)
-            .unwrap();
+    let scorer = ExactScorer::with_effects(
+        plan.kernel(),
+        &scene.receptor,
+        &scene.ligand,
+        plan.effects(),
+    )
+    .unwrap();
     let pose = |row: &Value| {
         let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(&row[part]));
         Pose::from_parts(

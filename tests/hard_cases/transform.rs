@@ -11,7 +11,7 @@ use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_scoring::kernel::radial_transform::RadialTransform;
 use knotdock_scoring::kernel::{Band, Bump, KernelOptions};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use std::f64::consts::PI;

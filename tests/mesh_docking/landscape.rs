@@ -28,7 +28,7 @@ fn scorer(meshes: &MeshPair) -> ExactScorer {
     meshes.defaults(&mut options, GivenLengths::default());
     let scene = Scene::of_meshes(meshes, &options).unwrap();
     let plan = Plan::new(&scene.receptor, &scene.ligand, options.engine()).unwrap();
-    ExactScorer::new(&plan.kernel, &scene.receptor, &scene.ligand).unwrap()
+    ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()
 }
 
 /// A pose that turns the ligand about its middle by a rotation vector and moves it.

@@ -89,16 +89,16 @@ impl Workspace {
 }
 
 impl TruncatedCorrelation {
-    /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Quantity`] says of what: score, slice or sensitivity).
+    /// Takes the selected modes of a folded correlation ([`crate::quantity::Quantity`] says of what: score, slice or sensitivity).
     pub fn new<T: Real>(
         plan: &Plan,
         folded: &ReceptorSpectra<T>,
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
-        let layout = Layout::new(&plan.modes, selection);
+        let layout = Layout::new(plan.modes(), selection);
         let fields = fields::of(plan, folded, ligand.len());
-        let volume = plan.modes.volume();
+        let volume = plan.modes().volume();
         // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
         let turns = fields::centering(plan, folded);
         let values = fields
@@ -112,13 +112,13 @@ impl TruncatedCorrelation {
         let blocks = fields
             .iter()
             .enumerate()
-            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center))
+            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center()))
             .collect();
         Self {
             frame: Frame {
-                receptor_center: plan.receptor_center,
-                ligand_center: plan.ligand_center,
-                half: Vector3::from(plan.modes.lengths) * 0.5,
+                receptor_center: plan.receptor_center(),
+                ligand_center: plan.ligand_center(),
+                half: Vector3::from(plan.modes().lengths) * 0.5,
             },
             layout: Arc::new(layout),
             fields: values,
@@ -185,11 +185,11 @@ impl TruncatedCorrelation {
 /// [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
 pub fn envelope<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
     let fields = fields::of(plan, folded, ligand.len());
-    let mut envelope = vec![0.0; plan.modes.count];
+    let mut envelope = vec![0.0; plan.modes().count];
     for field in &fields {
         let weight: f64 = field.knots.iter().map(|knot| knot.1.abs()).sum();
         for (place, value) in envelope.iter_mut().enumerate() {
-            *value += field.mode(folded, place).norm() * weight / plan.modes.volume();
+            *value += field.mode(folded, place).norm() * weight / plan.modes().volume();
         }
     }
     envelope
