@@ -10,7 +10,6 @@
 use super::columns::Reading;
 use super::packed::{LANES, Packet, Packing, reversed};
 use super::plan::Plan;
-use super::preparation::ligand_forward;
 use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::place;
@@ -22,9 +21,9 @@ use rustfft::Fft;
 use std::sync::{Arc, OnceLock};
 
 /// Columns that go through the x transforms together.
-const COLUMNS: usize = 8;
+pub(super) const COLUMNS: usize = 8;
 /// Planes kz that go through the y transforms together: a cache line of the spectrum's rows.
-const PLANES: usize = 8;
+pub(super) const PLANES: usize = 8;
 
 /// A prepared correlation of one pair.
 pub struct CpuEngine<T: Real> {
@@ -122,18 +121,6 @@ impl<T: Real> CpuEngine<T> {
             grid: vec![T::zero(); nx * ny * nz],
             row_best: vec![T::zero(); nx * ny],
         }
-    }
-
-    /// Bytes that a workspace of a plan takes at a rank, before the engine is built.
-    pub fn workspace_estimate(plan: &Plan, rank: usize) -> usize {
-        let [nx, ny, nz] = plan.modes().size;
-        let forward = ligand_forward::<T>(plan, rank);
-        let reals = 2 * COLUMNS * rank * forward.line_length()
-            + 2 * rank * LANES * Packing::new(plan.modes()).count()
-            + 2 * PLANES * nx * ny
-            + nx * ny * nz
-            + nx * ny * (nz + 1);
-        forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
     /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `half_turn` gave, in Å, in the box

@@ -16,13 +16,16 @@
 
 mod columns;
 mod fields;
+mod frame;
 mod gather;
 mod knots;
 mod place;
 mod read;
 mod rotation_spectrum;
+mod workspace;
 
 pub use rotation_spectrum::RotationSpectrum;
+pub use workspace::Workspace;
 
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
@@ -32,6 +35,7 @@ use crate::transform::Real;
 use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
 use columns::{Harmonic, Layout};
+use frame::Frame;
 use knotdock_structures::Knots;
 use knots::Block;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -45,47 +49,6 @@ pub struct TruncatedCorrelation {
     fields: Vec<Vec<Harmonic>>,
     /// The ligand's knots by the field that they read.
     blocks: Vec<Block>,
-}
-
-/// Where the two bodies lie.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    receptor_center: Vector3<f64>,
-    ligand_center: Vector3<f64>,
-    /// Half the box, Å.
-    half: Vector3<f64>,
-}
-
-impl Frame {
-    /// The ligand's centre relative to the receptor's, Å; `None` outside the box.
-    fn position(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        translation: &Vector3<f64>,
-    ) -> Option<Vector3<f64>> {
-        let position = rotation * self.ligand_center + translation - self.receptor_center;
-        (0..3)
-            .all(|axis| position[axis].abs() <= self.half[axis])
-            .then_some(position)
-    }
-}
-
-/// Tables of phases: one evaluation at a time, for any configuration of the same pair and no more modes.
-#[derive(Clone, Debug)]
-pub struct Workspace {
-    read: read::ReadTables,
-    place: place::PlaceTables,
-    gather: gather::GatherTables,
-}
-
-impl Workspace {
-    fn new(layout: &Layout, blocks: usize) -> Self {
-        Self {
-            read: read::ReadTables::new(layout),
-            place: place::PlaceTables::new(layout),
-            gather: gather::GatherTables::new(layout, blocks),
-        }
-    }
 }
 
 impl TruncatedCorrelation {

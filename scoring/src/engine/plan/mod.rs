@@ -10,11 +10,13 @@
 
 mod error;
 mod grid;
+mod options;
+mod pair_kernel;
 mod radii;
 
 use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
-use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
+use crate::kernel::{Band, RankingKernel};
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::quantity::Quantity;
 use crate::transform::modes::ModeSet;
@@ -27,42 +29,12 @@ use grid::{
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use radii::Radii;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 pub use error::PlanError;
 pub(super) use error::check_bodies;
-
-/// What a user may set; every approximation is a knob.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EngineOptions {
-    /// The kernel that is correlated.
-    pub kernel: KernelOptions,
-    /// Grid spacing in Å; `None`: as the tolerance needs, resolution / 2 at most.
-    pub spacing: Option<f64>,
-    /// Error of the fast path that is aimed at, relative to the best score.
-    pub tolerance: f64,
-}
-
-impl Default for EngineOptions {
-    /// The kernel of `knotdock dock` on the grid that a tolerance of 1e-2 needs.
-    fn default() -> Self {
-        Self {
-            kernel: KernelOptions::default(),
-            spacing: None,
-            tolerance: 1e-2,
-        }
-    }
-}
-
-/// The function of two balls that a plan correlates.
-#[derive(Clone, Debug)]
-pub enum PairKernel {
-    /// The lifted cone at r + s + rho, low-passed and windowed: `Plan::kernel`.
-    Lifted,
-    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they are.
-    Product(Box<ProductKernel>),
-}
+pub use options::EngineOptions;
+pub use pair_kernel::PairKernel;
 
 /// A planned correlation.
 #[derive(Clone, Debug)]
