@@ -1,6 +1,6 @@
 //! Values of options, checked as they are read.
 
-use knotdock::search::meshes::MAX_PER_AXIS;
+use knotdock::mesh::MAX_PER_AXIS;
 
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;

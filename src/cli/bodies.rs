@@ -3,14 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use knotdock::dock::pair::{Pair, PreparedPair, Sampling};
+use knotdock::error::SearchError;
+use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
+use knotdock::options::DockOptions;
 use knotdock::output::assemblies::write_assemblies;
 use knotdock::output::complexes::write_complexes;
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock::output::poses::PoseRow;
-use knotdock::search::meshes::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
-use knotdock::search::{DockOptions, SearchError};
-use knotdock::tradeoff::pair::{Pair, PreparedPair, Sampling};
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use knotdock::search::Progress;
+use knotdock::progress::Progress;
 
 use super::failure::Failure;
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::options::EngineChoice;
 use knotdock::output::run_options::RunOptions;
-use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::choice::Wanted;
 use knotdock_scoring::symmetry::Symmetry;
 

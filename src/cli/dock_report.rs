@@ -2,9 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use knotdock::dock::loose::Loose;
+use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::plan::DockPlan;
 use knotdock::output::report::counted;
-use knotdock::search::{AssumedSite, DockOutcome, DockPlan, Effect, Loose};
+use knotdock::priors::active_residues::AssumedSite;
 use knotdock::tradeoff::choice::MIN_ROTATIONS;
+use knotdock_scoring::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
 /// Which effects were on and what they cost, and how far the fast path was off.

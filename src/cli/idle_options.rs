@@ -3,7 +3,7 @@
 //! An option that stands at its default is no different from one that is not given. Weights of effects that are off are not refused: they say what
 //! the effect would weigh.
 
-use knotdock::search::options::DockOptions;
+use knotdock::options::DockOptions;
 
 use super::failure::Failure;
 

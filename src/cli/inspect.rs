@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
+use knotdock::options::DockOptions;
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
-use knotdock::search::DockOptions;
-use knotdock::search::active_residues::sites_told;
-use knotdock::search::restraints::domains_told;
+use knotdock::priors::active_residues::sites_told;
+use knotdock::priors::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
     ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,

@@ -1,8 +1,9 @@
 //! Options of the machine: they change no result.
 
 use clap::Args;
+use knotdock::dock::plan::DockPlan;
+use knotdock::options::DockOptions;
 use knotdock::output::manifest::Machine;
-use knotdock::search::{DockOptions, DockPlan};
 
 use super::arguments::at_least_one;
 use super::memory;

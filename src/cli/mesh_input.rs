@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use knotdock::mesh::SampledPart;
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
-use knotdock::search::meshes::SampledPart;
 use knotdock_structures::mesh::{self, Mesh, MeshReport, Solid};
 use knotdock_structures::molecule::InputSpec;
 

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
+use knotdock::mesh::GivenLengths;
 use knotdock::output::manifest::Inputs;
 use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
-use knotdock::search::meshes::GivenLengths;
-use knotdock::tradeoff::pair::{PreparedPair, Sampling};
 
 use super::bodies::Bodies;
 use super::console::Console;

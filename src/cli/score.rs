@@ -1,10 +1,11 @@
 //! `knotdock score`: one pose, exactly and from ever more modes.
 
 use clap::{Args, ValueEnum};
+use knotdock::dock::scene::Scene;
+use knotdock::error::SearchError;
 use knotdock::output::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
-use knotdock::search::{Scene, SearchError};
 use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::ModeOrder;

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::search::meshes::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
-use knotdock::search::options::{
-    AXES, AXES_ACROSS, EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE,
-};
-use knotdock::search::{AntibodySurface, DockOptions, EffectChoice};
+use knotdock::mesh::{CLUSTER_RADIUS, GivenLengths, RESOLUTION, SampleWeights};
+use knotdock::options::{AXES, AXES_ACROSS, EngineChoice, PASS_RATIO, Precision, REFINED_BY_SHAPE};
+use knotdock::options::{DockOptions, EffectChoice};
+use knotdock::priors::restraints::AntibodySurface;
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_scoring::symmetry::Symmetry;

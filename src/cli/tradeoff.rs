@@ -3,18 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::dock::pair::PairError;
+use knotdock::options::EngineChoice;
 use knotdock::output::report::align;
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::{Staging, TRADEOFF};
 use knotdock::output::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::whole_file::write_whole;
-use knotdock::search::Progress;
-use knotdock::search::options::EngineChoice;
+use knotdock::progress::Progress;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
-use knotdock::tradeoff::{
-    Knob, Measured, PairError, Refused, Setting, SweepProgress, Tradeoff, sweep,
-};
+use knotdock::tradeoff::{Knob, Measured, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
 use super::bodies::Bodies;
@@ -155,7 +154,7 @@ impl TradeoffCommand {
 
 /// A failure of the default or the reference: of the request where it could not be planned.
 fn failure(error: &PairError) -> Failure {
-    use knotdock::search::SearchError;
+    use knotdock::error::SearchError;
     let failure = match error {
         PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
         _ => Failure::input(error),

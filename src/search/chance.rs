@@ -4,7 +4,7 @@
 //! was tried (z-scores, how far clusters stand apart, how many poses they hold) told successes from failures better than the share of
 //! successes itself, so the chance is that share and the same for all runs that it was taken of. docs/ranking.md has the figures.
 
-use super::options::DockOptions;
+use crate::options::DockOptions;
 use knotdock_scoring::effect::Effect;
 
 /// Clusters that the chance speaks of.
@@ -46,9 +46,9 @@ fn is_default(options: &DockOptions) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::search::EffectChoice;
-    use crate::search::options::EngineChoice;
+    use crate::options::EffectChoice;
+    use crate::options::EngineChoice;
+    use crate::search::chance::*;
 
     /// As `auto` has them for two proteins.
     const AUTO: [bool; Effect::ALL.len()] = [true, true, true, false];

@@ -30,7 +30,8 @@ fn the_same_chain_on_both_sides_docks() {
 
 #[test]
 fn a_zero_radius_is_refused_by_the_search() {
-    use knotdock::search::{DockOptions, plan};
+    use knotdock::dock::plan::plan;
+    use knotdock::options::DockOptions;
     use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
     let folder = place();
     let receptor = folder.path().join("receptor.pdb");

@@ -1,14 +1,14 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use super::active_residues::{ActiveResidues, AssumedSite};
-use super::effects::{Decision, LengthUnit, Scene};
-use super::error::SearchError;
-use super::loose::Loose;
-use super::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
-use super::peaks::Peak;
-use super::rescoring::Asked;
-use super::ring::Rings;
-use super::rotations::{
+use crate::dock::loose::Loose;
+use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::error::SearchError;
+use crate::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
+use crate::pose_space::ring::Rings;
+use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::rank::rescoring::Asked;
+use crate::search::peaks::Peak;
+use crate::search::rotations::{
     BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
 };
 use knotdock_scoring::effect::Effect;
@@ -59,7 +59,7 @@ pub struct DockPlan {
     pub radii: [usize; 2],
     /// What plays the part of an Ångström, in `unit`.
     #[serde(skip)]
-    pub(super) angstrom: f64,
+    pub(crate) angstrom: f64,
     /// Rotations in flight at once.
     #[serde(skip)]
     pub in_flight: usize,
@@ -75,7 +75,7 @@ pub struct DockPlan {
     pub decisions: Vec<Decision>,
     /// What poses should touch.
     #[serde(skip)]
-    pub(super) attracted: ActiveResidues,
+    pub(crate) attracted: ActiveResidues,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
     /// Residues that are missing, and those near ends of chains, of receptor and ligand.
@@ -83,18 +83,18 @@ pub struct DockPlan {
     pub loose: Loose,
     /// The rings that are sought, if any are.
     #[serde(skip)]
-    pub(super) rings: Option<Rings>,
+    pub(crate) rings: Option<Rings>,
     #[serde(skip)]
-    pub(super) engine: Arc<Plan>,
+    pub(crate) engine: Arc<Plan>,
     #[serde(skip)]
-    pub(super) receptor: Knots,
+    pub(crate) receptor: Knots,
     #[serde(skip)]
-    pub(super) ligand: Knots,
+    pub(crate) ligand: Knots,
     #[serde(skip)]
-    pub(super) set: Vec<UnitQuaternion<f64>>,
+    pub(crate) set: Vec<UnitQuaternion<f64>>,
     /// The finer set; empty without a finer search.
     #[serde(skip)]
-    pub(super) fine_set: Vec<UnitQuaternion<f64>>,
+    pub(crate) fine_set: Vec<UnitQuaternion<f64>>,
 }
 
 /// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
@@ -320,7 +320,7 @@ impl DockPlan {
     }
 
     /// A rotation by its index, those of the finer set after those of the coarse one, and which half-turn of the first of its four it is.
-    pub(super) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
+    pub(crate) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
         if self.options.symmetry.is_some() {
             return (self.set[index], HalfTurn::None);
         }
@@ -363,7 +363,7 @@ impl DockPlan {
     }
 
     /// What poses are rescored with; `None` where there is nothing to ask.
-    pub(super) fn rescorer(&self) -> Option<Rescorer> {
+    pub(crate) fn rescorer(&self) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
         self.asked()
             .rescorer(bodies, &self.attracted, &self.loose, &self.options)
@@ -459,7 +459,7 @@ impl std::fmt::Display for DockPlan {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::dock::plan::*;
     use std::cell::Cell;
 
     /// Each step was planned twice, from the finest on: refusing --resolution 0.1 took half a minute.

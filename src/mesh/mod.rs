@@ -31,7 +31,7 @@ use knotdock_structures::sampler::weights::{self, FittedWeights};
 use knotdock_structures::sampler::{SampleError, knots};
 use serde::{Deserialize, Serialize};
 
-use super::options::DockOptions;
+use crate::options::DockOptions;
 
 /// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;

@@ -7,12 +7,13 @@ use cpu_time::ProcessTime;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::molecule::Molecule;
 
-use crate::search::meshes::{
-    MeshOptions, MeshPair, MeshSceneError, PER_AXIS, SampleWeights, sample_pair,
-};
-use crate::search::{
-    DockOptions, DockPlan, Scene, SearchError, StageTime, molecule_points, plan, plan_scene,
-};
+use crate::dock::outcome::StageTime;
+use crate::dock::plan::{DockPlan, plan, plan_scene};
+use crate::dock::run::molecule_points;
+use crate::dock::scene::Scene;
+use crate::error::SearchError;
+use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, PER_AXIS, SampleWeights, sample_pair};
+use crate::options::DockOptions;
 
 /// Two bodies, the receptor first.
 #[derive(Clone, Copy)]

@@ -3,21 +3,21 @@
 //! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is done, on
 //! the machine as it then is, and the poses that scored least are left out where time is short.
 
-use super::candidates::{RefinedPose, candidates, clusters_of};
-use super::cluster::RigidBody;
-use super::options::DockOptions;
-use super::peaks::Peak;
-use super::schedule::Deadline;
+use crate::options::DockOptions;
+use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
+use crate::rank::cluster::RigidBody;
+use crate::search::peaks::Peak;
+use crate::search::schedule::Deadline;
 use knotdock_scoring::rescoring::Rescorer;
 use std::time::Instant;
 
 /// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
-pub(super) const FEWEST: usize = 100;
+pub(crate) const FEWEST: usize = 100;
 /// Poses that are rescored to see how long one takes.
 const PROBES: usize = 48;
 
 /// The number of poses that are kept, best first. `scoring` is the seconds that the exact score of one takes.
-pub(super) fn poses_in_time(
+pub(crate) fn poses_in_time(
     deadline: &Deadline,
     (peaks, placed): (&[Peak], &[RefinedPose]),
     rescorer: Option<&Rescorer>,
@@ -61,7 +61,7 @@ fn within(left: f64, each: f64, count: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::rank::time_left::*;
 
     #[test]
     fn as_many_poses_are_kept_as_fit() {

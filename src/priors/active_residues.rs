@@ -1,6 +1,6 @@
 //! What a pose should touch: residues that the user names, or else the active site of a peptidase.
 
-use super::options::DockOptions;
+use crate::options::DockOptions;
 use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_scoring::rescoring::Residues;
 use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
@@ -10,11 +10,11 @@ use serde::Serialize;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ActiveResidues {
     /// Residues of receptor and ligand, each as the places of its knots.
-    pub(super) sets: Vec<Residues>,
+    pub(crate) sets: Vec<Residues>,
     /// What a pose earns in which all of a set touch: score.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
     /// Where the sets are what is assumed of a peptidase.
-    pub(super) assumed: Option<AssumedSite>,
+    pub(crate) assumed: Option<AssumedSite>,
 }
 
 /// A peptidase, and where its partner is assumed to bind.
@@ -28,7 +28,7 @@ pub struct AssumedSite {
 
 impl ActiveResidues {
     /// Residues that were named.
-    pub(super) fn named(residues: Residues, options: &DockOptions) -> Self {
+    pub(crate) fn named(residues: Residues, options: &DockOptions) -> Self {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
@@ -38,7 +38,7 @@ impl ActiveResidues {
     }
 
     /// The active sites of a peptidase, where one of the two is one and nothing speaks against it; `marks` say which atoms are kept free of contact.
-    pub(super) fn assumed(
+    pub(crate) fn assumed(
         molecules: [&Molecule; 2],
         marks: [&[ResidueRole]; 2],
         options: &DockOptions,
@@ -58,7 +58,7 @@ impl ActiveResidues {
     }
 
     /// Whether poses have anything to earn.
-    pub(super) fn any(&self) -> bool {
+    pub(crate) fn any(&self) -> bool {
         !self.sets.is_empty() && self.weight > 0.0
     }
 }
@@ -111,9 +111,9 @@ pub fn sites_told(sites: &[ActiveSite]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::search::AntibodySurface;
-    use crate::search::effects::{Decision, Scene};
+    use crate::dock::scene::{Decision, Scene};
+    use crate::priors::active_residues::*;
+    use crate::priors::restraints::AntibodySurface;
     use knotdock_scoring::effect::Effect;
     use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};
 

@@ -1,7 +1,7 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
-use super::cluster::{PlacedBody, RigidBody, greedy};
-use super::peaks::Peak;
+use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
+use crate::search::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// A pose in the running.
 #[derive(Clone, Debug)]
-pub(super) struct Candidate {
+pub(crate) struct Candidate {
     /// The pose.
     pub pose: Pose,
     /// The fast path's score at `pose`, and what rescoring adds there.
@@ -30,7 +30,7 @@ pub(super) struct Candidate {
 
 /// Where a peak of the search led to.
 #[derive(Clone, Copy)]
-pub(super) struct RefinedPose {
+pub(crate) struct RefinedPose {
     /// The pose that it was refined from: the grid's, or of rings the one nearest to it.
     pub start: Pose,
     /// The pose that it was refined to.
@@ -64,12 +64,12 @@ impl RefinedPose {
 }
 
 /// The pose as its printed digits give it back: normalised, w not negative.
-pub(super) fn printed(pose: &Pose) -> Pose {
+pub(crate) fn printed(pose: &Pose) -> Pose {
     Pose::from_parts(pose.quaternion(), pose.translation.into())
 }
 
 /// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
-pub(super) fn candidates(
+pub(crate) fn candidates(
     peaks: &[Peak],
     placed: &[RefinedPose],
     at_start: &[ExactScore],
@@ -102,7 +102,7 @@ pub(super) fn candidates(
 }
 
 /// Drops refined poses that ended where a better one did.
-pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
+pub(crate) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
     let poses: Vec<Pose> = candidates
         .iter()
         .filter(|candidate| candidate.refined)
@@ -122,7 +122,7 @@ pub(super) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance:
 }
 
 /// Each candidate's cluster, numbered from 0 in the order of their founders.
-pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
+pub(crate) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
     let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
     greedy(body, &poses, radius)
 }
@@ -130,7 +130,7 @@ pub(super) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
 /// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster. A refined pose has left the samples
 /// of the search and stands for those about it; that they climbed to where it is, or would have, says how broad its hill is, so they count in its cluster,
 /// while a list of poses has use for one of them.
-pub(super) fn listed(
+pub(crate) fn listed(
     candidates: &[Candidate],
     clusters: &[usize],
     body: &RigidBody,
@@ -155,7 +155,7 @@ pub(super) fn listed(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::rank::candidates::*;
     use nalgebra::Vector3;
 
     /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.

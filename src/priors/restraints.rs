@@ -1,7 +1,7 @@
 //! Which atoms are to stay free of contact, what of an antibody lies away from its CDRs and what the user blocks, and which are to be in contact.
 
-use super::error::SearchError;
-use super::options::DockOptions;
+use crate::error::SearchError;
+use crate::options::DockOptions;
 use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_structures::molecule::{
     Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,
@@ -41,7 +41,7 @@ impl std::str::FromStr for AntibodySurface {
 
 /// What is wanted of the contacts of both sides' atoms.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Restraints {
+pub(crate) struct Restraints {
     /// A mark for each atom of receptor and ligand.
     pub marks: [Vec<ResidueRole>; 2],
     /// Of each side, the residues that are attracted, each as the places of its atoms.
@@ -178,8 +178,8 @@ pub fn domains_told(antibody: &Antibody) -> String {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use super::*;
+pub(crate) mod tests {
+    use crate::priors::restraints::*;
     use knotdock_structures::molecule::{Atom, Format};
 
     /// Alpha carbons of glycine, number 1 to 4, so many Å apart.

@@ -1,13 +1,13 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
-use super::active_residues::{ActiveResidues, AssumedSite};
-use super::effect_choice::EffectChoice;
-use super::error::SearchError;
-use super::loose::Loose;
-use super::meshes::MeshPair;
-use super::options::DockOptions;
-use super::rescoring::Asked;
-use super::restraints::{AntibodySurface, Restraints};
+use crate::dock::loose::Loose;
+use crate::error::SearchError;
+use crate::mesh::MeshPair;
+use crate::options::DockOptions;
+use crate::options::effect_choice::EffectChoice;
+use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::priors::restraints::{AntibodySurface, Restraints};
+use crate::rank::rescoring::Asked;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::symmetry::RingAxis;
@@ -329,8 +329,8 @@ fn lacking(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::search::restraints::tests::peptide;
+    use crate::dock::scene::*;
+    use crate::priors::restraints::tests::peptide;
     use knotdock_scoring::rescoring;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 

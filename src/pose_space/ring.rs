@@ -1,7 +1,7 @@
 //! Poses of rings off the grid: what the search's peaks become, and their ascent among rings, about any axis or, of Dn, about those across a ring's own.
 
-use super::axes::{axes_radius, axis_set};
-use super::refine::{ClimbLimits, maximize};
+use crate::pose_space::axes::{axes_radius, axis_set};
+use crate::pose_space::refine::{ClimbLimits, maximize};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
@@ -10,7 +10,7 @@ use nalgebra::{Unit, Vector3};
 
 /// The rings that are sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rings {
+pub(crate) struct Rings {
     /// How copies stand to each other.
     pub symmetry: Symmetry,
     /// The axis of the molecule's own ring, of Dn.
@@ -91,7 +91,7 @@ fn whole(
 }
 
 /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
-pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
+pub(crate) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
     let score = |(pose, pairs): (Pose, f64)| pairs * scorer.score_only(&pose);
     symmetry
         .has_beyond()
@@ -100,11 +100,11 @@ pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::search::DockOptions;
-    use crate::search::plan::plan;
-    use crate::search::restraints::tests::peptide;
-    use crate::search::run::Progress;
+    use crate::dock::plan::plan;
+    use crate::options::DockOptions;
+    use crate::pose_space::ring::*;
+    use crate::priors::restraints::tests::peptide;
+    use crate::progress::Progress;
     use crate::search::scan::{all_rotations, choose_rank, scan};
     use crate::search::scan_engine::ScanEngine;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};

@@ -1,6 +1,6 @@
 //! What of two molecules is not sure to be where their files show it, or is not shown: residues that are missing, and those near ends of chains.
 
-use super::options::DockOptions;
+use crate::options::DockOptions;
 use knotdock_structures::molecule::{ChainEnds, MissingResidues, Molecule};
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ pub struct Loose {
 
 impl Loose {
     /// What is loose of two molecules.
-    pub(super) fn of(molecules: [&Molecule; 2], options: &DockOptions) -> Self {
+    pub(crate) fn of(molecules: [&Molecule; 2], options: &DockOptions) -> Self {
         let mut loose = Self::default();
         if options.unresolved_weight > 0.0 {
             loose.missing_residues = molecules.map(Molecule::missing_residues);
@@ -27,14 +27,14 @@ impl Loose {
     }
 
     /// Whether a pose can meet where residues are missing.
-    pub(super) fn any_missing(&self) -> bool {
+    pub(crate) fn any_missing(&self) -> bool {
         self.missing_residues
             .iter()
             .any(|side| !side.stretches.is_empty())
     }
 
     /// Whether a pose can meet residues near ends of chains.
-    pub(super) fn any_ends(&self) -> bool {
+    pub(crate) fn any_ends(&self) -> bool {
         self.chain_end_residues
             .iter()
             .any(|side| !side.atoms.is_empty())

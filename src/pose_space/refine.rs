@@ -114,7 +114,7 @@ pub fn rigid_body(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::pose_space::refine::*;
 
     /// A paraboloid in position and angle has one top; the ascent must find it to its stopping length.
     #[test]

@@ -43,7 +43,7 @@ pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
 }
 
 /// Where voxels lie, to tell those whose poses make rings.
-pub(super) struct RingVoxels {
+pub(crate) struct RingVoxels {
     /// Position of the ligand's centre less the receptor's along each axis of the grid, Å.
     places: [Vec<f64>; 3],
     receptor_center: Vector3<f64>,
@@ -140,8 +140,8 @@ impl Layer {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::search::DockOptions;
+    use crate::options::DockOptions;
+    use crate::pose_space::axes::*;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
     use knotdock_scoring::lifted_axis::Quantity;
     use knotdock_scoring::se3::Pose;

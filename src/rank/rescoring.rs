@@ -1,9 +1,9 @@
 //! What poses are rescored by: the terms that the scene's effects make possible and whose weights ask for them.
 
-use super::active_residues::ActiveResidues;
-use super::effects::Decision;
-use super::loose::Loose;
-use super::options::DockOptions;
+use crate::dock::loose::Loose;
+use crate::dock::scene::Decision;
+use crate::options::DockOptions;
+use crate::priors::active_residues::ActiveResidues;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::rescoring::{
     AtomPairs, Attraction, ChainEndContacts, FineContacts, MissingContacts, Relaxation, Rescorer,

@@ -1,9 +1,9 @@
 //! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and without it.
 
-use super::effects::Decision;
-use super::outcome::EffectCost;
-use super::plan::DockPlan;
-use super::scan::{Chosen, choose_rank};
+use crate::dock::outcome::EffectCost;
+use crate::dock::plan::DockPlan;
+use crate::dock::scene::Decision;
+use crate::search::scan::{Chosen, choose_rank};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::se3::HalfTurn;
@@ -19,7 +19,7 @@ const ENOUGH: u128 = 100;
 /// Costs by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
 ///
 /// An effect may share fields with others, so the parts need not add up to the whole.
-pub(super) fn costs<T: Real>(
+pub(crate) fn costs<T: Real>(
     plan: &DockPlan,
     folded: &ReceptorSpectra<T>,
     engine: &CpuEngine<T>,

@@ -59,7 +59,7 @@ impl std::str::FromStr for EffectChoice {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::options::effect_choice::*;
 
     #[test]
     fn choices_are_read_and_written_alike() {

@@ -1,21 +1,22 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
-use super::candidates::{RefinedPose, candidates, clusters_of, listed, merge, printed};
-use super::chance::chance;
-use super::cluster::RigidBody;
-use super::coarse_to_fine::search_finer;
-use super::effect_timings::costs;
-use super::error::SearchError;
-use super::options::{Precision, Stopped};
-use super::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
-use super::peaks::Peak;
-use super::plan::DockPlan;
-use super::ranking::{PoseScorer, cluster_temperature, report};
-use super::refine::{ClimbLimits, maximize, rigid_body};
-use super::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
-use super::scan_engine::ScanEngine;
-use super::schedule::{Deadline, schedule};
-use super::time_left::poses_in_time;
+use crate::dock::effect_timings::costs;
+use crate::dock::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
+use crate::dock::plan::DockPlan;
+use crate::error::SearchError;
+use crate::options::{Precision, Stopped};
+use crate::pose_space::refine::{ClimbLimits, maximize, rigid_body};
+use crate::progress::Progress;
+use crate::rank::candidates::{RefinedPose, candidates, clusters_of, listed, merge, printed};
+use crate::rank::cluster::RigidBody;
+use crate::rank::ranking::{PoseScorer, cluster_temperature, report};
+use crate::rank::time_left::poses_in_time;
+use crate::search::chance::chance;
+use crate::search::coarse_to_fine::search_finer;
+use crate::search::peaks::Peak;
+use crate::search::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use crate::search::scan_engine::ScanEngine;
+use crate::search::schedule::{Deadline, schedule};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::ReceptorSpectra;
@@ -27,14 +28,6 @@ use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 use std::time::Instant;
-
-/// Who is told how far a run has come.
-pub trait Progress: Sync {
-    /// A stage of `total` steps begins.
-    fn stage(&self, name: &str, total: u64);
-    /// So many steps more are done.
-    fn advance(&self, by: u64);
-}
 
 /// Grid poses over which the fast path's error is measured.
 const ERROR_POSES: usize = 100;

@@ -1,8 +1,8 @@
 //! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
 
-use super::coarse_to_fine::FineSearched;
-use super::options::Stopped;
-use super::peaks::Peak;
+use crate::options::Stopped;
+use crate::search::coarse_to_fine::FineSearched;
+use crate::search::peaks::Peak;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::se3::Pose;
@@ -86,7 +86,7 @@ pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -
 
 impl MeasuredError {
     /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
-    pub(super) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
+    pub(crate) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
         let poses = peaks.len().min(exact.len());
         if best < NOTHING {
             return Self {
@@ -185,7 +185,7 @@ pub struct DockOutcome {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::dock::outcome::*;
 
     /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
     #[test]

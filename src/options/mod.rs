@@ -1,9 +1,11 @@
 //! What a docking run may be asked.
 
-use super::effect_choice::EffectChoice;
-use super::error::SearchError;
-use super::meshes::SampleWeights;
-use super::restraints::AntibodySurface;
+pub mod effect_choice;
+pub use effect_choice::EffectChoice;
+
+use crate::error::SearchError;
+use crate::mesh::SampleWeights;
+use crate::priors::restraints::AntibodySurface;
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
@@ -289,7 +291,7 @@ impl DockOptions {
     }
 
     /// Whether residues are named that are to stay free of contact, or to be in contact.
-    pub(super) fn names_residues(&self) -> bool {
+    pub(crate) fn names_residues(&self) -> bool {
         let named = [
             &self.block_receptor,
             &self.block_ligand,
@@ -300,7 +302,7 @@ impl DockOptions {
     }
 
     /// Refuses weights and a pH that mean nothing.
-    pub(super) fn check_effects(&self) -> Result<(), SearchError> {
+    pub(crate) fn check_effects(&self) -> Result<(), SearchError> {
         let numbers = [
             ("core-weight", self.core_weight, 1e3),
             ("electrostatics-weight", self.electrostatics_weight, 1e6),
@@ -328,7 +330,7 @@ impl DockOptions {
     }
 
     /// Refuses what no run can do.
-    pub(super) fn check(&self) -> Result<(), SearchError> {
+    pub(crate) fn check(&self) -> Result<(), SearchError> {
         let counts = [
             ("rotations", self.rotations, 10_000_000),
             ("per-rotation", self.per_rotation, 10_000),

@@ -14,11 +14,11 @@
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same score,
 //! so that such a cluster has many good poses; where a joint fits there is one place.
 
-use super::candidates::Candidate;
-use super::effects::LengthUnit;
-use super::outcome::RankedPose;
-use super::ring::other_copies;
-use super::run::Progress;
+use crate::dock::outcome::RankedPose;
+use crate::dock::scene::LengthUnit;
+use crate::pose_space::ring::other_copies;
+use crate::progress::Progress;
+use crate::rank::candidates::Candidate;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::rescoring::{Rescorer, Workspace};
@@ -28,7 +28,7 @@ use rayon::prelude::*;
 
 /// What rows of the table are scored by.
 #[derive(Clone, Copy)]
-pub(super) struct PoseScorer<'a> {
+pub(crate) struct PoseScorer<'a> {
     /// The exact score.
     pub scorer: &'a ExactScorer,
     /// What poses are rescored with.
@@ -42,14 +42,14 @@ pub(super) struct PoseScorer<'a> {
 }
 
 /// What is reported of the ranking.
-pub(super) struct Ranking {
+pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
     pub clusters: usize,
 }
 
 /// T as a share of the run's best score, by what is docked.
-pub(super) fn cluster_temperature(unit: LengthUnit) -> f64 {
+pub(crate) fn cluster_temperature(unit: LengthUnit) -> f64 {
     match unit {
         LengthUnit::Angstrom => 0.1,
         LengthUnit::File => 0.0,
@@ -63,7 +63,7 @@ const ROWS_TOGETHER: usize = 8;
 /// clusters are numbered; ties in the order given.
 ///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
-pub(super) fn report(
+pub(crate) fn report(
     judge: PoseScorer,
     candidates: &[Candidate],
     clusters: (&[usize], &[bool]),
@@ -236,9 +236,9 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::candidates::{RefinedPose, candidates};
-    use super::super::peaks::Peak;
-    use super::*;
+    use crate::rank::candidates::{RefinedPose, candidates};
+    use crate::rank::ranking::*;
+    use crate::search::peaks::Peak;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
