@@ -19,16 +19,16 @@ use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::{Value, json};
 
-use super::calibrate::cost_model;
-use super::console::Console;
-use super::dock_report::{
+use super::arguments::memory;
+use crate::cli::arguments::machine::machine;
+use crate::cli::arguments::native::{NativeFiles, announce, measure};
+use crate::cli::calibrate::cost_model;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::{
     assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
 };
-use super::failure::Failure;
-use super::machine_arguments::machine;
-use super::memory;
-use super::native::{NativeFiles, announce, measure};
-use super::request::Request;
+use crate::cli::messages::failure::Failure;
 
 /// A run that is ready to go.
 pub struct Docking {

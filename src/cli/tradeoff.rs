@@ -16,14 +16,14 @@ use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{Knob, Measured, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
-use super::bodies::Bodies;
-use super::console::{Console, ProgressLine};
-use super::failure::Failure;
-use super::machine_arguments::{MachineArguments, machine};
-use super::native::{NativeArguments, announce};
-use super::reading_arguments::ReadingArguments;
-use super::request::Request;
-use super::search_arguments::SearchArguments;
+use crate::cli::arguments::machine::{MachineArguments, machine};
+use crate::cli::arguments::native::{NativeArguments, announce};
+use crate::cli::arguments::reading::ReadingArguments;
+use crate::cli::arguments::search::SearchArguments;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::{Console, ProgressLine};
+use crate::cli::messages::failure::Failure;
 
 /// Measure what accuracy costs in time: docks a pair with each knob moved by itself around the options given, and with combinations.
 ///

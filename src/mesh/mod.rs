@@ -257,7 +257,7 @@ pub fn sample_pair(
         .offset
         .unwrap_or_else(|| default_offset(epsilons, features));
     let (low, high) = (resolved, 0.25 * extents[0].min(extents[1]));
-    // An offset that --from gives back may differ from the bound by a rounding.
+    // An offset that --rerun gives back may differ from the bound by a rounding.
     if !(low * (1.0 - 1e-9)..=high).contains(&offset) {
         return Err(MeshSceneError::Offset { offset, low, high });
     }

@@ -99,7 +99,7 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
     ] {
         let failed = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
-            .arg("complex")
+            .arg("export")
             .args(arguments.split(' '))
             .assert()
             .code(2);

@@ -5,7 +5,7 @@
 
 use knotdock::options::DockOptions;
 
-use super::failure::Failure;
+use crate::cli::messages::failure::Failure;
 
 /// An option that says something of molecules alone.
 struct OfMolecules {

@@ -1,7 +1,7 @@
 //! The words, each with what to use here.
 
 /// Words for one thing, and what to use here.
-pub(super) struct Suggestion {
+pub(in crate::cli) struct Suggestion {
     /// Words, without leading dashes, `-` between parts.
     pub words: &'static [&'static str],
     /// What to use, in a sentence without a full stop.
@@ -13,7 +13,7 @@ const fn suggestion(words: &'static [&'static str], instead: &'static str) -> Su
 }
 
 /// Words of options.
-pub(super) const OPTIONS: [Suggestion; 25] = [
+pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
     suggestion(
         &[
             "restraint",
@@ -147,7 +147,6 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
     ),
     suggestion(
         &[
-            "rerun",
             "repeat",
             "restore",
             "config",
@@ -155,7 +154,7 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
             "params",
             "parameters",
         ],
-        "use `--from RUN.JSON`, which repeats the run that wrote that file",
+        "use `--rerun RUN.JSON`, which repeats the run that wrote that file",
     ),
     suggestion(
         &["resume", "restart", "continue"],
@@ -217,7 +216,7 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
             "write-complexes",
             "n-complexes",
         ],
-        "use `--write-top N`; `knotdock complex RUN --rank 37` writes further complexes of a run",
+        "use `--write-top N`; `knotdock export RUN --rank 37` writes further complexes of a run",
     ),
     suggestion(
         &[
@@ -327,7 +326,7 @@ pub(super) const OPTIONS: [Suggestion; 25] = [
 ];
 
 /// Words of commands.
-pub(super) const COMMANDS: [Suggestion; 10] = [
+pub(in crate::cli) const COMMANDS: [Suggestion; 10] = [
     suggestion(
         &[
             "docking", "run", "search", "predict", "global", "zdock", "megadock",
@@ -364,7 +363,7 @@ pub(super) const COMMANDS: [Suggestion; 10] = [
         &[
             "build", "export", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
         ],
-        "use `knotdock complex RUN --rank 37,40-45`",
+        "use `knotdock export RUN --rank 37,40-45`",
     ),
     suggestion(
         &["screen", "screening", "table", "pairs", "many", "benchmark"],
@@ -389,7 +388,7 @@ pub(super) const COMMANDS: [Suggestion; 10] = [
     ),
     suggestion(
         &["rerun", "repeat", "resume", "restart"],
-        "use `knotdock dock --from RUN.JSON`",
+        "use `knotdock dock --rerun RUN.JSON`",
     ),
     suggestion(
         &["tune", "bench", "speed", "timing"],

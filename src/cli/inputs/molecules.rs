@@ -10,8 +10,8 @@ use knotdock_structures::molecule::{
     read_bytes_listed,
 };
 
-use super::failure::Failure;
-use super::mesh_input::is_mesh;
+use crate::cli::inputs::meshes::is_mesh;
+use crate::cli::messages::failure::Failure;
 
 /// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were.
 pub fn folders_of(run: &Path) -> Vec<PathBuf> {
@@ -147,7 +147,7 @@ impl Input {
     pub fn entry(&self) -> Result<InputEntry, Failure> {
         let mut report = serde_json::to_value(&self.molecule.report).map_err(Failure::other)?;
         if let Some(report) = report.as_object_mut() {
-            // The record has the path, and absolute: the one typed would differ when --from repeats the run.
+            // The record has the path, and absolute: the one typed would differ when --rerun repeats the run.
             report.remove("file");
         }
         Ok(InputEntry {

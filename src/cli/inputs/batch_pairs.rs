@@ -9,10 +9,11 @@ use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
-use super::dock::Dock;
-use super::failure::Failure;
-use super::input::label;
-use super::{judging_numbers, message, suggestions};
+use crate::cli::dock::Dock;
+use crate::cli::inputs::molecules::label;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::suggestions;
+use crate::cli::{judging_numbers, message};
 
 /// Columns that name files.
 const FILES: [&str; 6] = [
@@ -25,7 +26,7 @@ const FILES: [&str; 6] = [
 ];
 
 /// Options that are the batch's to set.
-const OWN: [&str; 3] = ["output", "from", "force"];
+const OWN: [&str; 3] = ["output", "rerun", "force"];
 
 /// One pair's command line.
 #[derive(Parser, Debug)]
@@ -126,9 +127,9 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                     .remedy(remedy),
             )
         }
-        // In conflict with the files are --from, which no row can do with, and --symmetry, which a row without a ligand asks for.
-        Err(error) if message(&error).contains("--from") => Err(Failure::input(
-            "--from cannot come after --: what is docked is the table's to say",
+        // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a ligand asks for.
+        Err(error) if message(&error).contains("--rerun") => Err(Failure::input(
+            "--rerun cannot come after --: what is docked is the table's to say",
         )
         .remedy(remedy)),
         Err(error)

@@ -8,7 +8,7 @@ use knotdock::output::manifest::InputEntry;
 use knotdock_structures::mesh::{self, Mesh, MeshReport, Solid};
 use knotdock_structures::molecule::InputSpec;
 
-use super::failure::Failure;
+use crate::cli::messages::failure::Failure;
 
 /// Endings of mesh files.
 const ENDINGS: [&str; 4] = ["stl", "obj", "ply", "off"];

@@ -15,12 +15,12 @@ use knotdock::output::poses::PoseRow;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
-use super::console::Console;
-use super::failure::Failure;
-use super::idle_options::refuse_of_meshes;
-use super::input::{Input, folders_of, label};
-use super::mesh_input::{MeshInput, is_mesh};
-use super::reading_arguments::READING_OPTIONS;
+use crate::cli::arguments::idle::refuse_of_meshes;
+use crate::cli::arguments::reading::READING_OPTIONS;
+use crate::cli::inputs::meshes::{MeshInput, is_mesh};
+use crate::cli::inputs::molecules::{Input, folders_of, label};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// The bodies as read.
 pub enum Bodies {

@@ -11,7 +11,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::Progress;
 
-use super::failure::Failure;
+use crate::cli::messages::failure::Failure;
 
 /// Why a part of the report could not be written, the first time that happened.
 static LOST: OnceLock<io::Error> = OnceLock::new();

@@ -1,4 +1,4 @@
-//! `knotdock complex`: further complexes from a finished run.
+//! `knotdock export`: further complexes from a finished run.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -9,15 +9,15 @@ use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use serde_json::json;
 
-use super::bodies::Bodies;
-use super::console::Console;
-use super::failure::Failure;
-use super::output_file::check_replaced;
-use super::ranks::Ranks;
+use crate::cli::arguments::output_file::check_replaced;
+use crate::cli::arguments::ranks::Ranks;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
-pub struct Complex {
+pub struct Export {
     /// Directory of the run.
     #[arg(value_name = "DIR")]
     run: PathBuf,
@@ -32,7 +32,7 @@ pub struct Complex {
     force: bool,
 }
 
-impl Complex {
+impl Export {
     /// Writes the complexes.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let run_path = self.run.join("run.json");
@@ -58,7 +58,7 @@ impl Complex {
                 "the pose of rank {rank} makes no ring of {symmetry}"
             ))
             .at(&table_path)
-            .remedy("take the table as the run wrote it; `knotdock dock --from` makes it again"));
+            .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
         }
         let bodies = Bodies::recorded(
             [&run.receptor, &run.ligand],

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::output::whole_file::is_stream;
 
-use super::failure::Failure;
+use crate::cli::messages::failure::Failure;
 
 /// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless `force` is true.
 pub fn check_output<'a>(

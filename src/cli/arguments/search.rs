@@ -13,9 +13,11 @@ use knotdock_scoring::symmetry::Symmetry;
 
 use knotdock_structures::molecule::ResidueSelection;
 
-use super::arguments::{above_zero, at_least_one, grid, not_negative, rotations_of_angle};
-use super::failure::Failure;
-use super::idle_options::refuse_idle;
+use crate::cli::arguments::idle::refuse_idle;
+use crate::cli::arguments::values::{
+    above_zero, at_least_one, grid, not_negative, rotations_of_angle,
+};
+use crate::cli::messages::failure::Failure;
 
 /// Heading of the options that trade accuracy for time.
 pub const TRADE_OFFS: &str = "Accuracy against time";

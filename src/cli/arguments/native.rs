@@ -9,9 +9,9 @@ use knotdock::output::poses::PoseRow;
 use knotdock::output::report::counted;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
 
-use super::console::Console;
-use super::failure::Failure;
-use super::input::Input;
+use crate::cli::inputs::molecules::Input;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Options that name the known complex.
 #[derive(Args, Debug)]

@@ -7,7 +7,7 @@ use knotdock_structures::molecule::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, ReadOptions, Waters,
 };
 
-use super::arguments::{assembly_name, plddt, residue_name};
+use crate::cli::arguments::values::{assembly_name, plddt, residue_name};
 
 const READING: &str = "Reading";
 

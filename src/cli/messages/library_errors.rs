@@ -13,7 +13,7 @@ use knotdock::output::whole_file::FileError;
 use knotdock_structures::mesh::MeshError;
 use knotdock_structures::molecule::ReadError;
 
-use super::failure::Failure;
+use crate::cli::messages::failure::Failure;
 
 /// Bad input at a place that the reader knows as far as it can be known.
 fn unreadable(

@@ -5,8 +5,8 @@ use knotdock::dock::plan::DockPlan;
 use knotdock::options::DockOptions;
 use knotdock::output::manifest::Machine;
 
-use super::arguments::at_least_one;
 use super::memory;
+use crate::cli::arguments::values::at_least_one;
 
 /// Their heading in the help.
 pub const MACHINE: &str = "Machine";

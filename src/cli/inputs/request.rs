@@ -10,10 +10,10 @@ use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
 
-use super::bodies::Bodies;
-use super::console::Console;
-use super::failure::Failure;
-use super::native::NativeFiles;
+use crate::cli::arguments::native::NativeFiles;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// A run as asked for, by options or by a run.json.
 pub struct Request {

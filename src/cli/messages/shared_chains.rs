@@ -2,8 +2,8 @@
 
 use knotdock::evaluate::{SharedChains, shared_chains};
 
-use super::bodies::Bodies;
-use super::input::Input;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::molecules::Input;
 
 impl Bodies {
     /// Adds a warning to the report of a molecule that holds the other one already, with further chains beside.
