@@ -23,9 +23,11 @@ pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
+pub mod peaks;
 pub mod potential_grid;
 pub mod rescoring;
 pub mod se3;
+pub mod so3;
 pub mod symmetry;
 #[cfg(test)]
 mod test_support;

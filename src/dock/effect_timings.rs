@@ -3,9 +3,9 @@
 use crate::dock::outcome::EffectCost;
 use crate::dock::plan::DockPlan;
 use crate::dock::scene::Decision;
-use crate::search::scan::{Chosen, choose_rank};
+use crate::search::scan::choose_rank;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
+use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ pub(crate) fn costs<T: Real>(
     let mut parts: Vec<(Effect, CpuEngine<T>)> = others
         .par_iter()
         .map(|&effect| {
-            let Chosen { engine, .. } = match effect {
+            let ChosenRank { engine, .. } = match effect {
                 Effect::Shape => choose_rank(plan, &alone),
                 effect => choose_rank(plan, &folded.without(effect)),
             };

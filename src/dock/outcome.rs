@@ -2,9 +2,9 @@
 
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
-use crate::search::peaks::Peak;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use serde::Serialize;
 
@@ -185,7 +185,7 @@ pub struct DockOutcome {
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::outcome::*;
+    use super::*;
 
     /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
     #[test]

@@ -7,16 +7,16 @@ use crate::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
 use crate::pose_space::ring::Rings;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::rank::rescoring::Asked;
-use crate::search::peaks::Peak;
-use crate::search::rotations::{
-    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
-};
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::so3::{
+    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
+};
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use nalgebra::UnitQuaternion;
@@ -459,7 +459,7 @@ impl std::fmt::Display for DockPlan {
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::plan::*;
+    use super::*;
     use std::cell::Cell;
 
     /// Each step was planned twice, from the finest on: refusing --resolution 0.1 took half a minute.

@@ -13,15 +13,15 @@ use crate::rank::ranking::{PoseScorer, cluster_temperature, report};
 use crate::rank::time_left::poses_in_time;
 use crate::search::chance::chance;
 use crate::search::coarse_to_fine::search_finer;
-use crate::search::peaks::Peak;
-use crate::search::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use crate::search::scan::{Quartet, Scanned, choose_rank, scan};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::{Deadline, schedule};
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::ReceptorSpectra;
+use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
@@ -113,7 +113,7 @@ fn dock_in<T: Real>(
     progress.stage("prepare", 1);
     let folded =
         ReceptorSpectra::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Quantity::Score);
-    let Chosen {
+    let ChosenRank {
         engine,
         error: rank_error,
     } = choose_rank(plan, &folded);

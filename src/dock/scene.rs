@@ -329,7 +329,7 @@ fn lacking(
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::scene::*;
+    use super::*;
     use crate::priors::restraints::tests::peptide;
     use knotdock_scoring::rescoring;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};

@@ -140,8 +140,8 @@ impl Layer {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::options::DockOptions;
-    use crate::pose_space::axes::*;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
     use knotdock_scoring::lifted_axis::Quantity;
     use knotdock_scoring::se3::Pose;

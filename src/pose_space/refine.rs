@@ -114,7 +114,7 @@ pub fn rigid_body(
 
 #[cfg(test)]
 mod tests {
-    use crate::pose_space::refine::*;
+    use super::*;
 
     /// A paraboloid in position and angle has one top; the ascent must find it to its stopping length.
     #[test]

@@ -100,9 +100,9 @@ pub(crate) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::dock::plan::plan;
     use crate::options::DockOptions;
-    use crate::pose_space::ring::*;
     use crate::priors::restraints::tests::peptide;
     use crate::progress::Progress;
     use crate::search::scan::{all_rotations, choose_rank, scan};

@@ -1,8 +1,8 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
-use crate::search::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
@@ -155,7 +155,7 @@ pub(crate) fn listed(
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::candidates::*;
+    use super::*;
     use nalgebra::Vector3;
 
     /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.

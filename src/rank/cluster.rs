@@ -137,7 +137,7 @@ pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::cluster::*;
+    use super::*;
 
     #[test]
     fn closed_form_is_the_rmsd_of_the_points() {

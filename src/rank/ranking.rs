@@ -236,10 +236,10 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::rank::candidates::{RefinedPose, candidates};
-    use crate::rank::ranking::*;
-    use crate::search::peaks::Peak;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+    use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
 

@@ -6,8 +6,8 @@
 use crate::options::DockOptions;
 use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
-use crate::search::peaks::Peak;
 use crate::search::schedule::Deadline;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::rescoring::Rescorer;
 use std::time::Instant;
 
@@ -61,7 +61,7 @@ fn within(left: f64, each: f64, count: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::time_left::*;
+    use super::*;
 
     #[test]
     fn as_many_poses_are_kept_as_fit() {

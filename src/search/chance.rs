@@ -46,9 +46,9 @@ fn is_default(options: &DockOptions) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::options::EffectChoice;
     use crate::options::EngineChoice;
-    use crate::search::chance::*;
 
     /// As `auto` has them for two proteins.
     const AUTO: [bool; Effect::ALL.len()] = [true, true, true, false];

@@ -8,9 +8,9 @@
 use crate::dock::plan::DockPlan;
 use crate::error::SearchError;
 use crate::progress::Progress;
-use crate::search::peaks::{NEIGHBOURS, Peak};
 use crate::search::scan::{Quartet, scan};
 use crate::search::scan_engine::ScanEngine;
+use knotdock_scoring::peaks::{NEIGHBOURS, Peak};
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -138,8 +138,8 @@ fn nearest(fine: &[UnitQuaternion<f64>], coarse: &[UnitQuaternion<f64>]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use crate::search::coarse_to_fine::*;
-    use crate::search::rotations::{rotation_set, spiral_set};
+    use super::*;
+    use knotdock_scoring::so3::{rotation_set, spiral_set};
 
     #[test]
     fn cells_are_those_of_the_nearest_rotation() {

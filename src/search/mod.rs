@@ -2,8 +2,6 @@
 
 pub mod chance;
 pub mod coarse_to_fine;
-pub mod peaks;
-pub mod rotations;
 pub(crate) mod scan;
 pub(crate) mod scan_engine;
 pub mod schedule;

@@ -1,110 +1,24 @@
-//! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
+//! The scan of all rotations: the best grid poses that it finds.
 
 use crate::dock::plan::DockPlan;
 use crate::error::SearchError;
 use crate::pose_space::axes::RingVoxels;
 use crate::progress::Progress;
-use crate::search::peaks::{Peak, find_peaks};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::Deadline;
-use knotdock_scoring::engine::CpuEngine;
-use knotdock_scoring::engine::ReceptorSpectra;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
+use knotdock_scoring::engine::{self, ChosenRank, CpuEngine, ReceptorSpectra};
+use knotdock_scoring::peaks::{Peak, find_peaks};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The values that a rank is judged by: the best of a few probe rotations at full rank.
-pub(crate) struct Probes<T> {
-    /// Index of the rotation, and its best voxels with their values.
-    samples: Vec<(usize, Vec<(usize, T)>)>,
-    /// The best of all.
-    best: T,
-}
-
-/// An engine of the lowest rank that serves, with its error at the probes, relative to the best score there.
-pub(crate) struct Chosen<T: Real> {
-    pub engine: CpuEngine<T>,
-    pub error: f64,
-}
-
-impl<T: Real> Probes<T> {
-    /// Correlates the probe rotations at full rank.
-    pub fn new(plan: &DockPlan, full: &CpuEngine<T>) -> Self {
-        const PROBES: usize = 3;
-        const BEST: usize = 50;
-        let mut work = full.workspace();
-        let mut samples: Vec<(usize, Vec<(usize, T)>)> = Vec::new();
-        let mut best = T::min_positive_value();
-        for probe in 0..PROBES {
-            let index = (2 * probe + 1) * plan.set.len() / (2 * PROBES);
-            full.correlate(&plan.set[index], &mut work);
-            let mut order: Vec<usize> = (0..work.grid.len()).collect();
-            let count = BEST.min(order.len() - 1);
-            order.select_nth_unstable_by(count, |&a, &b| {
-                let (first, second) = (work.grid[a].wide(), work.grid[b].wide());
-                second.total_cmp(&first).then(a.cmp(&b))
-            });
-            let values: Vec<(usize, T)> =
-                order[..count].iter().map(|&v| (v, work.grid[v])).collect();
-            best = values.iter().fold(best, |best, value| best.max(value.1));
-            samples.push((index, values));
-        }
-        Self { samples, best }
-    }
-
-    /// Largest error of an engine at the probes' best voxels, as a share of the best.
-    fn error(&self, plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
-        let mut work = engine.workspace();
-        let mut error = T::zero();
-        for (index, values) in &self.samples {
-            engine.correlate(&plan.set[*index], &mut work);
-            for &(voxel, exact) in values {
-                error = error.max((work.grid[voxel] - exact).abs() / self.best);
-            }
-        }
-        error.wide()
-    }
-}
-
-/// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance, found by halving, for the
-/// error falls with the rank.
-pub(crate) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> Chosen<T> {
-    let factors = folded.factor(&plan.engine.modes);
-    // What lies below rounding is no rank.
-    let rounding = T::epsilon().wide();
-    let largest = factors.singular.first().copied().unwrap_or(0.0);
-    let numerical = factors.singular.iter().filter(|s| **s > rounding * largest);
-    let full_rank = numerical.count().max(1);
-    let engine = CpuEngine::with_factors(
-        plan.engine.clone(),
-        folded,
-        &factors,
-        &plan.ligand,
-        full_rank,
-    );
-    let mut chosen = Chosen { engine, error: 0.0 };
-    if full_rank == 1 {
-        return chosen;
-    }
-    let probes = Probes::new(plan, &chosen.engine);
-    let limit = plan.options.tolerance / 3.0;
-    // `chosen` serves, and no rank below `least` does.
-    let mut least = 1;
-    while least < chosen.engine.rank() {
-        let middle = least.midpoint(chosen.engine.rank());
-        let engine = chosen.engine.truncated(middle);
-        let error = probes.error(plan, &engine);
-        if error <= limit {
-            chosen = Chosen { engine, error };
-        } else {
-            least = middle + 1;
-        }
-    }
-    chosen
+/// The engine of the lowest rank that the plan's tolerance allows.
+pub(crate) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> ChosenRank<T> {
+    engine::choose_rank(&plan.engine, folded, &plan.ligand, &plan.set)
 }
 
 /// Four rotations of a set that differ by half-turns and so share the ligand's transform.

@@ -8,9 +8,10 @@ use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::transform::Real;
 
 #[cfg(feature = "gpu")]
-use crate::search::peaks::NEIGHBOURS;
-#[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
+#[cfg(feature = "gpu")]
+use knotdock_scoring::peaks::NEIGHBOURS;
+#[cfg(feature = "gpu")]
 
 /// An engine that is ready to scan.
 pub(crate) struct ScanEngine<T: Real> {

@@ -101,9 +101,9 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::search::rotations::{covering_radius, rotation_set};
-    use crate::search::schedule::*;
+    use super::*;
     use knotdock_scoring::se3::HalfTurn;
+    use knotdock_scoring::so3::{covering_radius, rotation_set};
 
     #[test]
     fn the_order_has_every_index_once() {

@@ -271,7 +271,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::calibrate::*;
+    use super::*;
     use crate::tradeoff::cost_model::LADDER;
 
     #[test]

@@ -334,7 +334,7 @@ impl Rung {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::cost_model::*;
+    use super::*;
 
     fn work() -> Workload {
         Workload {
