@@ -14,7 +14,7 @@ use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
-use knotdock::search::schedule::Deadline;
+use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::{Value, json};

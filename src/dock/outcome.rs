@@ -2,6 +2,7 @@
 
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
+use crate::search::scan_engine::Adapter;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::peaks::Peak;
@@ -137,19 +138,6 @@ pub struct StageTime {
     pub wall_seconds: f64,
     /// CPU seconds of the whole process, where the system tells.
     pub cpu_seconds: Option<f64>,
-}
-
-/// The graphics processor that correlated.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Adapter {
-    /// Its name.
-    pub name: String,
-    /// The interface that it was driven through, such as `vulkan`.
-    pub backend: &'static str,
-    /// Whether it is a program on the CPU that plays one.
-    pub software: bool,
-    /// Rotations that were in flight at once, half-turns counted.
-    pub rotations_in_flight: usize,
 }
 
 /// All that a docking run found.

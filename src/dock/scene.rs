@@ -9,6 +9,7 @@ use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::{AntibodySurface, Restraints};
 use crate::rank::rescoring::Asked;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
+use knotdock_scoring::engine::Plan;
 use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_structures::Knots;
@@ -258,6 +259,18 @@ impl Scene {
             loose: Default::default(),
             ring_axis: None,
         })
+    }
+
+    /// The engine's plan for the scene.
+    ///
+    /// # Errors
+    /// [`SearchError`] on knots or options that no engine can correlate.
+    pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
+        let terms = self.terms.clone();
+        let engine = options.engine();
+        let tolerance = options.tolerance;
+        let plan = Plan::with_effects(&self.receptor, &self.ligand, engine, tolerance, terms)?;
+        Ok(plan)
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.

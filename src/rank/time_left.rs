@@ -4,9 +4,10 @@
 //! the machine as it then is, and the poses that scored least are left out where time is short.
 
 use crate::options::DockOptions;
-use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
+use crate::pose_space::refine::RefinedPose;
+use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
-use crate::search::schedule::Deadline;
+use crate::search::deadline::Deadline;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::rescoring::Rescorer;
 use std::time::Instant;

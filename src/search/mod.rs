@@ -2,6 +2,8 @@
 
 pub mod chance;
 pub mod coarse_to_fine;
+pub mod deadline;
+pub mod plan;
 pub(crate) mod scan;
-pub(crate) mod scan_engine;
-pub mod schedule;
+pub mod scan_engine;
+pub(crate) mod schedule;

@@ -126,7 +126,7 @@ fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchEr
             ..Workload::of(&plan)
         },
         rotations: plan.rotations as f64,
-        in_flight: plan.in_flight as f64,
+        in_flight: plan.in_flight() as f64,
         rotation_set_seconds,
         checked: outcome.error.poses as f64,
         stages: outcome.timing,
