@@ -19,9 +19,7 @@ use serde_json::{Value, json};
 
 use super::calibrate::cost_model;
 use super::console::Console;
-use super::dock_report::{
-    assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
-};
+use super::dock_report::{assumed, error_warning, few_rotations_warning, loose_told, told};
 use super::failure::Failure;
 use super::machine_arguments::machine;
 use super::memory;
@@ -182,7 +180,6 @@ impl Docking {
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
-                chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
@@ -219,9 +216,6 @@ impl Docking {
             }
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
-        if let Some(chance) = outcome.chance {
-            console.say(format!("\n{}", chance_told(chance)));
-        }
         console.say(format!(
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),

@@ -3,7 +3,6 @@
 pub mod active_residues;
 pub mod axes;
 mod candidates;
-pub mod chance;
 pub mod cluster;
 pub mod coarse_to_fine;
 pub mod effect_choice;

@@ -1,7 +1,6 @@
 //! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
 
 use super::candidates::{RefinedPose, candidates, clusters_of, listed, merge, printed};
-use super::chance::chance;
 use super::cluster::RigidBody;
 use super::coarse_to_fine::search_finer;
 use super::effect_timings::costs;
@@ -239,7 +238,6 @@ fn dock_in<T: Real>(
         poses: ranking.poses,
         poses_kept: kept,
         clusters: ranking.clusters,
-        chance: chance(options, on, ranking.clusters).filter(|_| stopped.is_none()),
         searched,
         stopped,
         error,
