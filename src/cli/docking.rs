@@ -3,28 +3,30 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::pair::{PreparedPair, Preparer};
+use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
+use knotdock::options::Precision;
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
-use knotdock::search::options::Precision;
-use knotdock::search::{self, Deadline, DockOutcome};
+use knotdock::search::schedule::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
-use knotdock::tradeoff::pair::{PreparedPair, Preparer};
 use serde_json::{Value, json};
 
-use super::calibrate::cost_model;
-use super::console::Console;
-use super::dock_report::{assumed, error_warning, few_rotations_warning, loose_told, told};
-use super::failure::Failure;
-use super::machine_arguments::machine;
-use super::memory;
-use super::native::{NativeFiles, announce, measure};
-use super::request::Request;
+use super::arguments::memory;
+use crate::cli::arguments::machine::machine;
+use crate::cli::arguments::native::{NativeFiles, announce, measure};
+use crate::cli::calibrate::cost_model;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::{assumed, error_warning, few_rotations_warning, loose_told, told};
+use crate::cli::messages::failure::Failure;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -147,7 +149,7 @@ impl Docking {
         } = prepared;
         let staging = Staging::open(&directory, force)?;
         let progress = console.progress();
-        let outcome = search::dock_until(&plan, &points, deadline.as_ref(), &progress)
+        let outcome = dock_until(&plan, &points, deadline.as_ref(), &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.

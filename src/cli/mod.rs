@@ -1,35 +1,18 @@
 //! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
-//! [`knotdock::output`] and the [`console`].
+//! [`knotdock::output`] and the [`messages::console`].
 
 mod arguments;
 mod batch;
-mod batch_pairs;
-mod bodies;
 mod calibrate;
-mod complex;
-mod console;
 mod dock;
-mod dock_report;
 mod docking;
 mod evaluate;
-mod failure;
-mod idle_options;
-mod input;
+mod export;
+mod inputs;
 mod inspect;
-mod library_errors;
-mod machine_arguments;
-mod memory;
-mod mesh_input;
-mod native;
-mod output_file;
-mod ranks;
-mod reading_arguments;
-mod request;
+mod messages;
 mod sample;
 mod score;
-mod search_arguments;
-mod shared_chains;
-mod suggestions;
 mod tradeoff;
 
 use std::ffi::OsString;
@@ -37,8 +20,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use console::Console;
-use failure::Failure;
+use messages::console::Console;
+use messages::failure::Failure;
+use messages::suggestions;
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
@@ -61,7 +45,7 @@ struct Cli {
 enum Command {
     Dock(Box<dock::Dock>),
     Batch(batch::Batch),
-    Complex(complex::Complex),
+    Export(export::Export),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
@@ -98,7 +82,7 @@ pub fn main() -> ExitCode {
             Ok(code) => return ExitCode::from(code),
             Err(failure) => Err(failure),
         },
-        Command::Complex(command) => command.run(console),
+        Command::Export(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),

@@ -5,12 +5,12 @@
 //! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
-use super::error::SearchError;
-use super::peaks::{NEIGHBOURS, Peak};
-use super::plan::DockPlan;
-use super::run::Progress;
-use super::scan::{Quartet, scan};
-use super::scan_engine::ScanEngine;
+use crate::dock::plan::DockPlan;
+use crate::error::SearchError;
+use crate::progress::Progress;
+use crate::search::peaks::{NEIGHBOURS, Peak};
+use crate::search::scan::{Quartet, scan};
+use crate::search::scan_engine::ScanEngine;
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ pub struct FineSearched {
 ///
 /// # Errors
 /// As [`scan`].
-pub(super) fn search_finer<T: Real>(
+pub(crate) fn search_finer<T: Real>(
     plan: &DockPlan,
     engine: &ScanEngine<T>,
     coarse: Vec<Peak>,
@@ -138,8 +138,8 @@ fn nearest(fine: &[UnitQuaternion<f64>], coarse: &[UnitQuaternion<f64>]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use super::super::rotations::{rotation_set, spiral_set};
-    use super::*;
+    use crate::search::coarse_to_fine::*;
+    use crate::search::rotations::{rotation_set, spiral_set};
 
     #[test]
     fn cells_are_those_of_the_nearest_rotation() {

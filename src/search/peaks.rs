@@ -25,7 +25,7 @@ impl Peak {
 }
 
 /// Voxels around a peak that may hold no further one, on each axis and side.
-pub(super) const NEIGHBOURS: usize = 2;
+pub(crate) const NEIGHBOURS: usize = 2;
 
 /// Appends the `count` best voxels of a periodic grid (nx, ny, nz), each at least `NEIGHBOURS` + 1 voxels from the others along some
 /// axis, to `found`. `row_best` holds each row's largest value; grid and row bests are overwritten around peaks.
@@ -89,7 +89,7 @@ fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::search::peaks::*;
 
     #[test]
     fn peaks_are_the_best_and_apart_across_the_periodic_edge() {

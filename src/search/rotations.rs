@@ -42,7 +42,7 @@ pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// A set as [`rotation_set`] makes it, but never relaxed: quickly made, and less even at the edges of the domain.
-pub(super) fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
+pub(crate) fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
     let (points, wanted) = (domain(count.div_ceil(4)), count.div_ceil(4));
     // Evenly fewer: its last ones leave a hole.
     let kept: Vec<Point> = (0..wanted)
@@ -65,13 +65,13 @@ fn with_images(base: &[Point], count: usize) -> Vec<UnitQuaternion<f64>> {
 }
 
 /// Largest set that is relaxed: beyond, the spiral is fine enough, and time and memory would go into a gain that nothing shows.
-pub(super) const MAX_RELAXED: usize = 100_000;
+pub(crate) const MAX_RELAXED: usize = 100_000;
 
 /// Bytes that a set takes while it is made, per rotation relaxed (points and images, sorted by cell).
-pub(super) const BYTES_RELAXED: u64 = 250;
+pub(crate) const BYTES_RELAXED: u64 = 250;
 
 /// What a set of `count` rotations is called.
-pub(super) fn set_name(count: usize) -> &'static str {
+pub(crate) fn set_name(count: usize) -> &'static str {
     if count <= MAX_RELAXED {
         "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed"
     } else {
@@ -245,7 +245,7 @@ pub fn covering_radius(set: &[UnitQuaternion<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::search::rotations::*;
 
     #[test]
     fn covers_as_evenly_as_the_field_expects() {

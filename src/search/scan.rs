@@ -1,12 +1,12 @@
 //! The scan of all rotations: how many fields of the lifted axis it needs, and the best grid poses that it finds.
 
-use super::axes::RingVoxels;
-use super::error::SearchError;
-use super::peaks::{Peak, find_peaks};
-use super::plan::DockPlan;
-use super::run::Progress;
-use super::scan_engine::ScanEngine;
-use super::schedule::Deadline;
+use crate::dock::plan::DockPlan;
+use crate::error::SearchError;
+use crate::pose_space::axes::RingVoxels;
+use crate::progress::Progress;
+use crate::search::peaks::{Peak, find_peaks};
+use crate::search::scan_engine::ScanEngine;
+use crate::search::schedule::Deadline;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::engine::ReceptorSpectra;
 #[cfg(feature = "gpu")]
@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The values that a rank is judged by: the best of a few probe rotations at full rank.
-pub(super) struct Probes<T> {
+pub(crate) struct Probes<T> {
     /// Index of the rotation, and its best voxels with their values.
     samples: Vec<(usize, Vec<(usize, T)>)>,
     /// The best of all.
@@ -26,7 +26,7 @@ pub(super) struct Probes<T> {
 }
 
 /// An engine of the lowest rank that serves, with its error at the probes, relative to the best score there.
-pub(super) struct Chosen<T: Real> {
+pub(crate) struct Chosen<T: Real> {
     pub engine: CpuEngine<T>,
     pub error: f64,
 }
@@ -72,7 +72,7 @@ impl<T: Real> Probes<T> {
 
 /// The engine of the lowest rank whose error at the best poses of a few probe rotations is within a third of the tolerance, found by halving, for the
 /// error falls with the rank.
-pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> Chosen<T> {
+pub(crate) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> Chosen<T> {
     let factors = folded.factor(&plan.engine.modes);
     // What lies below rounding is no rank.
     let rounding = T::epsilon().wide();
@@ -109,7 +109,7 @@ pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>)
 
 /// Four rotations of a set that differ by half-turns and so share the ligand's transform.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quartet {
+pub(crate) struct Quartet {
     /// Index of the first ([`DockPlan::rotation`]).
     pub first: usize,
     /// Which of the four are searched.
@@ -124,7 +124,7 @@ impl Quartet {
 }
 
 /// What a scan found.
-pub(super) struct Scanned {
+pub(crate) struct Scanned {
     /// The best peaks, best first.
     pub peaks: Vec<Peak>,
     /// Rotations that were searched.
@@ -132,7 +132,7 @@ pub(super) struct Scanned {
 }
 
 /// The coarse set, in fours; axes of rings one by one, for half-turns make no rings of rings.
-pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
+pub(crate) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
     let count = plan.set.len();
     if plan.options.symmetry.is_some() {
         let wanted = [true, false, false, false];
@@ -149,7 +149,7 @@ pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
 ///
 /// # Errors
 /// [`SearchError::Graphics`] where the graphics processor fails.
-pub(super) fn scan<T: Real>(
+pub(crate) fn scan<T: Real>(
     plan: &DockPlan,
     engine: &ScanEngine<T>,
     quartets: &[Quartet],

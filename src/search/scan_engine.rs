@@ -1,19 +1,19 @@
 //! What a run correlates with: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
 
-use super::error::SearchError;
-use super::options::EngineChoice;
-use super::outcome::Adapter;
-use super::plan::DockPlan;
+use crate::dock::outcome::Adapter;
+use crate::dock::plan::DockPlan;
+use crate::error::SearchError;
+use crate::options::EngineChoice;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::transform::Real;
 
 #[cfg(feature = "gpu")]
-use super::peaks::NEIGHBOURS;
+use crate::search::peaks::NEIGHBOURS;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
 
 /// An engine that is ready to scan.
-pub(super) struct ScanEngine<T: Real> {
+pub(crate) struct ScanEngine<T: Real> {
     /// Maps voxels to places, and scans where there is nothing else to.
     pub cpu: CpuEngine<T>,
     #[cfg(feature = "gpu")]

@@ -4,8 +4,8 @@
 //! every first part covers all orientations about evenly, and how many those were is recorded: searched again, the same
 //! rotations give the same bytes.
 
-use super::plan::DockPlan;
-use super::scan::{Quartet, all_rotations};
+use crate::dock::plan::DockPlan;
+use crate::search::scan::{Quartet, all_rotations};
 use std::time::Instant;
 
 /// A time at which a run is to be at its end, and what its search leaves to do until then.
@@ -40,14 +40,14 @@ impl Deadline {
     }
 
     /// Seconds until then.
-    pub(super) fn left(&self) -> f64 {
+    pub(crate) fn left(&self) -> f64 {
         self.end
             .saturating_duration_since(Instant::now())
             .as_secs_f64()
     }
 
     /// Whether a search that began at `begun` and has done so many rotations must stop.
-    pub(super) fn is_reached(&self, begun: Instant, done: usize) -> bool {
+    pub(crate) fn is_reached(&self, begun: Instant, done: usize) -> bool {
         self.must_stop(begun.elapsed().as_secs_f64(), self.left(), done)
     }
 
@@ -64,7 +64,7 @@ impl Deadline {
 
 /// The quartets to search: all in the order of the set, or evenly spread where a search may stop, or has stopped, before
 /// the last.
-pub(super) fn schedule(plan: &DockPlan, deadline: Option<&Deadline>) -> Vec<Quartet> {
+pub(crate) fn schedule(plan: &DockPlan, deadline: Option<&Deadline>) -> Vec<Quartet> {
     let all = all_rotations(plan);
     let limit = plan.options.stopped.map(|stopped| stopped.rotations);
     if deadline.is_none() && limit.is_none() {
@@ -101,8 +101,8 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rotations::{covering_radius, rotation_set};
-    use super::*;
+    use crate::search::rotations::{covering_radius, rotation_set};
+    use crate::search::schedule::*;
     use knotdock_scoring::se3::HalfTurn;
 
     #[test]

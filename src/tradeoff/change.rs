@@ -1,7 +1,7 @@
 //! Changes of single options: what settings of a sweep are made of.
 
-use crate::search::DockOptions;
-use crate::search::options::Precision;
+use crate::options::DockOptions;
+use crate::options::Precision;
 
 /// A change of one option.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +92,7 @@ pub(super) fn three_digits(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::tradeoff::change::*;
 
     #[test]
     fn lengths_have_three_digits_in_any_unit() {

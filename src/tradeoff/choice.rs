@@ -4,9 +4,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::cost_model::{CostModel, LADDER, Rung, Workload};
-use super::pair::{PairError, Preparer};
-use crate::search::{Deadline, DockOptions, DockPlan};
+use crate::dock::pair::{PairError, Preparer};
+use crate::dock::plan::DockPlan;
+use crate::options::DockOptions;
+use crate::search::schedule::Deadline;
+use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
 pub const MIN_ROTATIONS: usize = 600;

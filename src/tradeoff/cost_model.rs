@@ -21,8 +21,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::search::options::Precision;
-use crate::search::{DockOptions, DockPlan, Effect};
+use crate::dock::plan::DockPlan;
+use crate::options::DockOptions;
+use crate::options::Precision;
+use knotdock_scoring::effect::Effect;
 
 /// Coefficients of the time, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -332,7 +334,7 @@ impl Rung {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::tradeoff::cost_model::*;
 
     fn work() -> Workload {
         Workload {

@@ -178,7 +178,7 @@ impl Drawing {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::tradeoff::drawing::*;
 
     fn drawing(marks: Vec<Mark>) -> Drawing {
         Drawing {

@@ -24,7 +24,7 @@ pub fn front(pairs: &[(f64, Option<f64>)]) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::tradeoff::front::*;
     use proptest::prelude::*;
 
     #[test]

@@ -166,7 +166,7 @@ fn all_copies_are_written_and_runs_repeat() {
     assert_eq!(fs::read(at("run/top/rank_0002.pdb")).unwrap(), first);
     succeed(
         folder.path(),
-        "dock --from run/run.json -o again --quiet".split(' '),
+        "dock --rerun run/run.json -o again --quiet".split(' '),
     );
     assert_eq!(fs::read(at("again/poses.csv")).unwrap(), table);
     succeed(

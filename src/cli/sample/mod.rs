@@ -15,9 +15,9 @@ use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Ste
 use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
-use super::arguments::{above_zero, at_least_one, grid, protrusion};
-use super::console::Console;
-use super::failure::Failure;
+use crate::cli::arguments::values::{above_zero, at_least_one, grid, protrusion};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 use told::{Told, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.

@@ -1,0 +1,9 @@
+//! A docking run: from the scene and the options to ranked poses.
+
+mod effect_timings;
+pub mod loose;
+pub mod outcome;
+pub mod pair;
+pub mod plan;
+pub mod run;
+pub mod scene;

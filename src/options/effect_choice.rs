@@ -1,0 +1,81 @@
+//! Which effects are asked for: `auto`, or names.
+
+use knotdock_scoring::effect::Effect;
+use serde::{Deserialize, Serialize};
+
+/// Effects as asked for: `auto`, or names with commas between them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum EffectChoice {
+    /// Whatever the inputs call for.
+    #[default]
+    Auto,
+    /// These, and shape.
+    Only(Vec<Effect>),
+}
+
+impl From<EffectChoice> for String {
+    fn from(choice: EffectChoice) -> Self {
+        match choice {
+            EffectChoice::Auto => "auto".to_owned(),
+            EffectChoice::Only(effects) => effects
+                .iter()
+                .map(|effect| effect.name())
+                .collect::<Vec<_>>()
+                .join(","),
+        }
+    }
+}
+
+impl TryFrom<String> for EffectChoice {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        // Shape is always on, and the order in which effects are named says nothing.
+        let mut effects = vec![Effect::Shape];
+        for name in text.split(',').map(str::trim) {
+            let known = Effect::ALL.into_iter().find(|effect| effect.name() == name);
+            effects.push(known.ok_or_else(|| {
+                let names = Effect::ALL.map(Effect::name).join(", ");
+                format!("there is no effect '{name}'; there is auto, or any of {names}")
+            })?);
+        }
+        effects.sort_unstable();
+        effects.dedup();
+        Ok(Self::Only(effects))
+    }
+}
+
+impl std::str::FromStr for EffectChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.to_owned().try_into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::options::effect_choice::*;
+
+    #[test]
+    fn choices_are_read_and_written_alike() {
+        for text in [
+            "auto",
+            "shape",
+            "shape,electrostatics",
+            "shape,electrostatics,contact",
+        ] {
+            let choice: EffectChoice = text.parse().unwrap();
+            assert_eq!(String::from(choice), text);
+        }
+        let choice: EffectChoice = "contact, electrostatics,contact".parse().unwrap();
+        assert_eq!(String::from(choice), "shape,electrostatics,contact");
+        for bad in ["", "gravity", "shape,", "auto,shape"] {
+            assert!(bad.parse::<EffectChoice>().is_err(), "{bad}");
+        }
+    }
+}
