@@ -25,9 +25,7 @@ use crate::cli::arguments::native::{NativeFiles, announce, measure};
 use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{
-    assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
-};
+use crate::cli::messages::dock::{assumed, error_warning, few_rotations_warning, loose_told, told};
 use crate::cli::messages::failure::Failure;
 
 /// A run that is ready to go.
@@ -184,7 +182,6 @@ impl Docking {
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
-                chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
@@ -221,9 +218,6 @@ impl Docking {
             }
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
-        if let Some(chance) = outcome.chance {
-            console.say(format!("\n{}", chance_told(chance)));
-        }
         console.say(format!(
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),

@@ -153,8 +153,6 @@ pub struct DockOutcome {
     pub searched: usize,
     /// Where the run stopped for a deadline, or one that it repeats did; `None` where it went to its end.
     pub stopped: Option<Stopped>,
-    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated, [`super::chance::chance`].
-    pub chance: Option<f64>,
     /// The fast path's error as measured.
     pub error: MeasuredError,
     /// Rank of the compressed functions in use.

@@ -12,7 +12,6 @@ use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, 
 use crate::rank::cluster::RigidBody;
 use crate::rank::ranking::{PoseScorer, Ranking, cluster_temperature, report};
 use crate::rank::time_left::poses_in_time;
-use crate::search::chance::chance;
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
 use crate::search::deadline::Deadline;
 use crate::search::scan::{Scanned, scan};
@@ -111,18 +110,24 @@ fn dock_in<T: Real>(
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let mut clock = Clock::start();
-    let prepared = Prepared::<T>::new(plan, progress)?;
+    let Prepared {
+        spectra,
+        engine,
+        scorer,
+        rank_error,
+        effects,
+    } = Prepared::<T>::new(plan, progress)?;
     clock.lap("prepare");
-    let found = find(plan, &prepared.engine, deadline, (progress, &mut clock))?;
-    let grid_pose = |peak| plan.search.grid_pose(&prepared.engine, peak);
+    let found = find(plan, &engine, deadline, (progress, &mut clock))?;
+    let grid_pose = |peak| plan.search.grid_pose(&engine, peak);
     let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
     let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
-    let spectra = &prepared.spectra;
-    let refined = refine(plan, spectra, (&found.peaks, &grid_poses), &body, progress);
+    let refined = refine(plan, &spectra, (&found.peaks, &grid_poses), &body, progress);
+    drop(spectra);
     clock.lap("refine");
 
     grid_poses.truncate(ERROR_POSES);
-    let check = Check::new(&prepared.scorer, &grid_poses);
+    let check = Check::new(&scorer, &grid_poses);
     clock.lap("check");
 
     let rescorer = plan.rescorer();
@@ -141,15 +146,15 @@ fn dock_in<T: Real>(
 
     let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
     let on = Effect::ALL.map(|effect| plan.is_on(effect));
-    let scorer = PoseScorer {
-        scorer: &prepared.scorer,
+    let pose_scorer = PoseScorer {
+        scorer: &scorer,
         rescorer: rescorer.as_ref(),
         on,
         space: &plan.search.space,
         cluster_temperature: cluster_temperature(plan.unit),
     };
     let ranking = report(
-        scorer,
+        pose_scorer,
         &candidates,
         (&clusters, &listed),
         plan.options.every_pose,
@@ -163,16 +168,15 @@ fn dock_in<T: Real>(
         poses: ranking.poses,
         poses_kept: candidates.len(),
         clusters: ranking.clusters,
-        chance: chance(&plan.options, on, ranking.clusters).filter(|_| stopped.is_none()),
         searched: found.searched,
         stopped,
         error,
-        rank_error: prepared.rank_error,
-        rank: prepared.engine.cpu.rank(),
-        effects: prepared.effects,
+        rank_error,
+        rank: engine.cpu.rank(),
+        effects,
         fine: found.fine,
         timing: clock.stages,
-        adapter: prepared.engine.adapter,
+        adapter: engine.adapter,
     })
 }
 

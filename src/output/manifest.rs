@@ -65,8 +65,6 @@ pub struct Results {
     pub poses: usize,
     /// Rotations that were searched.
     pub rotations: usize,
-    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated.
-    pub chance_acceptable_in_10: Option<f64>,
 }
 
 /// What an effect cost.

@@ -1,6 +1,5 @@
 //! The search: a scan of all rotations, then of finer ones about the best, by the engine in use.
 
-pub mod chance;
 pub mod coarse_to_fine;
 pub mod deadline;
 pub mod plan;

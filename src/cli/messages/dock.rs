@@ -157,14 +157,6 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// The chance that a ranking holds what is looked for, and what it rests on.
-pub fn chance_told(chance: f64) -> String {
-    format!(
-        "Chance that one of the first ten clusters is acceptable: {:.0}%, as of known pairs docked like this",
-        100.0 * chance
-    )
-}
-
 /// What is loose of each side and costs poses something: residues that its file does not show, and those near ends.
 pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
     let of = loose.missing_residues.iter().zip(&loose.chain_end_residues);
