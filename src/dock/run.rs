@@ -119,7 +119,7 @@ fn dock_in<T: Real>(
     } = Prepared::<T>::new(plan, progress)?;
     clock.lap("prepare");
     let found = find(plan, &engine, deadline, (progress, &mut clock))?;
-    let grid_pose = |peak| plan.search.grid_pose(&engine, peak);
+    let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
     let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
     let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
     let refined = refine(plan, &spectra, (&found.peaks, &grid_poses), &body, progress);

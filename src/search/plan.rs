@@ -4,12 +4,7 @@ use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
 use crate::pose_space::rotations::RotationSample;
 use knotdock_scoring::engine::Plan;
-use knotdock_scoring::se3::Pose;
-use knotdock_scoring::transform::Real;
 use std::sync::Arc;
-
-use super::scan_engine::ScanEngine;
-use knotdock_scoring::peaks::Peak;
 
 /// What a search covers, on what it runs and what it keeps.
 #[derive(Clone, Debug)]
@@ -56,14 +51,6 @@ impl SearchPlan {
             device: options.engine,
             graphics_bytes,
         }
-    }
-
-    /// The pose of a peak, as the grid has it.
-    pub(crate) fn grid_pose<T: Real>(&self, engine: &ScanEngine<T>, peak: &Peak) -> Pose {
-        let (rotation, half_turn) = self.rotations.rotation(peak.rotation as usize);
-        let position = engine.cpu.position_after(half_turn, peak.voxel as usize);
-        let place = self.engine.receptor_center + position;
-        Pose::about(rotation, self.engine.ligand_center, place)
     }
 
     /// Largest rotation of the ligand in radians between a pose and the nearest sampled one.

@@ -4,6 +4,8 @@ use crate::error::SearchError;
 use crate::options::EngineChoice;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use serde::Serialize;
 
@@ -34,6 +36,16 @@ pub(crate) struct ScanEngine<T: Real> {
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
     pub adapter: Option<Adapter>,
+}
+
+impl<T: Real> ScanEngine<T> {
+    /// The pose of a peak, as the grid has it.
+    pub fn grid_pose(&self, plan: &SearchPlan, peak: &Peak) -> Pose {
+        let (rotation, half_turn) = plan.rotations.rotation(peak.rotation as usize);
+        let position = self.cpu.position_after(half_turn, peak.voxel as usize);
+        let place = plan.engine.receptor_center + position;
+        Pose::about(rotation, plan.engine.ligand_center, place)
+    }
 }
 
 #[cfg(feature = "gpu")]
