@@ -90,7 +90,7 @@ fn weights_are_volumes() {
             .radii
             .iter()
             .zip(&part.knots.weights)
-            .map(|(radius, weight)| weight.re * radius.powi(3) * bump_volume(2.0))
+            .map(|(radius, weight)| weight * radius.powi(3) * bump_volume(2.0))
             .sum();
         assert!(
             (integral / volume - 1.0).abs() < 0.08,
