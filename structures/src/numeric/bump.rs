@@ -6,8 +6,6 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::double_exponential;
-
 /// The bump function of one exponent alpha > 0 (dimensionless); infinity gives the indicator of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bump {
@@ -58,22 +56,23 @@ impl Bump {
     }
 
     /// Integral of the bump over its unit ball, 4 pi times that of x^2 psi_alpha(x) from 0 to 1.
+    ///
+    /// Midpoints suffice: the integrand vanishes with all its derivatives at 1 and is flat at 0.
     pub fn volume(&self) -> f64 {
-        if self.alpha.is_infinite() {
-            return 4.0 / 3.0 * PI;
-        }
-        let step = 1.0 / 64.0;
-        let sum: f64 = double_exponential::nodes(step, 256)
-            .map(|node| (node.x(), node.slope))
-            .map(|(x, slope)| x * x * self.value(x) * slope)
+        let steps = 20_000;
+        let width = 1.0 / f64::from(steps);
+        let sum: f64 = (0..steps)
+            .map(|i| (f64::from(i) + 0.5) * width)
+            .map(|x| self.value(x) * x * x)
             .sum();
-        4.0 * PI * sum * step
+        4.0 * PI * sum * width
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::double_exponential;
 
     #[test]
     fn closed_values() {
@@ -87,18 +86,18 @@ mod tests {
     }
 
     #[test]
-    fn volume_is_the_sum_over_midpoints_and_tends_to_that_of_the_ball() {
+    fn volume_is_the_integral_and_tends_to_that_of_the_ball() {
         for alpha in [0.5, 2.0, 7.0] {
             let bump = Bump::new(alpha).unwrap();
-            let steps = 20_000;
-            let width = 1.0 / f64::from(steps);
-            let sum: f64 = (0..steps)
-                .map(|i| (f64::from(i) + 0.5) * width)
-                .map(|x| bump.value(x) * x * x)
+            let step = 1.0 / 64.0;
+            let sum: f64 = double_exponential::nodes(step, 256)
+                .map(|node| (node.x(), node.slope))
+                .map(|(x, slope)| x * x * bump.value(x) * slope * step)
                 .sum();
-            assert!((bump.volume() - 4.0 * PI * sum * width).abs() < 1e-9);
+            assert!((bump.volume() - 4.0 * PI * sum).abs() < 1e-9);
         }
-        let ball = Bump::new(f64::INFINITY).unwrap().volume();
+        let ball = 4.0 / 3.0 * PI;
+        assert!((Bump::new(f64::INFINITY).unwrap().volume() - ball).abs() < 1e-8);
         assert!((Bump::new(1e6).unwrap().volume() - ball).abs() < 1e-4);
     }
 
