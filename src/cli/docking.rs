@@ -51,11 +51,11 @@ impl Docking {
         clock: Clock,
         console: Console,
     ) -> Result<Self, Failure> {
-        let symmetry = request.options.dock.symmetry;
-        if symmetry.is_none() {
+        let arrangement = request.arrangement();
+        if !arrangement.is_ring() {
             request.bodies.note_shared_chains();
         }
-        request.bodies.describe(symmetry, console);
+        request.bodies.describe(arrangement, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);
@@ -74,10 +74,7 @@ impl Docking {
         };
         let plan = &prepared.plan;
         console.say(format!("\n{plan}"));
-        let sides: &[&str] = match symmetry {
-            Some(_) => &["molecule"],
-            None => &["receptor", "ligand"],
-        };
+        let sides = arrangement.sides();
         for (side, count) in sides.iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
@@ -168,9 +165,10 @@ impl Docking {
             .rows()
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
-        let symmetry = request.options.dock.symmetry;
         let top_folder = staging.folder().join("top");
-        let written = request.bodies.write(top, symmetry, &top_folder)?;
+        let written = request
+            .bodies
+            .write(top, request.arrangement(), &top_folder)?;
         let inputs = request.inputs(sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
