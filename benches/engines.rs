@@ -7,7 +7,7 @@
 
 mod example;
 
-use knotdock::search::DockOptions;
+use knotdock::options::DockOptions;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,

@@ -131,7 +131,7 @@ def parse_arguments():
     parser.add_argument("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
     parser.add_argument("--attract", type=int, default=0, metavar="N", help="residues of either side that each docking is told (default: 0)")
     options = parser.parse_args(arguments)
-    for owned in ("-o", "--output", "--force", "--from", "--native", "--native-receptor", "--native-ligand"):
+    for owned in ("-o", "--output", "--force", "--rerun", "--native", "--native-receptor", "--native-ligand"):
         if owned in dock_options:
             parser.error(f"{owned} is this script's own to set")
     options.dock_options = dock_options

@@ -1,8 +1,16 @@
 //! knotdock: the pipeline from two structures, or two meshes, to a ranked list of poses.
 
+pub mod dock;
+pub mod error;
 pub mod evaluate;
+pub mod mesh;
+pub mod options;
 pub mod output;
 pub mod pose_geometry;
+pub mod pose_space;
+pub mod priors;
+pub mod progress;
+pub mod rank;
 pub mod score;
 pub mod search;
 pub mod tradeoff;

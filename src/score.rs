@@ -1,7 +1,8 @@
 //! One pose scored: exactly, and from ever more modes, with the error and the time of each.
 
-use crate::search::outcome::error_scale;
-use crate::search::{Scene, SearchError};
+use crate::dock::outcome::error_scale;
+use crate::dock::scene::Scene;
+use crate::error::SearchError;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;

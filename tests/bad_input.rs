@@ -181,8 +181,8 @@ fn a_model_that_is_not_there_and_nothing_left() {
         &place.refused(&["inspect", "receptor.pdb", "--model", "2"]),
         "none is one here",
     );
-    // What the run recorded does not go with --from.
-    place.refused(&["dock", "--from", "run.json", "--waters", "keep"]);
+    // What the run recorded does not go with --rerun.
+    place.refused(&["dock", "--rerun", "run.json", "--waters", "keep"]);
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn options_out_of_range() {
         ["--memory", "lots"],
         ["--threads", "0"],
         ["--native-receptor", "receptor.pdb"],
-        ["--from", "run.json"],
+        ["--rerun", "run.json"],
         ["--no-such-option", "1"],
     ] {
         place.refused(&["dock", "receptor.pdb", "ligand.pdb", option[0], option[1]]);
@@ -229,7 +229,7 @@ fn options_out_of_range() {
     place.refused(&["dock", "receptor.pdb"]);
     place.refused(&["dock"]);
     place.refused(&["fold", "receptor.pdb"]);
-    place.refused(&["complex", "run", "--rank", "0"]);
+    place.refused(&["export", "run", "--rank", "0"]);
 }
 
 /// A table that breaks off is told by its last line.
@@ -257,12 +257,12 @@ fn a_table_of_kinds_that_is_not_whole() {
 fn a_run_that_is_not_one() {
     let place = Place::new();
     place.write("run.json", "{\n \"schema\": 1,\n");
-    let error = place.refused(&["dock", "--from", "run.json"]);
+    let error = place.refused(&["dock", "--rerun", "run.json"]);
     says(&error, "run.json");
     assert_eq!(error["line"], 3);
     place.write("run.json", "{\"schema\":1}");
-    place.refused(&["dock", "--from", "run.json"]);
-    place.refused(&["complex", "nowhere", "--rank", "1"]);
+    place.refused(&["dock", "--rerun", "run.json"]);
+    place.refused(&["export", "nowhere", "--rank", "1"]);
     place.refused(&["evaluate", "nowhere", "--native", "receptor.pdb"]);
 }
 

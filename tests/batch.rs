@@ -371,7 +371,7 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
         ("--lambda -1", "invalid value '-1' for '--lambda"),
         ("extra.pdb", "no file can come after --"),
         ("--budget 5s --rotations 5", "cannot be used with"),
-        ("--from run.json", "--from cannot come after --"),
+        ("--rerun run.json", "--rerun cannot come after --"),
         ("-o elsewhere", "--output cannot come after --"),
     ] {
         let output = batch(

@@ -104,7 +104,7 @@ fn meshes() {
     );
 }
 
-/// Threads, another run and `--from` change no byte.
+/// Threads, another run and `--rerun` change no byte.
 #[test]
 fn the_same_bytes_each_time() {
     if adapter().is_none() {
@@ -114,7 +114,7 @@ fn the_same_bytes_each_time() {
     let words = "dock receptor.pdb ligand.pdb --rotations 150 --engine gpu --quiet";
     run(folder.path(), &format!("{words} --threads 1 -o one"));
     run(folder.path(), &format!("{words} --threads 2 -o two"));
-    run(folder.path(), "dock --from one/run.json -o again --quiet");
+    run(folder.path(), "dock --rerun one/run.json -o again --quiet");
     let one = comparable(&folder.path().join("one"));
     for other in ["two", "again"] {
         assert_eq!(one, comparable(&folder.path().join(other)), "{other}");

@@ -63,7 +63,7 @@ fn residues_left_out_are_recorded_and_followed() {
 
     succeed(
         folder,
-        "dock --from run/run.json -o again --quiet".split_whitespace(),
+        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
@@ -141,7 +141,7 @@ fn an_assembly_is_recorded_and_followed() {
     assert_eq!(first["chains"].as_array().unwrap().len(), 4);
     succeed(
         folder,
-        "dock --from run/run.json -o again --quiet".split_whitespace(),
+        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
     );
     succeed(
         folder,
@@ -257,7 +257,7 @@ fn all_models_are_recorded_and_followed() {
     );
     succeed(
         folder,
-        "dock --from run/run.json -o again --quiet".split_whitespace(),
+        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
     );
     succeed(
         folder,
@@ -358,7 +358,7 @@ fn picked_residues_are_recorded_and_followed() {
     assert_eq!(first["options"]["active_ligand"], "A:2,3,4-6");
     succeed(
         folder,
-        "dock --from run/run.json -o again --quiet".split_whitespace(),
+        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
     );
     succeed(
         folder,

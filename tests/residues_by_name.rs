@@ -106,7 +106,7 @@ fn a_dropped_residue_is_recorded_and_followed() {
         text.lines().map(cut).collect()
     };
     assert_eq!(rows(&poses("run")), rows(&poses("plain")));
-    run("dock --from run/run.json -o again --quiet");
+    run("dock --rerun run/run.json -o again --quiet");
     assert_eq!(poses("run"), poses("again"));
     run("complex run --rank 1 -o out --quiet");
     let complex = |name: &str| fs::read_to_string(folder.join(name)).unwrap();

@@ -11,7 +11,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use knotdock::search::{self, DockOptions, Effect, Progress, Scene};
+use knotdock::dock::scene::Scene;
+use knotdock::options::DockOptions;
+use knotdock::progress::Progress;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::rescoring::Rescored;
@@ -306,9 +309,9 @@ fn first_poses_of_small_searches() {
             threads: 1,
             ..options(case)
         };
-        let plan = search::plan(&receptor, &ligand, &options).unwrap();
-        let points = search::molecule_points(&ligand);
-        let outcome = search::dock(&plan, &points, &Silent).unwrap();
+        let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
+        let points = knotdock::dock::run::molecule_points(&ligand);
+        let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),

@@ -291,7 +291,7 @@ fn dock(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--from` repeats it without a cost model.
+/// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--rerun` repeats it without a cost model.
 #[test]
 fn a_docking_within_an_accuracy_and_a_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -336,7 +336,7 @@ fn a_docking_within_an_accuracy_and_a_time() {
     );
 
     fs::write(&model, "no model").unwrap();
-    let again = dock(folder.path(), &["--from", "one/run.json", "-o", "two"]);
+    let again = dock(folder.path(), &["--rerun", "one/run.json", "-o", "two"]);
     assert!(again.status.success());
     let table = |run: &str| fs::read(folder.path().join(run).join("poses.csv")).unwrap();
     assert_eq!(table("one"), table("two"));
@@ -394,7 +394,6 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let searched = run["results"]["rotations"].as_u64().unwrap();
     assert!((1..planned).contains(&searched), "{searched} of {planned}");
     assert_eq!(run["options"]["stopped"]["rotations"], searched);
-    assert!(run["results"]["chance_acceptable_in_10"].is_null());
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
         said.contains(&format!("searched {searched} of {planned} rotations")),
@@ -406,7 +405,7 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
         "{said}"
     );
 
-    let again = ["--from", "one/run.json", "--threads", "1", "-o", "two"];
+    let again = ["--rerun", "one/run.json", "--threads", "1", "-o", "two"];
     assert!(dock(folder.path(), &again).status.success());
     let file = |run: &str, name: &str| fs::read(folder.path().join(run).join(name)).unwrap();
     assert_eq!(file("one", "poses.csv"), file("two", "poses.csv"));

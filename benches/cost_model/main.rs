@@ -15,7 +15,10 @@ mod pace;
 use std::error::Error;
 use std::path::Path;
 
-use knotdock::search::{DockOptions, DockPlan, Progress, dock, molecule_points, plan};
+use knotdock::dock::plan::{DockPlan, plan};
+use knotdock::dock::run::{dock, molecule_points};
+use knotdock::options::DockOptions;
+use knotdock::progress::Progress;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::{CostModel, LADDER, Workload};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};

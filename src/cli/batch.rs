@@ -12,10 +12,10 @@ use knotdock::output::report::counted;
 use knotdock::output::whole_file::FileError;
 use serde_json::{Value, json};
 
-use super::batch_pairs::{Pair, pairs};
-use super::console::Console;
-use super::dock::Dock;
-use super::failure::Failure;
+use crate::cli::dock::Dock;
+use crate::cli::inputs::batch_pairs::{Pair, pairs};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///

@@ -9,9 +9,9 @@ use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;
 
-use super::console::Console;
-use super::failure::Failure;
-use super::machine_arguments::ThreadArguments;
+use crate::cli::arguments::machine::ThreadArguments;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Measure how fast this machine docks, in some seconds, for `knotdock dock --budget`: run it while nothing else does.
 ///

@@ -3,21 +3,21 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::options::EngineChoice;
 use knotdock::output::run_options::RunOptions;
-use knotdock::search::options::EngineChoice;
 use knotdock::tradeoff::choice::Wanted;
 use knotdock_scoring::symmetry::Symmetry;
 
-use super::arguments::{above_zero, duration};
-use super::bodies::Bodies;
-use super::console::Console;
-use super::docking::{Clock, Docking};
-use super::failure::Failure;
-use super::machine_arguments::MachineArguments;
-use super::native::NativeArguments;
-use super::reading_arguments::ReadingArguments;
-use super::request::Request;
-use super::search_arguments::{RANKING, SearchArguments, TRADE_OFFS};
+use crate::cli::arguments::machine::MachineArguments;
+use crate::cli::arguments::native::NativeArguments;
+use crate::cli::arguments::reading::ReadingArguments;
+use crate::cli::arguments::search::{RANKING, SearchArguments, TRADE_OFFS};
+use crate::cli::arguments::values::{above_zero, duration};
+use crate::cli::docking::{Clock, Docking};
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
@@ -27,10 +27,10 @@ use super::search_arguments::{RANKING, SearchArguments, TRADE_OFFS};
 pub struct Dock {
     /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
     /// residues too) or a mesh (.stl, .obj, .ply or .off).
-    #[arg(required_unless_present = "from", value_name = "RECEPTOR")]
+    #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// What moves, likewise and of the same kind.
-    #[arg(required_unless_present_any = ["from", "symmetry"], value_name = "LIGAND")]
+    #[arg(required_unless_present_any = ["rerun", "symmetry"], value_name = "LIGAND")]
     ligand: Option<String>,
     /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is itself a ring of 2, 3 ...
     /// copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where the second copy or ring goes. Residues that
@@ -45,7 +45,7 @@ pub struct Dock {
     force: bool,
     /// Repeat the run that wrote this run.json: its inputs, checked by SHA-256, and its options.
     #[arg(long, value_name = "RUN.JSON", conflicts_with_all = RECORDED)]
-    from: Option<PathBuf>,
+    rerun: Option<PathBuf>,
     #[command(flatten)]
     reading: ReadingArguments,
     #[command(flatten)]
@@ -78,7 +78,7 @@ const NO_RING: [&str; 6] = [
     "active_ligand",
 ];
 
-/// What run.json records, so that none of it goes with --from.
+/// What run.json records, so that none of it goes with --rerun.
 const RECORDED: [&str; 59] = [
     "receptor",
     "ligand",
@@ -177,7 +177,7 @@ impl Dock {
     /// Reads and plans.
     pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
         let clock = Clock::start();
-        let mut request = match &self.from {
+        let mut request = match &self.rerun {
             Some(path) => Request::recorded(path, console)?,
             None => self.request()?,
         };

@@ -3,30 +3,30 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::pair::{PreparedPair, Preparer};
+use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
+use knotdock::options::Precision;
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
-use knotdock::search::options::Precision;
-use knotdock::search::{self, Deadline, DockOutcome};
+use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
-use knotdock::tradeoff::pair::{PreparedPair, Preparer};
 use serde_json::{Value, json};
 
-use super::calibrate::cost_model;
-use super::console::Console;
-use super::dock_report::{
-    assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
-};
-use super::failure::Failure;
-use super::machine_arguments::machine;
-use super::memory;
-use super::native::{NativeFiles, announce, measure};
-use super::request::Request;
+use super::arguments::memory;
+use crate::cli::arguments::machine::machine;
+use crate::cli::arguments::native::{NativeFiles, announce, measure};
+use crate::cli::calibrate::cost_model;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::{assumed, error_warning, few_rotations_warning, loose_told, told};
+use crate::cli::messages::failure::Failure;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -51,11 +51,11 @@ impl Docking {
         clock: Clock,
         console: Console,
     ) -> Result<Self, Failure> {
-        let symmetry = request.options.dock.symmetry;
-        if symmetry.is_none() {
+        let arrangement = request.arrangement();
+        if !arrangement.is_ring() {
             request.bodies.note_shared_chains();
         }
-        request.bodies.describe(symmetry, console);
+        request.bodies.describe(arrangement, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);
@@ -74,10 +74,7 @@ impl Docking {
         };
         let plan = &prepared.plan;
         console.say(format!("\n{plan}"));
-        let sides: &[&str] = match symmetry {
-            Some(_) => &["molecule"],
-            None => &["receptor", "ligand"],
-        };
+        let sides = arrangement.sides();
         for (side, count) in sides.iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
@@ -149,7 +146,7 @@ impl Docking {
         } = prepared;
         let staging = Staging::open(&directory, force)?;
         let progress = console.progress();
-        let outcome = search::dock_until(&plan, &points, deadline.as_ref(), &progress)
+        let outcome = dock_until(&plan, &points, deadline.as_ref(), &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.
@@ -168,9 +165,10 @@ impl Docking {
             .rows()
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
-        let symmetry = request.options.dock.symmetry;
         let top_folder = staging.folder().join("top");
-        let written = request.bodies.write(top, symmetry, &top_folder)?;
+        let written = request
+            .bodies
+            .write(top, request.arrangement(), &top_folder)?;
         let inputs = request.inputs(sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
@@ -182,7 +180,6 @@ impl Docking {
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
-                chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
@@ -219,9 +216,6 @@ impl Docking {
             }
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
-        if let Some(chance) = outcome.chance {
-            console.say(format!("\n{}", chance_told(chance)));
-        }
         console.say(format!(
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),

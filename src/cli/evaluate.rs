@@ -10,12 +10,12 @@ use knotdock::output::{quality, report};
 use knotdock_structures::molecule::ReadOptions;
 use serde_json::json;
 
-use super::console::Console;
-use super::failure::Failure;
-use super::input::Input;
-use super::native::{NativeArguments, NativeFiles, announce, measure};
-use super::output_file::check_output;
-use super::reading_arguments::{READING_OPTIONS, ReadingArguments};
+use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};
+use crate::cli::arguments::output_file::check_output;
+use crate::cli::arguments::reading::{READING_OPTIONS, ReadingArguments};
+use crate::cli::inputs::molecules::Input;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 
 /// Measure the poses of a run against a known complex.
 ///

@@ -3,24 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
+use knotdock::options::DockOptions;
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
-use knotdock::search::DockOptions;
-use knotdock::search::active_residues::sites_told;
-use knotdock::search::restraints::domains_told;
+use knotdock::priors::active_residues::sites_told;
+use knotdock::priors::restraints::domains_told;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
     ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
 };
 use serde_json::json;
 
-use super::arguments::not_negative;
-use super::console::Console;
-use super::dock_report::metal_bound;
-use super::failure::Failure;
-use super::input::Input;
-use super::output_file::{check_output, is_same};
-use super::reading_arguments::ReadingArguments;
+use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::arguments::reading::ReadingArguments;
+use crate::cli::arguments::values::not_negative;
+use crate::cli::inputs::molecules::Input;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::metal_bound;
+use crate::cli::messages::failure::Failure;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
 #[derive(Args, Debug)]

@@ -1,35 +1,18 @@
 //! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
-//! [`knotdock::output`] and the [`console`].
+//! [`knotdock::output`] and the [`messages::console`].
 
 mod arguments;
 mod batch;
-mod batch_pairs;
-mod bodies;
 mod calibrate;
-mod complex;
-mod console;
 mod dock;
-mod dock_report;
 mod docking;
 mod evaluate;
-mod failure;
-mod idle_options;
-mod input;
+mod export;
+mod inputs;
 mod inspect;
-mod library_errors;
-mod machine_arguments;
-mod memory;
-mod mesh_input;
-mod native;
-mod output_file;
-mod ranks;
-mod reading_arguments;
-mod request;
+mod messages;
 mod sample;
 mod score;
-mod search_arguments;
-mod shared_chains;
-mod suggestions;
 mod tradeoff;
 
 use std::ffi::OsString;
@@ -37,8 +20,10 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use console::Console;
-use failure::Failure;
+use messages::console::Console;
+use messages::failure::Failure;
+use messages::suggestions;
+use messages::usage::{message, with_negative_numbers};
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
@@ -61,7 +46,7 @@ struct Cli {
 enum Command {
     Dock(Box<dock::Dock>),
     Batch(batch::Batch),
-    Complex(complex::Complex),
+    Export(export::Export),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
@@ -79,7 +64,7 @@ fn version() -> &'static str {
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
     let parsed = Cli::command()
-        .mut_subcommands(judging_numbers)
+        .mut_subcommands(with_negative_numbers)
         .try_get_matches_from(&arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
         .map_err(suggestions::explained);
@@ -98,7 +83,7 @@ pub fn main() -> ExitCode {
             Ok(code) => return ExitCode::from(code),
             Err(failure) => Err(failure),
         },
-        Command::Complex(command) => command.run(console),
+        Command::Export(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
@@ -113,14 +98,6 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
-}
-
-/// A command in which a negative number is the value of the option before it, so that what is wrong with it can be said.
-fn judging_numbers(command: clap::Command) -> clap::Command {
-    command.mut_args(|argument| {
-        let takes_value = argument.get_action().takes_values();
-        argument.allow_negative_numbers(takes_value)
-    })
 }
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
@@ -148,12 +125,4 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     } else {
         ExitCode::from(2)
     }
-}
-
-/// What is wrong with a command line, without the lines on usage.
-fn message(error: &clap::Error) -> String {
-    // clap's text is the message with usage lines; its first paragraph is the message.
-    let text = error.render().to_string();
-    let message = text.split("\n\n").next().unwrap_or(&text);
-    message.trim_start_matches("error: ").trim().to_owned()
 }

@@ -1,22 +1,23 @@
 //! `knotdock score`: one pose, exactly and from ever more modes.
 
 use clap::{Args, ValueEnum};
+use knotdock::dock::scene::Scene;
+use knotdock::error::SearchError;
 use knotdock::output::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
-use knotdock::search::{Scene, SearchError};
 use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::ModeOrder;
 
-use super::arguments::at_least_one;
-use super::console::Console;
-use super::dock_report::{loose_told, site_told};
-use super::failure::Failure;
-use super::input::Input;
-use super::memory;
-use super::reading_arguments::ReadingArguments;
-use super::search_arguments::KernelArguments;
+use super::arguments::memory;
+use crate::cli::arguments::reading::ReadingArguments;
+use crate::cli::arguments::search::KernelArguments;
+use crate::cli::arguments::values::at_least_one;
+use crate::cli::inputs::molecules::Input;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::{loose_told, site_told};
+use crate::cli::messages::failure::Failure;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
 ///

@@ -3,28 +3,27 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::dock::pair::PairError;
+use knotdock::options::EngineChoice;
 use knotdock::output::report::align;
 use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::{Staging, TRADEOFF};
 use knotdock::output::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::whole_file::write_whole;
-use knotdock::search::Progress;
-use knotdock::search::options::EngineChoice;
+use knotdock::progress::Progress;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
-use knotdock::tradeoff::{
-    Knob, Measured, PairError, Refused, Setting, SweepProgress, Tradeoff, sweep,
-};
+use knotdock::tradeoff::{Knob, Measured, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
-use super::bodies::Bodies;
-use super::console::{Console, ProgressLine};
-use super::failure::Failure;
-use super::machine_arguments::{MachineArguments, machine};
-use super::native::{NativeArguments, announce};
-use super::reading_arguments::ReadingArguments;
-use super::request::Request;
-use super::search_arguments::SearchArguments;
+use crate::cli::arguments::machine::{MachineArguments, machine};
+use crate::cli::arguments::native::{NativeArguments, announce};
+use crate::cli::arguments::reading::ReadingArguments;
+use crate::cli::arguments::search::SearchArguments;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::request::Request;
+use crate::cli::messages::console::{Console, ProgressLine};
+use crate::cli::messages::failure::Failure;
 
 /// Measure what accuracy costs in time: docks a pair with each knob moved by itself around the options given, and with combinations.
 ///
@@ -87,7 +86,7 @@ impl TradeoffCommand {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
         });
-        request.bodies.describe(None, console);
+        request.bodies.describe(request.arrangement(), console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);
@@ -155,7 +154,7 @@ impl TradeoffCommand {
 
 /// A failure of the default or the reference: of the request where it could not be planned.
 fn failure(error: &PairError) -> Failure {
-    use knotdock::search::SearchError;
+    use knotdock::error::SearchError;
     let failure = match error {
         PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
         _ => Failure::input(error),

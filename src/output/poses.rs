@@ -13,7 +13,7 @@ use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
 use super::whole_file::{FileError, write_whole};
-use crate::search::outcome::RankedPose;
+use crate::dock::outcome::RankedPose;
 
 /// The columns that every run writes, in order.
 pub const COLUMNS: [&str; 32] = [

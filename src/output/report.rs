@@ -1,6 +1,6 @@
 //! The tables of the terminal.
 
-use crate::search::outcome::RankedPose;
+use crate::dock::outcome::RankedPose;
 
 use super::poses::Column;
 

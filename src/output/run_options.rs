@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::search::DockOptions;
+use crate::options::DockOptions;
 use knotdock_structures::molecule::ReadOptions;
 
 /// Options that change how a run is carried out and never what comes of it; they are recorded under `machine`.
@@ -90,7 +90,7 @@ fn object(value: Value) -> Map<String, Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::AntibodySurface;
+    use crate::priors::restraints::AntibodySurface;
     use knotdock_structures::molecule::{AlternateLocation, Hetatm, ModelChoice};
 
     #[test]

@@ -1,40 +1,8 @@
-//! Search: rotations, peaks, refinement, clusters and ranks.
+//! The search: a scan of all rotations, then of finer ones about the best, by the engine in use.
 
-pub mod active_residues;
-pub mod axes;
-mod candidates;
-pub mod chance;
-pub mod cluster;
 pub mod coarse_to_fine;
-pub mod effect_choice;
-mod effect_timings;
-pub mod effects;
-pub mod error;
-pub mod loose;
-pub mod meshes;
-pub mod options;
-pub mod outcome;
+pub mod deadline;
 pub mod plan;
-mod ranking;
-pub mod refine;
-mod rescoring;
-pub mod restraints;
-mod ring;
-pub mod run;
-mod scan;
-mod scan_engine;
-mod schedule;
-mod time_left;
-
-pub use active_residues::AssumedSite;
-pub use effect_choice::EffectChoice;
-pub use effects::{Decision, LengthUnit, Scene};
-pub use error::SearchError;
-pub use knotdock_scoring::effect::Effect;
-pub use loose::Loose;
-pub use options::DockOptions;
-pub use outcome::{Adapter, DockOutcome, EffectCost, MeasuredError, RankedPose, StageTime};
-pub use plan::{DockPlan, plan, plan_scene};
-pub use restraints::AntibodySurface;
-pub use run::{Progress, dock, dock_until, molecule_points};
-pub use schedule::Deadline;
+pub(crate) mod scan;
+pub mod scan_engine;
+pub(crate) mod schedule;

@@ -1,14 +1,14 @@
 //! The scan of all rotations: the best grid poses that it finds.
 
-use super::axes::RingVoxels;
-use super::error::SearchError;
-use super::plan::DockPlan;
-use super::run::Progress;
-use super::scan_engine::ScanEngine;
-use super::schedule::Deadline;
+use crate::error::SearchError;
+use crate::pose_space::rotations::RotationGroup;
+use crate::progress::Progress;
+use crate::search::deadline::Deadline;
+use crate::search::plan::SearchPlan;
+use crate::search::scan_engine::ScanEngine;
+use knotdock_scoring::engine::CpuEngine;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
-use knotdock_scoring::engine::{self, ChosenRank, CpuEngine, ReceptorSpectra};
 use knotdock_scoring::peaks::{Peak, find_peaks};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
@@ -16,70 +16,35 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The engine of the lowest rank that the plan's tolerance allows.
-pub(super) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>) -> ChosenRank<T> {
-    engine::choose_rank(&plan.engine, folded, &plan.ligand, &plan.set)
-}
-
-/// Four rotations of a set that differ by half-turns and so share the ligand's transform.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quartet {
-    /// Index of the first ([`DockPlan::rotation`]).
-    pub first: usize,
-    /// Which of the four are searched.
-    pub wanted: [bool; 4],
-}
-
-impl Quartet {
-    /// How many of the four are searched.
-    pub fn count(&self) -> usize {
-        self.wanted.iter().filter(|wanted| **wanted).count()
-    }
-}
-
 /// What a scan found.
-pub(super) struct Scanned {
+pub(crate) struct Scanned {
     /// The best peaks, best first.
     pub peaks: Vec<Peak>,
     /// Rotations that were searched.
     pub rotations: usize,
 }
 
-/// The coarse set, in fours; axes of rings one by one, for half-turns make no rings of rings.
-pub(super) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
-    let count = plan.set.len();
-    if plan.options.symmetry.is_some() {
-        let wanted = [true, false, false, false];
-        return (0..count).map(|first| Quartet { first, wanted }).collect();
-    }
-    let quartet = |first| Quartet {
-        first,
-        wanted: std::array::from_fn(|image| first + image < count),
-    };
-    (0..count).step_by(4).map(quartet).collect()
-}
-
 /// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
 ///
 /// # Errors
 /// [`SearchError::Graphics`] where the graphics processor fails.
-pub(super) fn scan<T: Real>(
-    plan: &DockPlan,
+pub(crate) fn scan<T: Real>(
+    plan: &SearchPlan,
     engine: &ScanEngine<T>,
-    quartets: &[Quartet],
+    groups: &[RotationGroup],
     most: usize,
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<Scanned, SearchError> {
     // No list grows beyond all peaks that there are.
-    let most = most.min(4 * quartets.len() * plan.options.per_rotation);
+    let most = most.min(4 * groups.len() * plan.per_rotation);
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
-        Some(gpu) => scan_on_card(plan, gpu, quartets, most, progress)?,
-        None => scan_on_cores(plan, &engine.cpu, quartets, most, deadline, progress),
+        Some(gpu) => scan_on_card(plan, gpu, groups, most, progress)?,
+        None => scan_on_cores(plan, &engine.cpu, groups, most, deadline, progress),
     };
     #[cfg(not(feature = "gpu"))]
-    let mut scanned = scan_on_cores(plan, &engine.cpu, quartets, most, deadline, progress);
+    let mut scanned = scan_on_cores(plan, &engine.cpu, groups, most, deadline, progress);
     let peaks = &mut scanned.peaks;
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
@@ -90,26 +55,26 @@ pub(super) fn scan<T: Real>(
 /// Peaks of the graphics processor, the best `most` among them.
 #[cfg(feature = "gpu")]
 fn scan_on_card(
-    plan: &DockPlan,
+    plan: &SearchPlan,
     gpu: &GpuEngine,
-    quartets: &[Quartet],
+    groups: &[RotationGroup],
     most: usize,
     progress: &dyn Progress,
 ) -> Result<Scanned, SearchError> {
     // Peaks that come back together.
     const TOGETHER: usize = 1 << 20;
-    let part = (TOGETHER / (4 * plan.options.per_rotation)).max(1);
+    let part = (TOGETHER / (4 * plan.per_rotation)).max(1);
     let mut peaks: Vec<Peak> = Vec::new();
-    for quartets in quartets.chunks(part) {
-        let turn = |quartet: &Quartet| Turn {
-            rotation: plan.rotation(quartet.first).0,
-            wanted: quartet.wanted,
+    for groups in groups.chunks(part) {
+        let turn = |group: &RotationGroup| Turn {
+            rotation: plan.rotations.rotation(group.first).0,
+            wanted: group.wanted,
         };
-        let turns: Vec<Turn> = quartets.iter().map(turn).collect();
+        let turns: Vec<Turn> = groups.iter().map(turn).collect();
         let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
         peaks.extend(found.into_iter().map(|peak| Peak {
             score: f64::from(peak.score),
-            rotation: (quartets[peak.turn].first + peak.half_turn) as u32,
+            rotation: (groups[peak.turn].first + peak.half_turn) as u32,
             voxel: peak.voxel,
         }));
         peaks.sort_unstable_by(Peak::order);
@@ -117,22 +82,21 @@ fn scan_on_card(
     }
     Ok(Scanned {
         peaks,
-        rotations: quartets.iter().map(Quartet::count).sum(),
+        rotations: groups.iter().map(RotationGroup::count).sum(),
     })
 }
 
-/// Peaks of the CPU's cores, the best `most` of each thread among them. The quartets that are searched are the first ones, at
+/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first ones, at
 /// least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
-    plan: &DockPlan,
+    plan: &SearchPlan,
     engine: &CpuEngine<T>,
-    quartets: &[Quartet],
+    groups: &[RotationGroup],
     most: usize,
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Scanned {
-    let options = &plan.options;
-    let rings = plan.rings.map(|rings| RingVoxels::new(engine, rings.axis));
+    let filter = plan.space.voxel_filter(engine);
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let begun = Instant::now();
     let take = || {
@@ -141,31 +105,31 @@ fn scan_on_cores<T: Real>(
         if next.load(Ordering::Relaxed) > 0 && deadline.is_some_and(is_late) {
             return None;
         }
-        quartets.get(next.fetch_add(1, Ordering::Relaxed))
+        groups.get(next.fetch_add(1, Ordering::Relaxed))
     };
     let peaks = (0..plan.in_flight)
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace();
-            let mut found = Vec::with_capacity(2 * most + options.per_rotation);
-            while let Some(quartet) = take() {
-                let (rotation, _) = plan.rotation(quartet.first);
+            let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
+            while let Some(group) = take() {
+                let (rotation, _) = plan.rotations.rotation(group.first);
                 engine.turn(&rotation, &mut work);
                 for (image, half_turn) in HalfTurn::ALL.into_iter().enumerate() {
-                    if !quartet.wanted[image] {
+                    if !group.wanted[image] {
                         continue;
                     }
                     engine.correlate_turned(half_turn, &mut work);
-                    if let Some(rings) = &rings {
-                        rings.keep(&rotation, &mut work.grid, &mut work.row_best);
+                    if let Some(filter) = &filter {
+                        filter.keep(&rotation, &mut work.grid, &mut work.row_best);
                     }
                     find_peaks(
-                        plan.grid,
+                        plan.engine.size(),
                         &mut work.grid,
                         &mut work.row_best,
-                        (quartet.first + image) as u32,
-                        options.per_rotation,
+                        (group.first + image) as u32,
+                        plan.per_rotation,
                         &mut found,
                     );
                     if found.len() >= 2 * most {
@@ -174,7 +138,7 @@ fn scan_on_cores<T: Real>(
                     }
                     progress.advance(1);
                 }
-                searched.fetch_add(quartet.count(), Ordering::Relaxed);
+                searched.fetch_add(group.count(), Ordering::Relaxed);
             }
             found
         })

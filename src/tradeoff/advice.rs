@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::measured::{FIRST, Measured, Tradeoff};
-use super::settings::Knob;
+use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
+use crate::tradeoff::settings::Knob;
 
 /// Share of the reference's rows that a doubling of the time must find for it to be worth its price.
 const DOUBLING: f64 = 0.1;
@@ -157,10 +157,11 @@ fn seconds(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::settings::Setting;
     use super::*;
-    use crate::search::outcome::MeasuredError;
-    use crate::search::{DockOptions, StageTime};
+    use crate::dock::outcome::MeasuredError;
+    use crate::dock::outcome::StageTime;
+    use crate::options::DockOptions;
+    use crate::tradeoff::settings::Setting;
 
     fn measured(knob: Knob, rotations: usize, cost: f64, rms: f64, agreement: f64) -> Measured {
         let options = DockOptions {

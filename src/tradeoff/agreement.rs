@@ -2,7 +2,7 @@
 
 use knotdock_scoring::se3::Pose;
 
-use crate::search::cluster::RigidBody;
+use crate::rank::cluster::RigidBody;
 
 /// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit. 1 where there is nothing
 /// to find.

@@ -5,11 +5,14 @@ use knotdock_scoring::rescoring;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 
-use super::cost_model::{CostModel, Workload};
-use crate::search::{
-    Decision, DockOptions, DockPlan, LengthUnit, Progress, Scene, SearchError, StageTime, dock,
-    plan_scene,
-};
+use crate::dock::outcome::StageTime;
+use crate::dock::plan::{DockPlan, plan_scene};
+use crate::dock::run::dock;
+use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::error::SearchError;
+use crate::options::DockOptions;
+use crate::progress::Progress;
+use crate::tradeoff::cost_model::{CostModel, Workload};
 use knotdock_structures::molecule::LabelReport;
 
 /// Spacing in Å of the lattice that the bodies' knots lie on: the density of atoms in proteins.
@@ -123,7 +126,7 @@ fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchEr
             ..Workload::of(&plan)
         },
         rotations: plan.rotations as f64,
-        in_flight: plan.in_flight as f64,
+        in_flight: plan.in_flight() as f64,
         rotation_set_seconds,
         checked: outcome.error.poses as f64,
         stages: outcome.timing,
@@ -268,8 +271,8 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cost_model::LADDER;
     use super::*;
+    use crate::tradeoff::cost_model::LADDER;
 
     #[test]
     fn the_line_is_that_of_the_points() {

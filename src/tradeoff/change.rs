@@ -1,7 +1,7 @@
 //! Changes of single options: what settings of a sweep are made of.
 
-use crate::search::DockOptions;
-use crate::search::options::Precision;
+use crate::options::DockOptions;
+use crate::options::Precision;
 
 /// A change of one option.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! Curves on logarithmic axes, several panels to a picture, under one legend.
 
-use super::axis::{Scale, tick_text};
-use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
-use super::frame::{BLACK, Frame, MARGIN, Side, text};
+use crate::tradeoff::axis::{Scale, tick_text};
+use crate::tradeoff::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use crate::tradeoff::frame::{BLACK, Frame, MARGIN, Side, text};
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 340.0];

@@ -21,8 +21,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::search::options::Precision;
-use crate::search::{DockOptions, DockPlan, Effect};
+use crate::dock::plan::DockPlan;
+use crate::options::DockOptions;
+use crate::options::Precision;
+use knotdock_scoring::effect::Effect;
 
 /// Coefficients of the time, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -173,7 +175,7 @@ pub struct Workload {
     pub poses: f64,
     /// Peaks kept of each rotation.
     pub per_rotation: f64,
-    /// Share of them that the fast path's error could put before the founder of their cluster; all where every pose is listed.
+    /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is listed.
     pub doubtful: f64,
     /// Poses rescored, one that is not relaxed counted in part.
     pub rescored: f64,
@@ -238,11 +240,11 @@ impl Workload {
 }
 
 impl Workload {
-    /// Poses that are exactly scored for the table: of each cluster the founder, and whatever might come before it.
+    /// Poses that are exactly scored for the table: of each cluster the centre, and whatever might come before it.
     fn reported(&self, rotations: f64) -> f64 {
         let joining = JOINING / self.ligand * (rotations / 3600.0).powf(CROWDING);
-        let founders = 1.0 / (1.0 + joining);
-        self.poses * (founders + self.doubtful).min(1.0)
+        let centres = 1.0 / (1.0 + joining);
+        self.poses * (centres + self.doubtful).min(1.0)
     }
 }
 

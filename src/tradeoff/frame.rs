@@ -1,7 +1,7 @@
 //! The frame of a panel: border, lines and numbers along two logarithmic axes, title and labels. Charts and the picture of a sweep share it.
 
-use super::axis::Scale;
-use super::drawing::{Anchor, Colour, Mark};
+use crate::tradeoff::axis::Scale;
+use crate::tradeoff::drawing::{Anchor, Colour, Mark};
 
 pub(super) const BLACK: Colour = [0x22, 0x22, 0x22];
 const GREY: Colour = [0xdd, 0xdd, 0xdd];

@@ -10,9 +10,10 @@
 
 use serde::Serialize;
 
-use super::settings::Setting;
-use crate::search::outcome::MeasuredError;
-use crate::search::{DockOptions, StageTime};
+use crate::dock::outcome::MeasuredError;
+use crate::dock::outcome::StageTime;
+use crate::options::DockOptions;
+use crate::tradeoff::settings::Setting;
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;

@@ -17,13 +17,11 @@ pub mod drawing;
 mod frame;
 mod front;
 pub mod measured;
-pub mod pair;
 pub mod plot;
 mod raster;
 pub mod settings;
 pub mod sweep;
 
 pub use measured::{Measured, Refused, Tradeoff};
-pub use pair::{Pair, PairError};
 pub use settings::{Knob, Setting};
 pub use sweep::{SweepProgress, sweep};

@@ -1,10 +1,10 @@
 //! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
 
-use super::axis::{Scale, tick_text};
-use super::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
-use super::frame::{BLACK, Frame, MARGIN, Side, text};
-use super::measured::{FIRST, Measured, Tradeoff};
-use super::settings::Knob;
+use crate::tradeoff::axis::{Scale, tick_text};
+use crate::tradeoff::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
+use crate::tradeoff::frame::{BLACK, Frame, MARGIN, Side, text};
+use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
+use crate::tradeoff::settings::Knob;
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 380.0];

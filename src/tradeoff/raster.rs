@@ -6,7 +6,7 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
-use super::drawing::{Anchor, CHARACTER, Colour, Drawing, Mark};
+use crate::tradeoff::drawing::{Anchor, CHARACTER, Colour, Drawing, Mark};
 
 /// Pixels of the PNG for each pixel of the drawing.
 const SCALE: f32 = 2.0;

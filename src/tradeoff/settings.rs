@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::change::{Change, rounded_to_fours, three_digits};
-use crate::search::DockOptions;
-use crate::search::meshes::MAX_PER_AXIS;
-use crate::search::options::Precision;
+use crate::mesh::MAX_PER_AXIS;
+use crate::options::DockOptions;
+use crate::options::Precision;
+use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
 
 /// What a setting changes of the default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

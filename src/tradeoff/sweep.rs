@@ -4,15 +4,20 @@
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
-use super::agreement::{agreement, compare};
-use super::front::front;
-use super::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
-use super::pair::{Pair, PairError, PreparedPair, Preparer};
-use super::settings::{Knob, Planned, Setting, settings};
+use crate::dock::outcome::DockOutcome;
+use crate::dock::pair::{Pair, PairError, PreparedPair, Preparer};
+use crate::dock::plan::DockPlan;
+use crate::dock::run::dock;
+use crate::error::SearchError;
 use crate::evaluate::{Capri, Evaluator};
-use crate::search::cluster::RigidBody;
-use crate::search::options::Precision;
-use crate::search::{DockOptions, DockOutcome, DockPlan, Progress, SearchError, dock};
+use crate::options::DockOptions;
+use crate::options::Precision;
+use crate::progress::Progress;
+use crate::rank::cluster::RigidBody;
+use crate::tradeoff::agreement::{agreement, compare};
+use crate::tradeoff::front::front;
+use crate::tradeoff::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
+use crate::tradeoff::settings::{Knob, Planned, Setting, settings};
 
 /// Who is told how far a sweep has come.
 pub trait SweepProgress: Progress {

@@ -30,7 +30,8 @@ fn the_same_chain_on_both_sides_docks() {
 
 #[test]
 fn a_zero_radius_is_refused_by_the_search() {
-    use knotdock::search::{DockOptions, plan};
+    use knotdock::dock::plan::plan;
+    use knotdock::options::DockOptions;
     use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
     let folder = place();
     let receptor = folder.path().join("receptor.pdb");
@@ -98,7 +99,7 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
     ] {
         let failed = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
-            .arg("complex")
+            .arg("export")
             .args(arguments.split(' '))
             .assert()
             .code(2);

@@ -15,7 +15,10 @@ fn a_recorded_run_repeats_to_the_byte() {
          --cluster-radius 4.1 --no-cluster --write-top 2 --native-receptor receptor.pdb:A --native-ligand ligand.pdb \
          -o first --quiet",
     );
-    run(folder.path(), "dock --from first/run.json -o again --quiet");
+    run(
+        folder.path(),
+        "dock --rerun first/run.json -o again --quiet",
+    );
     assert_eq!(
         comparable(&folder.path().join("first")),
         comparable(&folder.path().join("again"))
@@ -29,7 +32,7 @@ fn a_recorded_run_repeats_to_the_byte() {
     ] {
         cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
-            .args(["dock", "--from", "first/run.json", "-o", "third", option])
+            .args(["dock", "--rerun", "first/run.json", "-o", "third", option])
             .assert()
             .code(2);
     }
@@ -41,7 +44,7 @@ fn a_recorded_run_repeats_to_the_byte() {
     .unwrap();
     let failed = cargo_bin_cmd!("knotdock")
         .current_dir(folder.path())
-        .args(["dock", "--from", "first/run.json", "-o", "third"])
+        .args(["dock", "--rerun", "first/run.json", "-o", "third"])
         .assert()
         .code(2);
     let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
@@ -89,7 +92,10 @@ fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
     for (name, _) in tables {
         fs::remove_file(folder.path().join(format!("{name}.csv"))).unwrap();
     }
-    run(folder.path(), "dock --from first/run.json -o again --quiet");
+    run(
+        folder.path(),
+        "dock --rerun first/run.json -o again --quiet",
+    );
     let [own, first, again] =
         ["own", "first", "again"].map(|run| comparable(&folder.path().join(run)));
     assert_eq!(first, again);
@@ -149,7 +155,7 @@ fn a_run_moved_with_its_inputs_still_finds_them() {
     assert!(moved.join("run/top/rank_0001.pdb").exists());
     // From inside the run's own folder, too.
     run(&moved.join("run"), "complex . --rank 1 --force --quiet");
-    run(&moved.join("run"), "dock --from run.json -o again --quiet");
+    run(&moved.join("run"), "dock --rerun run.json -o again --quiet");
     assert!(moved.join("run/again/poses.csv").exists());
 }
 

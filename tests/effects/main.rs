@@ -12,7 +12,9 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::cargo::cargo_bin_cmd;
-use knotdock::search::{DockOptions, Effect, Scene};
+use knotdock::dock::scene::Scene;
+use knotdock::options::DockOptions;
+use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::rescoring::Workspace;

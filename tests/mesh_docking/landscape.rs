@@ -2,15 +2,16 @@
 
 use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
-use knotdock::search::meshes::{
+use knotdock::dock::scene::Scene;
+use knotdock::mesh::{
     GivenLengths, MeshOptions, MeshPair, PER_AXIS, RADIUS, RESOLUTION, SampleWeights, sample_pair,
 };
-use knotdock::search::{DockOptions, Scene};
+use knotdock::options::DockOptions;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::RankingKernel;
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::sampler::weights::bump_volume;
+use knotdock_structures::numeric::Bump;
 use nalgebra::{UnitQuaternion, Vector3};
 
 fn sampled(pair: &Pair) -> MeshPair {
@@ -89,7 +90,7 @@ fn weights_are_volumes() {
             .radii
             .iter()
             .zip(&part.knots.weights)
-            .map(|(radius, weight)| weight * radius.powi(3) * bump_volume(2.0))
+            .map(|(radius, weight)| weight * radius.powi(3) * Bump::new(2.0).unwrap().volume())
             .sum();
         assert!(
             (integral / volume - 1.0).abs() < 0.08,
@@ -101,7 +102,7 @@ fn weights_are_volumes() {
     }
 }
 
-/// What the lengths of [`knotdock::search::meshes`] rest on: two flat faces score most a gap of one offset apart, above half of that from
+/// What the lengths of [`knotdock::mesh`] rest on: two flat faces score most a gap of one offset apart, above half of that from
 /// 0.65 to 1.55 offsets, and below zero under 0.3.
 #[test]
 fn flat_faces_are_drawn_to_a_gap_of_one_offset() {

@@ -106,7 +106,7 @@ fn threads_change_no_byte_and_a_run_repeats_itself() {
     let place = Place::of(&pair);
     let first = quick(&place, &["-o", "one", "--threads", "1", "--write-top", "2"]);
     quick(&place, &["-o", "two", "--threads", "2", "--write-top", "2"]);
-    dock(&place, &["--from", "one/run.json", "-o", "again"]);
+    dock(&place, &["--rerun", "one/run.json", "-o", "again"]);
     for name in ["poses.csv", "top/rank_0001.obj", "top/rank_0002.obj"] {
         let bytes = |run: &str| fs::read(place.path(run).join(name)).unwrap();
         assert!(!bytes("one").is_empty());
@@ -175,7 +175,7 @@ fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
     }
 }
 
-/// The assembly holds both parts as groups, the ligand where the table says; `knotdock complex` writes further ones.
+/// The assembly holds both parts as groups, the ligand where the table says; `knotdock export` writes further ones.
 #[test]
 fn assemblies_hold_both_parts() {
     let pair = broken_block(0.05);
@@ -205,7 +205,7 @@ fn assemblies_hold_both_parts() {
         assert!(near, "{image:?}");
     }
     let more = place
-        .command(&["complex", "run", "--rank", "2", "-o", "more"])
+        .command(&["export", "run", "--rank", "2", "-o", "more"])
         .output()
         .unwrap();
     assert!(

@@ -1,7 +1,7 @@
 //! The pairs of parts as solids and as files, and how far a pose is from the right one.
 
 use super::parts::{HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole};
-use knotdock::search::meshes::PER_AXIS;
+use knotdock::mesh::PER_AXIS;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::{Solid, from_triangles};
 use nalgebra::{UnitQuaternion, Vector3};

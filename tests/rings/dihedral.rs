@@ -108,7 +108,7 @@ fn rows_lay_two_rings_face_to_face() {
     with("--threads 2 -o run --force");
     assert_eq!(fs::read(at("run/poses.csv")).unwrap(), table);
     assert_eq!(fs::read(at("run/top/rank_0001.pdb")).unwrap(), complex);
-    let again = "dock --from run/run.json -o again --quiet";
+    let again = "dock --rerun run/run.json -o again --quiet";
     succeed(folder.path(), again.split(' '));
     assert_eq!(fs::read(at("again/poses.csv")).unwrap(), table);
 }

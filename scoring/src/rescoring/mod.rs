@@ -13,7 +13,6 @@
 mod atom_pairs;
 mod attraction;
 mod bodies;
-mod cells;
 mod chain_ends;
 mod contacts;
 mod energy_table;
@@ -23,6 +22,9 @@ mod potential;
 mod relaxation;
 mod rescorer;
 mod side;
+
+/// Edge in Å of the cells in which a body's atoms lie.
+const CELL_EDGE: f64 = 4.0;
 
 pub use atom_pairs::AtomPairs;
 pub use attraction::{Attraction, Residues};

@@ -2,6 +2,7 @@
 
 use super::spiral::Point;
 use crate::se3::HalfTurn;
+use knotdock_structures::neighbours::Bins;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -19,26 +20,19 @@ pub(super) fn relax(base: &mut [Point]) {
     let place =
         |p: &Point| ((cell(p[0]) * cells + cell(p[1])) * cells + cell(p[2])) * cells + cell(p[3]);
     for step in 0..STEPS {
-        let mut all: Vec<(usize, Point)> = base
+        let all: Vec<(usize, Point)> = base
             .iter()
             .flat_map(|&point| HalfTurn::ALL.map(|turn| turn.after_parts(point)))
             .flat_map(|point| [point, point.map(|part| -part)])
             .map(|point| (place(&point), point))
             .collect();
-        // Ties keep the order of the points: the sums below must not depend on threads.
-        all.sort_by_key(|&(place, _)| place);
-        let mut starts = vec![0u32; cells.pow(4) + 1];
-        for &(place, _) in &all {
-            starts[place + 1] += 1;
-        }
-        for index in 1..starts.len() {
-            starts[index] += starts[index - 1];
-        }
+        // Points of a cell keep their order: the sums below must not depend on threads.
+        let all = Bins::new(cells.pow(4), all, |&(place, _)| place);
         let length = 0.1 * spacing * (1.0 - step as f64 / STEPS as f64);
         let moved: Vec<Point> = base
             .par_iter()
             .map(|point| {
-                let force = push(point, &all, &starts, cells, cell, spacing, cutoff);
+                let force = push(point, &all, cells, cell, spacing, cutoff);
                 let along: f64 = (0..4).map(|i| force[i] * point[i]).sum();
                 let force: Point = std::array::from_fn(|i| force[i] - along * point[i]);
                 let size = force.iter().map(|x| x * x).sum::<f64>().sqrt().max(1.0);
@@ -54,8 +48,7 @@ pub(super) fn relax(base: &mut [Point]) {
 /// Sum over the neighbours of (spacing / distance)^6, pointing away from them, faded out at the cut-off.
 fn push(
     point: &Point,
-    all: &[(usize, Point)],
-    starts: &[u32],
+    all: &Bins<(usize, Point)>,
     cells: usize,
     cell: impl Fn(f64) -> usize,
     spacing: f64,
@@ -68,9 +61,7 @@ fn push(
             for c in range(point[2]) {
                 let row = ((a * cells + b) * cells + c) * cells;
                 let ends = range(point[3]);
-                let run =
-                    starts[row + ends.start()] as usize..starts[row + ends.end() + 1] as usize;
-                for (_, other) in &all[run] {
+                for (_, other) in all.run(row + ends.start(), row + ends.end()) {
                     let away: Point = std::array::from_fn(|i| point[i] - other[i]);
                     let square: f64 = away.iter().map(|x| x * x).sum();
                     if square >= cutoff * cutoff || square == 0.0 {

@@ -10,8 +10,8 @@ use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampler::Ball;
 
 use super::Sample;
-use crate::cli::failure::Failure;
-use crate::cli::output_file::{check_output, is_same};
+use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::messages::failure::Failure;
 
 /// Form in which balls are exported.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use knotdock_structures::mesh::{self, Solid};
+use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
 use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::weights::{self, FittedWeights};
@@ -15,9 +16,9 @@ use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Ste
 use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
-use super::arguments::{above_zero, at_least_one, grid, protrusion};
-use super::console::Console;
-use super::failure::Failure;
+use crate::cli::arguments::values::{above_zero, at_least_one, grid, protrusion};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
 use told::{Told, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
@@ -221,12 +222,10 @@ impl Sample {
                 .remedy("sample it on a finer --grid, or leave out --weights fitted"));
             }
             let (field, volume) = (&sampling.field, referee.volume());
-            finished.fitted = Some(weights::fit(
-                field,
-                &finished.balls,
-                self.alpha.unwrap_or(FITTED_ALPHA),
-                volume,
-            ));
+            let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA)).map_err(|error| {
+                Failure::input(error).remedy("give --alpha a number above zero")
+            })?;
+            finished.fitted = Some(weights::fit(field, &finished.balls, bump, volume));
             finished.step = Some(Step::since("fitting weights", start));
         }
         if let Some(count) = self.level {

@@ -10,13 +10,14 @@ mod descent;
 mod tests;
 
 use self::descent::{FARTHEST, Slope, descend};
-use super::cells::{Atom, Cells};
+use super::CELL_EDGE;
 use super::energy_table::{EnergyTable, REACH};
 use super::pair_potential::AtomPairPotential;
 use crate::exact::center;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
+use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// What atoms may come closer than their radii add up to, in Å.
@@ -42,8 +43,8 @@ const MIN_RADIUS: f64 = 3.0;
 /// of what they lack of touching, the sum of their radii less 0.1 Å. Atoms without a kind only push. The pose descends by at most 2 Å on a like energy with a quarter of that
 /// stiffness, and scores minus the weight times its energy where it comes to rest.
 pub struct Relaxation {
-    /// Atoms of the receptor, each with its number in `sites` for a kind.
-    receptor: Cells,
+    /// Atoms of the receptor, each by its number in `sites`.
+    receptor: CellList<usize>,
     receptor_center: Vector3<f64>,
     sites: Vec<Site>,
     ligand: Vec<(Vector3<f64>, Site)>,
@@ -104,9 +105,12 @@ impl Relaxation {
             radii.fold(0.0, f64::max)
         };
         let atoms = receptor.iter().enumerate();
-        let atoms = atoms.map(|(kind, &(position, _))| Atom { position, kind });
+        let atoms = atoms.map(|(item, &(position, _))| Member {
+            position: position.into(),
+            item,
+        });
         Self {
-            receptor: Cells::new(atoms.collect()),
+            receptor: CellList::new(atoms.collect(), CELL_EDGE),
             receptor_center,
             reach: REACH.max(widest(&receptor) + widest(&ligand)),
             sites: receptor.iter().map(|(_, site)| *site).collect(),
@@ -130,11 +134,12 @@ impl Relaxation {
         for (position, site) in &self.ligand {
             let mut sum = 0.0;
             let near = matrix * position + place;
-            self.receptor.near(near, self.reach, |atom, square| {
-                let other = &self.sites[atom.kind];
-                let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
-                sum += energy;
-            });
+            self.receptor
+                .visit_within(near.into(), self.reach, |&atom, square| {
+                    let other = &self.sites[atom];
+                    let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
+                    sum += energy;
+                });
             total += sum;
         }
         total
@@ -196,9 +201,9 @@ impl Relaxation {
             let position = matrix * position + place;
             let mut nearest = f64::INFINITY;
             self.receptor
-                .near(position, self.reach + SLACK, |atom, square| {
+                .visit_within(position.into(), self.reach + SLACK, |&atom, square| {
                     nearest = nearest.min(square);
-                    neighbours.push(self.sites[atom.kind]);
+                    neighbours.push(self.sites[atom]);
                 });
             if nearest < f64::INFINITY {
                 let end = neighbours.len();

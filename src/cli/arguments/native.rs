@@ -1,0 +1,239 @@
+//! The known complex that poses are measured against: its options, its files, and its match with what was docked.
+
+use std::path::Path;
+
+use clap::Args;
+use knotdock::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
+use knotdock::output::input_record::NativeRecord;
+use knotdock::output::poses::PoseRow;
+use knotdock::output::report::counted;
+use knotdock_structures::molecule::{Molecule, ReadOptions};
+
+use crate::cli::inputs::molecules::Input;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// Options that name the known complex.
+#[derive(Args, Debug)]
+pub struct NativeArguments {
+    /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the largest
+    /// interface is taken, and FILE:A,B picks chains.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["native_receptor", "native_ligand"], help_heading = HEADING)]
+    native: Option<String>,
+    /// Receptor of the known complex; FILE:H,L picks chains.
+    #[arg(long, value_name = "FILE", requires = "native_ligand", help_heading = HEADING)]
+    native_receptor: Option<String>,
+    /// Ligand of the known complex, in the frame of its receptor; FILE:H,L picks chains.
+    #[arg(long, value_name = "FILE", requires = "native_receptor", help_heading = HEADING)]
+    native_ligand: Option<String>,
+}
+
+const HEADING: &str = "Known complex";
+
+/// The files of the known complex.
+pub enum NativeFiles {
+    /// One file with both partners.
+    Complex(Box<Input>),
+    /// A file for each.
+    Partners {
+        /// The receptor's.
+        receptor: Box<Input>,
+        /// The ligand's.
+        ligand: Box<Input>,
+    },
+}
+
+impl NativeArguments {
+    /// Reads the files that are named, if any.
+    pub fn read(&self) -> Result<Option<NativeFiles>, Failure> {
+        let by_default = ReadOptions::default();
+        match (&self.native, &self.native_receptor, &self.native_ligand) {
+            (Some(complex), _, _) => Ok(Some(NativeFiles::Complex(Box::new(Input::read(
+                complex,
+                &by_default,
+            )?)))),
+            (None, Some(receptor), Some(ligand)) => Ok(Some(NativeFiles::Partners {
+                receptor: Box::new(Input::read(receptor, &by_default)?),
+                ligand: Box::new(Input::read(ligand, &by_default)?),
+            })),
+            _ => Ok(None),
+        }
+    }
+}
+
+impl NativeFiles {
+    /// Reads the files that a run recorded.
+    pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Failure> {
+        let by_default = ReadOptions::default();
+        Ok(match record {
+            NativeRecord::Complex(complex) => {
+                Self::Complex(Box::new(Input::recorded(complex, run, &by_default)?))
+            }
+            NativeRecord::Partners { receptor, ligand } => Self::Partners {
+                receptor: Box::new(Input::recorded(receptor, run, &by_default)?),
+                ligand: Box::new(Input::recorded(ligand, run, &by_default)?),
+            },
+        })
+    }
+
+    /// The files as read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Input> {
+        let (first, second) = match self {
+            Self::Complex(complex) => (complex, None),
+            Self::Partners { receptor, ligand } => (receptor, Some(ligand)),
+        };
+        [Some(first), second]
+            .into_iter()
+            .flatten()
+            .map(AsRef::as_ref)
+    }
+
+    /// The files for run.json.
+    pub fn record(&self) -> NativeRecord {
+        match self {
+            Self::Complex(complex) => NativeRecord::Complex(complex.record.clone()),
+            Self::Partners { receptor, ligand } => NativeRecord::Partners {
+                receptor: receptor.record.clone(),
+                ligand: ligand.record.clone(),
+            },
+        }
+    }
+
+    /// Matches the complex with the molecules docked.
+    pub fn evaluator(&self, receptor: &Molecule, ligand: &Molecule) -> Result<Evaluator, Failure> {
+        let (native, file) = match self {
+            Self::Complex(complex) => (Native::Complex(&complex.molecule), complex.as_ref()),
+            Self::Partners {
+                receptor: native_receptor,
+                ligand: native_ligand,
+            } => (
+                Native::Pair {
+                    receptor: &native_receptor.molecule,
+                    ligand: &native_ligand.molecule,
+                },
+                native_receptor.as_ref(),
+            ),
+        };
+        Evaluator::new(receptor, ligand, native).map_err(|error| {
+            let mut message = error.to_string();
+            for input in self.inputs() {
+                for note in reading_notes(&input.molecule) {
+                    message += &format!("; {note}");
+                }
+            }
+            Failure::input(message)
+                .at(&file.record.path)
+                .remedy(error.remedy())
+        })
+    }
+}
+
+/// What reading a file left out or warned of: an error that follows may come of it.
+fn reading_notes(molecule: &Molecule) -> Vec<String> {
+    let report = &molecule.report;
+    let last = report.altered.models_ignored + 1;
+    let models = match last {
+        1 => None,
+        2 => Some("MODEL 2 of the native's file was not read".to_owned()),
+        last => Some(format!(
+            "MODEL 2 to {last} of the native's file were not read"
+        )),
+    };
+    let remedy = " (put both partners into one model, or name a file for each)";
+    let models = models.map(|models| models + remedy);
+    let warnings = report.warnings.iter();
+    models
+        .into_iter()
+        .chain(warnings.map(|warning| format!("reading the native's file: {warning}")))
+        .collect()
+}
+
+/// Every pose's quality.
+pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
+    rows.iter()
+        .map(|row| evaluator.evaluate(&row.pose))
+        .collect()
+}
+
+/// Says what was matched, and warns where little was.
+pub fn announce(evaluator: &Evaluator, console: Console) {
+    console.say(match_text(evaluator.report()));
+    for warning in &evaluator.report().warnings {
+        console.warn(warning);
+    }
+}
+
+/// What was matched, in a line for each side.
+fn match_text(report: &MatchReport) -> String {
+    let mut text = format!(
+        "Matched with the native ({:.0}% of its interface):\n{}\n{}",
+        100.0 * report.interface_share,
+        side_text("receptor", &report.receptor),
+        side_text("ligand", &report.ligand)
+    );
+    if let [taken, others @ ..] = report.complexes.as_slice()
+        && !others.is_empty()
+    {
+        let shown: Vec<String> = others.iter().take(OTHERS_SHOWN).map(complex_text).collect();
+        text += &format!(
+            "\n  taken of {} complexes in the native: {}; not taken: {}{}",
+            report.complexes.len(),
+            complex_text(taken),
+            shown.join(", "),
+            if others.len() > OTHERS_SHOWN {
+                ", ..."
+            } else {
+                ""
+            }
+        );
+    }
+    if !report.unused_native_chains.is_empty() {
+        text += &format!(
+            "\n  left aside of the native: {}; if another copy is meant, name its chains, as in --native FILE:A,B",
+            report.unused_native_chains.join(", ")
+        );
+    }
+    text
+}
+
+/// Complexes that are shown beside the one taken.
+const OTHERS_SHOWN: usize = 3;
+
+fn complex_text(complex: &NativeComplex) -> String {
+    format!(
+        "{} with {} ({})",
+        complex.receptor.join("+"),
+        complex.ligand.join("+"),
+        counted(complex.contacts, "contact")
+    )
+}
+
+fn side_text(name: &str, side: &SideMatch) -> String {
+    let mut chains: Vec<&str> = Vec::new();
+    for chain in &side.chains {
+        if !chains.contains(&chain.native_chain.as_str()) {
+            chains.push(&chain.native_chain);
+        }
+    }
+    let mut text = format!(
+        "  {name}, as the native's {}: {} of {} residues ({:.0}% of the {} docked), {} of {} at the interface; the docked \
+         backbone lies {:.2} Å RMSD from it",
+        chains.join(", "),
+        side.matched,
+        side.native_residues,
+        100.0 * side.docked_share,
+        side.residues,
+        side.interface_matched,
+        side.interface_residues,
+        side.backbone_rmsd
+    );
+    for (whose, chains) in [
+        ("docked", &side.unmatched_chains),
+        ("native", &side.unmatched_native_chains),
+    ] {
+        if !chains.is_empty() {
+            text += &format!("; {whose} chains without a match: {}", chains.join(", "));
+        }
+    }
+    text
+}

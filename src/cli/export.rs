@@ -1,0 +1,90 @@
+//! `knotdock export`: further complexes from a finished run.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use knotdock::output::complexes::file_names;
+use knotdock::output::poses::{PoseRow, PoseTable};
+use knotdock::output::recorded_run::RecordedRun;
+use knotdock::pose_space::arrangement::Arrangement;
+use serde_json::json;
+
+use crate::cli::arguments::output_file::check_replaced;
+use crate::cli::arguments::ranks::Ranks;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
+#[derive(Args, Debug)]
+pub struct Export {
+    /// Directory of the run.
+    #[arg(value_name = "DIR")]
+    run: PathBuf,
+    /// Ranks in poses.csv, such as 37,40-45.
+    #[arg(long, value_name = "RANKS")]
+    rank: Ranks,
+    /// Directory to write to [default: DIR/top].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace complexes that are there already.
+    #[arg(long)]
+    force: bool,
+}
+
+impl Export {
+    /// Writes the complexes.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let run_path = self.run.join("run.json");
+        let run = RecordedRun::read(&run_path)?;
+        let table_path = self.run.join("poses.csv");
+        let table = PoseTable::read(&table_path)?;
+        let of_rank: HashMap<usize, PoseRow> =
+            table.rows().iter().map(|row| (row.rank, *row)).collect();
+        let rows = self.rank.0.iter().map(|rank| {
+            of_rank.get(rank).copied().ok_or_else(|| {
+                Failure::input(format!("there is no rank {rank} among the {} rows", table.rows().len()))
+                    .at(&table_path)
+                    .remedy("choose ranks that the table lists; `knotdock dock --no-cluster` lists every pose")
+            })
+        });
+        let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
+        let arrangement = Arrangement::from(run.options.dock.symmetry);
+        let is_no_ring = |row: &&PoseRow| arrangement.images(&row.pose).is_none();
+        if let Some(PoseRow { rank, .. }) = rows.iter().find(is_no_ring) {
+            let suffix = arrangement.suffix();
+            return Err(Failure::input(format!(
+                "the pose of rank {rank} forms no ring{suffix}"
+            ))
+            .at(&table_path)
+            .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
+        }
+        let bodies = Bodies::recorded(
+            [&run.receptor, &run.ligand],
+            &run_path,
+            &run.options.reading,
+        )?;
+        let own = self.run.join("top");
+        let folder = self.output.unwrap_or_else(|| own.clone());
+        // What the run itself wrote there is what would be written again.
+        let force = self.force || folder == own;
+        for name in rows.iter().flat_map(|row| file_names(row.rank)) {
+            let read = bodies.records().map(|record| record.path.as_path());
+            check_replaced(&folder.join(name), read, force)?;
+        }
+        let written = bodies.write(&rows, arrangement, &folder)?;
+        let paths: Vec<String> = written
+            .names
+            .iter()
+            .map(|name| folder.join(name).display().to_string())
+            .collect();
+        console.say(paths.join("\n"));
+        let files = rows.iter().zip(&paths);
+        console.result(&json!({
+            "files": files.map(|(row, path)| json!({ "rank": row.rank, "path": path })).collect::<Vec<_>>(),
+            "chains": written.chains,
+        }))?;
+        Ok(())
+    }
+}

@@ -1,0 +1,233 @@
+//! The pairs of a batch: rows of a table as command lines of `knotdock dock`.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches, Parser};
+use knotdock::output::batch_results::RESULTS;
+use knotdock::output::pair_table::{PairRow, read_pairs};
+use knotdock_structures::molecule::InputSpec;
+
+use crate::cli::dock::Dock;
+use crate::cli::inputs::molecules::label;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::suggestions;
+use crate::cli::messages::usage::{message, with_negative_numbers};
+
+/// Columns that name files.
+const FILES: [&str; 6] = [
+    "native",
+    "native_receptor",
+    "native_ligand",
+    "contact_potential",
+    "fine_contact_potential",
+    "atom_pair_potential",
+];
+
+/// Options that are the batch's to set.
+const OWN: [&str; 3] = ["output", "rerun", "force"];
+
+/// One pair's command line.
+#[derive(Parser, Debug)]
+#[command(name = "knotdock dock")]
+struct PairCommand {
+    #[command(flatten)]
+    dock: Dock,
+}
+
+/// A pair that is to be docked.
+pub struct Pair {
+    /// Its name, and that of the directory of its run.
+    pub name: String,
+    /// Its row of the table.
+    pub row: PairRow,
+    /// Its command line.
+    pub dock: Dock,
+}
+
+/// The pairs of the table with their command lines, each checked as far as words go.
+pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<Pair>, Failure> {
+    let folder = table.parent().unwrap_or(Path::new(""));
+    let mut names: HashMap<String, u64> = HashMap::new();
+    check_options(options)?;
+    let symmetry = symmetry(options);
+    let rows = read_pairs(table, symmetry.is_some())?;
+    let pairs = rows.into_iter().map(|row| {
+            let wrong = |message: String, remedy: &str| {
+                Failure::input(message)
+                    .at(table)
+                    .on_line(Some(row.line))
+                    .remedy(remedy)
+            };
+            let name = match row.name.as_str() {
+                "" => format!("{}_{}", part(&row.receptor)?, partner(&row, symmetry)?),
+                name => name.to_owned(),
+            };
+            if !is_name(&name) {
+                return Err(wrong(
+                    format!("'{name}' cannot be the name of a directory in the batch's"),
+                    "name the pair with letters, digits, `.`, `_` and `-`, beginning with none of the last three",
+                ));
+            }
+            // Letters of either case are one where file systems think so.
+            if let Some(line) = names.insert(name.to_lowercase(), row.line) {
+                return Err(wrong(
+                    format!("the pair of line {line} is named {name}, too"),
+                    "give each pair a name of its own in a column `name`",
+                ));
+            }
+            let dock = command(&row, &directory.join(&name), folder, options);
+            let dock = dock.map_err(|(message, suggested)| {
+                const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
+                                       in a column or after --";
+                match suggested {
+                    Some(text) => wrong(message, &format!("{text}; {COLUMNS}")),
+                    None => wrong(message, COLUMNS),
+                }
+            })?;
+            Ok(Pair { name, row, dock })
+        });
+    pairs.collect()
+}
+
+/// Stand for a row's files where only the options are looked at.
+const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
+
+fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
+    let matches = with_negative_numbers(PairCommand::command()).try_get_matches_from(words)?;
+    PairCommand::from_arg_matches(&matches)
+}
+
+/// Refuses options after `--` that no pair's command line could have: a row of the table is not at fault then.
+fn check_options(options: &[String]) -> Result<(), Failure> {
+    let remedy = "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
+    let of_no_row = ["knotdock dock"].into_iter().map(str::to_owned);
+    let files = ["--"].iter().chain(&FILLED_IN).map(ToString::to_string);
+    let words = of_no_row.chain(options.iter().cloned()).chain(files);
+    match parse(words) {
+        Ok(command) if command.dock.names_its_run() => Err(Failure::input(
+            "--output cannot come after --: where its runs go is the batch's to say",
+        )
+        .remedy("name the batch's own directory with -o before --")),
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+            ) =>
+        {
+            Err(Failure::input("no help can be asked for after --").remedy(remedy))
+        }
+        Err(error)
+            if error.kind() == ErrorKind::UnknownArgument
+                && FILLED_IN.iter().any(|file| message(&error).contains(*file)) =>
+        {
+            Err(
+                Failure::input("no file can come after --: files are the table's to name")
+                    .remedy(remedy),
+            )
+        }
+        // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a ligand asks for.
+        Err(error) if message(&error).contains("--rerun") => Err(Failure::input(
+            "--rerun cannot come after --: what is docked is the table's to say",
+        )
+        .remedy(remedy)),
+        Err(error)
+            if error.kind() == ErrorKind::ArgumentConflict
+                && !message(&error).contains("LIGAND") =>
+        {
+            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
+        }
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::UnknownArgument
+                    | ErrorKind::InvalidValue
+                    | ErrorKind::ValueValidation
+                    | ErrorKind::NoEquals
+                    | ErrorKind::TooManyValues
+                    | ErrorKind::TooFewValues
+            ) =>
+        {
+            let suggested = suggestions::suggested(&error);
+            let remedy =
+                suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
+            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
+        }
+        // What is missing or in conflict here may be otherwise beside a row's own options.
+        _ => Ok(()),
+    }
+}
+
+/// The command line of a pair; an error comes with what to do about it, where the field's word for something is at fault.
+fn command(
+    row: &PairRow,
+    run: &Path,
+    folder: &Path,
+    options: &[String],
+) -> Result<Dock, (String, Option<String>)> {
+    let mut words = vec!["knotdock dock".to_owned()];
+    for (column, value) in &row.options {
+        if OWN.contains(&column.as_str()) {
+            return Err((format!("a column cannot be `{column}`"), None));
+        }
+        let value = if FILES.contains(&column.as_str()) {
+            at(folder, value)
+        } else {
+            value.clone()
+        };
+        words.push(format!("--{}={value}", column.replace('_', "-")));
+    }
+    words.push(format!("--output={}", run.display()));
+    words.extend(options.iter().cloned());
+    words.push("--".to_owned());
+    let files = [&row.receptor, &row.ligand].into_iter();
+    words.extend(
+        files
+            .filter(|file| !file.is_empty())
+            .map(|file| at(folder, file)),
+    );
+    let wrong = |error: clap::Error| (message(&error), suggestions::suggested(&error));
+    Ok(parse(words).map_err(wrong)?.dock)
+}
+
+/// A file of the table as seen from here, its chains behind it.
+fn at(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().into_owned()
+}
+
+/// A file's part of a pair's name.
+fn part(file: &str) -> Result<String, Failure> {
+    let spec = InputSpec::parse(file)?;
+    Ok(label(&spec.path, spec.chains.as_deref()))
+}
+
+/// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
+fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Failure> {
+    let own = row.options.iter().find(|(name, _)| name == "symmetry");
+    match own.map(|(_, symmetry)| symmetry.as_str()).or(of_all) {
+        Some(symmetry) if row.ligand.is_empty() => Ok(symmetry.to_owned()),
+        _ => part(&row.ligand),
+    }
+}
+
+/// The symmetry that all pairs are docked with.
+fn symmetry(options: &[String]) -> Option<&str> {
+    let at = options
+        .iter()
+        .position(|word| word.starts_with("--symmetry"))?;
+    match options[at].strip_prefix("--symmetry")? {
+        "" => options.get(at + 1).map(String::as_str),
+        value => value.strip_prefix('='),
+    }
+}
+
+/// Whether a pair may be called so.
+fn is_name(name: &str) -> bool {
+    name.starts_with(char::is_alphanumeric)
+        && name
+            .chars()
+            .all(|c| c.is_alphanumeric() || "._-".contains(c))
+        // Nor may it be the name under which results are being written.
+        && !name.to_lowercase().starts_with(RESULTS)
+}

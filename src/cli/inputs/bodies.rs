@@ -1,0 +1,268 @@
+//! The two bodies of a run: molecules or meshes, and what differs between them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use knotdock::dock::pair::{Pair, PreparedPair, Sampling};
+use knotdock::error::SearchError;
+use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
+use knotdock::options::DockOptions;
+use knotdock::output::assemblies::write_assemblies;
+use knotdock::output::complexes::write_complexes;
+use knotdock::output::input_record::InputRecord;
+use knotdock::output::manifest::InputEntry;
+use knotdock::output::poses::PoseRow;
+use knotdock::pose_space::arrangement::Arrangement;
+use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
+
+use crate::cli::arguments::idle::refuse_of_meshes;
+use crate::cli::arguments::reading::READING_OPTIONS;
+use crate::cli::inputs::meshes::{MeshInput, is_mesh};
+use crate::cli::inputs::molecules::{Input, folders_of, label};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// The bodies as read.
+pub enum Bodies {
+    /// Two molecules, which stays first.
+    Molecules(Box<[Input; 2]>),
+    /// Two meshes, likewise.
+    Meshes(Box<[MeshInput; 2]>),
+}
+
+/// What was written of the first ranks.
+pub struct WrittenBodies {
+    /// Names of the files, in the order of the rows.
+    pub names: Vec<String>,
+    /// Chain names in complexes; none of meshes.
+    pub chains: Option<ChainMap>,
+}
+
+/// Names of the two sides.
+const SIDES: [&str; 2] = ["Receptor", "Ligand"];
+
+impl Bodies {
+    /// Reads two bodies of one kind as the command line names them.
+    pub fn read(receptor: &str, ligand: &str, reading: &ReadOptions) -> Result<Self, Failure> {
+        Self::of(
+            [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
+            reading,
+        )
+    }
+
+    /// Whether they are sampled on a grid.
+    pub fn are_meshes(&self) -> bool {
+        matches!(self, Self::Meshes(_))
+    }
+
+    /// Reads what a run recorded; see [`Input::recorded`].
+    pub fn recorded(
+        records: [&InputRecord; 2],
+        run: &Path,
+        reading: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        let folders = folders_of(run);
+        let [receptor, ligand] = records;
+        let specs = [
+            receptor.locate(&folders)?.spec(),
+            ligand.locate(&folders)?.spec(),
+        ];
+        Self::of(specs, reading)
+    }
+
+    fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
+        let [receptor, ligand] = &specs;
+        match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
+            [false, false] => Ok(Self::Molecules(Box::new(Input::all(&specs, reading)?))),
+            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(format!(
+                "{READING_OPTIONS} belong to molecules, and these are meshes"
+            ))
+            .remedy("leave them out")),
+            [true, true] => Ok(Self::Meshes(Box::new([
+                MeshInput::read(receptor)?,
+                MeshInput::read(ligand)?,
+            ]))),
+            [first, _] => {
+                let (mesh, other) = if first {
+                    (receptor, ligand)
+                } else {
+                    (ligand, receptor)
+                };
+                Err(Failure::input(format!(
+                    "a mesh cannot be docked with a molecule, {}",
+                    other.path.display()
+                ))
+                .at(&mesh.path)
+                .remedy("dock two meshes in one unit of length, or two molecules"))
+            }
+        }
+    }
+
+    /// Reports what was read, with warnings; of a ring, the one molecule that it is made of.
+    pub fn describe(&self, arrangement: Arrangement, console: Console) {
+        match self {
+            Self::Molecules(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                if arrangement.is_ring() {
+                    let report = &receptor.molecule.report;
+                    let (what, suffix) = (arrangement.moved(), arrangement.suffix());
+                    return console.say(format!("Each {what}{suffix}: {report}"));
+                }
+                console.say(format!(
+                    "Receptor: {}\nLigand: {}",
+                    receptor.molecule.report, ligand.molecule.report
+                ));
+            }
+            Self::Meshes(inputs) => {
+                for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
+                    console.say(format!("{side}: {}", input.report));
+                    for warning in input.report.warnings() {
+                        console.warn(format!("{}: {warning}", input.record.path.display()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not among these.
+    pub fn plan(
+        &self,
+        options: &mut DockOptions,
+        offset: Option<f64>,
+        given: GivenLengths,
+        console: Console,
+    ) -> Result<PreparedPair, Failure> {
+        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
+        match self {
+            Self::Molecules(inputs) => {
+                if options.sample_grid.is_some() || options.sample_weights.is_some() {
+                    return Err(Failure::input(
+                        "--sample-grid and --sample-weights belong to meshes, and these are molecules",
+                    )
+                    .remedy("leave them out: the balls of a molecule are its atoms"));
+                }
+                let molecules = inputs.each_ref().map(|input| &input.molecule);
+                PreparedPair::molecules(molecules, options).map_err(|error| match error {
+                    SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
+                    error => refused(error),
+                })
+            }
+            Self::Meshes(_) if options.symmetry.is_some() => Err(Failure::input(
+                "--symmetry makes rings of a molecule, and this is a mesh",
+            )
+            .remedy("dock two meshes, without --symmetry")),
+            Self::Meshes(inputs) => {
+                refuse_of_meshes(options)?;
+                let sampling = MeshOptions {
+                    per_axis: *options.sample_grid.get_or_insert(PER_AXIS),
+                    weights: *options.sample_weights.get_or_insert_default(),
+                    offset,
+                    alpha: options.alpha,
+                };
+                let solids = inputs.each_ref().map(|input| &input.solid);
+                let sampling =
+                    Sampling::of(solids, &sampling).map_err(|error| located(&error, inputs))?;
+                sampling.pair.defaults(options, given);
+                console.say(told(&sampling.pair));
+                PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
+            }
+        }
+    }
+
+    /// What is docked.
+    pub fn pair(&self) -> Pair<'_> {
+        match self {
+            Self::Molecules(inputs) => {
+                Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
+            }
+            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
+        }
+    }
+
+    /// Writes the bodies in the poses of `rows` into a folder, of a ring all its copies.
+    pub fn write(
+        &self,
+        rows: &[PoseRow],
+        arrangement: Arrangement,
+        folder: &Path,
+    ) -> Result<WrittenBodies, Failure> {
+        match self {
+            Self::Molecules(inputs) => {
+                let molecules = inputs.each_ref().map(|input| &input.molecule);
+                let written = write_complexes(molecules, arrangement, rows, folder)?;
+                Ok(WrittenBodies {
+                    names: written.names,
+                    chains: Some(written.chains),
+                })
+            }
+            Self::Meshes(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Ok(WrittenBodies {
+                    names: write_assemblies(&receptor.mesh, &ligand.mesh, rows, folder)?,
+                    chains: None,
+                })
+            }
+        }
+    }
+
+    /// Receptor and ligand for run.json.
+    pub fn entries(&self, sampling: Option<&Sampling>) -> Result<[InputEntry; 2], Failure> {
+        let [receptor, ligand] = match self {
+            Self::Molecules(inputs) => inputs.each_ref().map(Input::entry),
+            Self::Meshes(inputs) => {
+                let [receptor, ligand] = inputs.as_ref();
+                let part = |index: usize| sampling.map(|sampling| &sampling.pair.parts[index]);
+                [receptor.entry(part(0)), ligand.entry(part(1))]
+            }
+        };
+        Ok([receptor?, ligand?])
+    }
+
+    /// The files of receptor and ligand.
+    pub fn records(&self) -> [&InputRecord; 2] {
+        match self {
+            Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+        }
+    }
+
+    /// Names for directories.
+    pub fn labels(&self) -> [String; 2] {
+        self.records()
+            .map(|record| label(&record.path, record.chains.as_deref()))
+    }
+}
+
+/// A failure that names the mesh at fault.
+fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+    let failure = Failure::input(error).remedy(error.remedy());
+    match error.part() {
+        Some(part) => failure.at(&inputs[part].record.path),
+        None => failure,
+    }
+}
+
+/// How meshes were sampled.
+fn told(pair: &MeshPair) -> String {
+    let [receptor, ligand] = pair.parts.each_ref().map(|part| {
+        let weights = match &part.weights {
+            Some(fit) => format!(
+                "weights fitted (off one inside by {:.2} rms, integral {:.3} of the volume)",
+                fit.rms_fitted, fit.volume_fitted
+            ),
+            None => "weights of one".to_owned(),
+        };
+        format!(
+            "{} balls of radius {:.4e}, one for {k} x {k} x {k} nodes; eps {:.4e}, feature size {:.4e}; {weights}",
+            part.balls,
+            part.radius,
+            part.epsilon,
+            part.feature_size,
+            k = part.per_cell,
+        )
+    });
+    format!(
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one radius, so the kernel is the cone",
+        pair.offset
+    )
+}

@@ -1,0 +1,7 @@
+//! The inputs of a run: files named on the command line, in a table of pairs or in an earlier run's record.
+
+pub mod batch_pairs;
+pub mod bodies;
+pub mod meshes;
+pub mod molecules;
+pub mod request;

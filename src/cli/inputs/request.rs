@@ -1,0 +1,114 @@
+//! What a docking run is asked for, whether on the command line or by an earlier run's `run.json`.
+
+use std::path::{Path, PathBuf};
+
+use knotdock::dock::pair::{PreparedPair, Sampling};
+use knotdock::evaluate::Evaluator;
+use knotdock::mesh::GivenLengths;
+use knotdock::output::manifest::Inputs;
+use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
+use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::run_options::RunOptions;
+use knotdock::pose_space::arrangement::Arrangement;
+
+use crate::cli::arguments::native::NativeFiles;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// A run as asked for, by options or by a run.json.
+pub struct Request {
+    /// What stays and what moves.
+    pub bodies: Bodies,
+    /// The known complex, if one was named.
+    pub native: Option<NativeFiles>,
+    /// What to do; of meshes, lengths that are not given follow from them.
+    pub options: RunOptions,
+    /// The offset, where it is given.
+    pub offset: Option<f64>,
+    /// Further lengths that are given.
+    pub given: GivenLengths,
+}
+
+impl Request {
+    /// What an earlier run was asked for, from its run.json.
+    pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
+        let run = RecordedRun::read(path)?;
+        if !run.is_of_this_program() {
+            console.warn(format!(
+                "the run is of version {} ({}), this is {VERSION_WITH_COMMIT}: the poses may differ",
+                run.version, run.commit
+            ));
+        }
+        if run.cpu_features != cpu_features() {
+            console.warn(format!(
+                "the run was on {}, this is {}: last digits may differ",
+                run.cpu_features,
+                cpu_features()
+            ));
+        }
+        Ok(Self {
+            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options.reading)?,
+            native: run
+                .native
+                .as_ref()
+                .map(|native| NativeFiles::recorded(native, path))
+                .transpose()?,
+            offset: Some(run.options.dock.offset),
+            given: GivenLengths {
+                resolution: true,
+                cluster_radius: true,
+            },
+            options: run.options,
+        })
+    }
+
+    /// Plans the run; of meshes, options that follow from them are filled in.
+    pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Failure> {
+        let (offset, given) = (self.offset, self.given);
+        self.bodies
+            .plan(&mut self.options.dock, offset, given, console)
+    }
+
+    /// Matches the known complex, if there is one, with the molecules.
+    pub fn evaluator(&self) -> Result<Option<Evaluator>, Failure> {
+        match (&self.native, &self.bodies) {
+            (Some(native), Bodies::Molecules(inputs)) => {
+                let [receptor, ligand] = inputs.as_ref();
+                Ok(Some(
+                    native.evaluator(&receptor.molecule, &ligand.molecule)?,
+                ))
+            }
+            (Some(_), Bodies::Meshes(_)) => {
+                Err(Failure::input("a known complex is one of molecules")
+                    .remedy("leave --native, --native-receptor and --native-ligand out"))
+            }
+            (None, _) => Ok(None),
+        }
+    }
+
+    /// The inputs for run.json, with how meshes were sampled.
+    pub fn inputs(&self, sampling: Option<&Sampling>) -> Result<Inputs, Failure> {
+        let [receptor, ligand] = self.bodies.entries(sampling)?;
+        Ok(Inputs {
+            receptor,
+            ligand,
+            native: self.native.as_ref().map(NativeFiles::record),
+        })
+    }
+
+    /// What the run puts together.
+    pub fn arrangement(&self) -> Arrangement {
+        self.options.dock.symmetry.into()
+    }
+
+    /// The directory of a run that names none.
+    pub fn directory(&self) -> PathBuf {
+        let [receptor, ligand] = self.bodies.labels();
+        let partner = match self.arrangement() {
+            Arrangement::Pair => ligand,
+            Arrangement::Ring(symmetry) => symmetry.to_string(),
+        };
+        PathBuf::from(format!("knotdock_{receptor}_{partner}"))
+    }
+}

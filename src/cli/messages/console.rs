@@ -1,0 +1,152 @@
+//! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
+//! output and every word on standard error; under `--quiet` no words but errors.
+//!
+//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not written. A disk that is full
+//! does not stop one either, but the command fails in the end.
+
+use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use knotdock::progress::Progress;
+
+use crate::cli::messages::failure::Failure;
+
+/// Why a part of the report could not be written, the first time that happened.
+static LOST: OnceLock<io::Error> = OnceLock::new();
+
+/// The terminal as a command sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Console {
+    /// Results as one JSON object.
+    pub json: bool,
+    /// No words but errors.
+    pub quiet: bool,
+}
+
+impl Console {
+    /// Writes a paragraph of the report.
+    pub fn say(&self, text: impl ToString) {
+        if self.quiet {
+            return;
+        }
+        if self.json {
+            write_line(&mut io::stderr(), &text.to_string());
+        } else {
+            let mut stream = io::stdout();
+            let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
+            if let Err(error) = written {
+                // Only the first is told.
+                let _ = LOST.set(error);
+            }
+        }
+    }
+
+    /// Whether all of the report could be written, if anyone was there to read it.
+    pub fn all_said() -> Result<(), Failure> {
+        LOST.get().map_or(Ok(()), unwritten)
+    }
+
+    /// Writes a warning on standard error.
+    pub fn warn(&self, text: impl ToString) {
+        if !self.quiet {
+            write_line(&mut io::stderr(), &format!("warning: {}", text.to_string()));
+        }
+    }
+
+    /// Writes on standard error what went wrong and does not end the command.
+    pub fn error(&self, text: impl ToString) {
+        write_line(&mut io::stderr(), &text.to_string());
+    }
+
+    /// Writes the command's JSON object, if that was asked for: what cannot be written is a failure then, for the object is all there is, unless its reader
+    /// has gone.
+    pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
+        if !self.json {
+            return Ok(());
+        }
+        let mut stream = io::stdout();
+        match writeln!(stream, "{object}").and_then(|()| stream.flush()) {
+            Err(error) => unwritten(&error),
+            Ok(()) => Ok(()),
+        }
+    }
+
+    /// Writes a failure: for a person on standard error, for a program on standard output as well.
+    pub fn fail(&self, failure: &Failure) {
+        if self.json {
+            write_line(&mut io::stdout(), &failure.json().to_string());
+        }
+        write_line(&mut io::stderr(), &failure.text());
+    }
+
+    /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
+    pub fn progress(&self) -> ProgressLine {
+        let bar = ProgressBar::hidden();
+        // The templates are constant; should one not parse, indicatif's own style serves.
+        if let Ok(style) = ProgressStyle::with_template(
+            "{msg:>12} [{wide_bar}] {human_pos}/{human_len}, {elapsed} gone, {eta} left",
+        ) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        ProgressLine {
+            bar,
+            shown: !self.quiet && io::stderr().is_terminal(),
+        }
+    }
+}
+
+/// A failure to write to standard output, unless its reader has gone.
+fn unwritten(error: &io::Error) -> Result<(), Failure> {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        return Ok(());
+    }
+    Err(
+        Failure::other(format!("cannot write to standard output: {error}"))
+            .remedy("check the free space there"),
+    )
+}
+
+/// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.
+fn write_line(stream: &mut dyn Write, text: &str) {
+    let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
+}
+
+/// The progress of a search on one line of the terminal, cleared when the search ends.
+pub struct ProgressLine {
+    bar: ProgressBar,
+    shown: bool,
+}
+
+impl ProgressLine {
+    /// Clears the line, so that a sentence can be written in its place.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for ProgressLine {
+    fn stage(&self, name: &str, total: u64) {
+        self.bar.finish_and_clear();
+        // Each of these would draw a line of its own that is half the old stage's and half the new one's.
+        self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        self.bar.reset();
+        self.bar.set_length(total);
+        self.bar.set_message(name.to_owned());
+        if self.shown {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.enable_steady_tick(Duration::from_millis(200));
+        }
+    }
+
+    fn advance(&self, by: u64) {
+        self.bar.inc(by);
+    }
+}
+
+impl Drop for ProgressLine {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,115 @@
+//! Errors of the libraries as failures of a command.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use knotdock::output::balls::PseudoAtomError;
+use knotdock::output::input_record::InputRecordError;
+use knotdock::output::pair_table::PairTableError;
+use knotdock::output::poses_reader::PoseTableError;
+use knotdock::output::recorded_run::RecordedRunError;
+use knotdock::output::staging::StagingError;
+use knotdock::output::whole_file::FileError;
+use knotdock_structures::mesh::MeshError;
+use knotdock_structures::molecule::ReadError;
+
+use crate::cli::messages::failure::Failure;
+
+/// Bad input at a place that the reader knows as far as it can be known.
+fn unreadable(
+    error: &impl Display,
+    file: Option<&Path>,
+    line: Option<usize>,
+    remedy: impl ToString,
+) -> Failure {
+    let line = line.and_then(|line| u64::try_from(line).ok());
+    let failure = Failure::input(error).on_line(line).remedy(remedy);
+    match file {
+        Some(file) => failure.at(file),
+        None => failure,
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        unreadable(&error, error.file(), error.line(), error.remedy())
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        unreadable(&error, error.file(), error.line(), error.remedy())
+    }
+}
+
+impl From<InputRecordError> for Failure {
+    fn from(error: InputRecordError) -> Self {
+        let remedy = match &error {
+            InputRecordError::Read { .. } => {
+                "put the file where the run found it, or beside the directory of the run"
+            }
+            InputRecordError::Changed { .. } => {
+                "put back the file that the run was made from, or dock again"
+            }
+        };
+        Self::input(&error).at(error.path()).remedy(remedy)
+    }
+}
+
+impl From<StagingError> for Failure {
+    fn from(error: StagingError) -> Self {
+        match error {
+            StagingError::Write(error) => error.into(),
+            error => Self::input(&error).at(error.path()).remedy(error.remedy()),
+        }
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let failure = if error.is_input() {
+            Self::input(&error)
+        } else {
+            Self::other(&error)
+        };
+        failure.at(error.path()).remedy(error.remedy())
+    }
+}
+
+impl From<PoseTableError> for Failure {
+    fn from(error: PoseTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy(error.remedy())
+    }
+}
+
+impl From<RecordedRunError> for Failure {
+    fn from(error: RecordedRunError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy("give a run that `knotdock dock` of this version wrote")
+    }
+}
+
+impl From<PseudoAtomError> for Failure {
+    fn from(error: PseudoAtomError) -> Self {
+        match error {
+            PseudoAtomError::Coordinate { .. } => {
+                Self::input(&error).remedy("move or scale the mesh, or export the balls as .obj")
+            }
+            PseudoAtomError::File(error) => error.into(),
+        }
+    }
+}
+
+impl From<PairTableError> for Failure {
+    fn from(error: PairTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .remedy("give a CSV file with columns `receptor` and `ligand`, perhaps `name` and options of `knotdock dock`, and a row for each pair")
+    }
+}

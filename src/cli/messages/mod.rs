@@ -1,0 +1,9 @@
+//! Text for people, and JSON for programs: results, progress, warnings and errors.
+
+pub mod console;
+pub mod dock;
+pub mod failure;
+pub mod library_errors;
+pub mod shared_chains;
+pub mod suggestions;
+pub mod usage;

@@ -1,0 +1,106 @@
+//! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and without it.
+
+use crate::dock::outcome::EffectCost;
+use crate::dock::plan::DockPlan;
+use crate::dock::scene::Decision;
+use crate::search::plan::SearchPlan;
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra, choose_rank};
+use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::transform::Real;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Most fours of rotations that are timed, each sharing a transform of the ligand.
+const TIMED: usize = 3;
+/// Milliseconds after which no further four are timed.
+const ENOUGH: u128 = 100;
+
+/// Timings by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
+///
+/// An effect may share fields with others, so the parts need not add up to the whole.
+pub(super) fn effect_timings<T: Real>(
+    plan: &DockPlan,
+    folded: &ReceptorSpectra<T>,
+    engine: &CpuEngine<T>,
+) -> Vec<EffectCost> {
+    let on = |decision: &&Decision| decision.on;
+    let active: Vec<Effect> = plan.decisions.iter().filter(on).map(|d| d.effect).collect();
+    let whole = (engine.rank(), milliseconds(plan, engine));
+    let alone = active
+        .iter()
+        .filter(|effect| **effect != Effect::Shape)
+        .fold(folded.clone(), |folded, &effect| folded.without(effect));
+    // Made all at once, and timed one by one. Where one effect is on, it is the whole.
+    let others = if active.len() > 1 {
+        active.as_slice()
+    } else {
+        &[]
+    };
+    let mut parts: Vec<(Effect, CpuEngine<T>)> = others
+        .par_iter()
+        .map(|&effect| {
+            let ChosenRank { engine, .. } = match effect {
+                Effect::Shape => rank_of(plan, &alone),
+                effect => rank_of(plan, &folded.without(effect)),
+            };
+            (effect, engine)
+        })
+        .collect();
+    // An engine goes once it is timed.
+    let mut part = |effect: Effect| {
+        let place = parts.iter().position(|(of, _)| *of == effect);
+        place.map_or(whole, |place| {
+            let (_, engine) = parts.swap_remove(place);
+            (engine.rank(), milliseconds(plan, &engine))
+        })
+    };
+    plan.decisions
+        .iter()
+        .map(|decision| {
+            let (rank, milliseconds) = if !decision.on {
+                (0, 0.0)
+            } else if decision.effect == Effect::Shape {
+                part(Effect::Shape)
+            } else {
+                let (rank, milliseconds) = part(decision.effect);
+                (whole.0.saturating_sub(rank), whole.1 - milliseconds)
+            };
+            EffectCost {
+                effect: decision.effect,
+                on: decision.on,
+                reason: decision.reason.clone(),
+                rank,
+                milliseconds_per_rotation: milliseconds,
+            }
+        })
+        .collect()
+}
+
+/// The engine of the lowest rank that the plan's tolerance allows.
+pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) -> ChosenRank<T> {
+    let SearchPlan {
+        engine, rotations, ..
+    } = &plan.search;
+    choose_rank(engine, spectra, &plan.ligand, &rotations.coarse)
+}
+
+/// Least milliseconds of a rotation on one thread, over a few.
+fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
+    let rotations = &plan.search.rotations;
+    let images = &HalfTurn::ALL[..rotations.images];
+    let mut work = engine.workspace();
+    let begun = Instant::now();
+    let times = (0..TIMED)
+        .take_while(|&index| index == 0 || begun.elapsed().as_millis() < ENOUGH)
+        .map(|index| {
+            let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
+            let start = Instant::now();
+            engine.turn(rotation, &mut work);
+            for half_turn in images {
+                engine.correlate_turned(*half_turn, &mut work);
+            }
+            1e3 * start.elapsed().as_secs_f64() / images.len() as f64
+        });
+    times.fold(f64::INFINITY, f64::min)
+}

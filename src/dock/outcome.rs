@@ -1,0 +1,184 @@
+//! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
+
+use crate::options::Stopped;
+use crate::search::coarse_to_fine::FineSearched;
+use crate::search::scan_engine::Adapter;
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::se3::Pose;
+use serde::Serialize;
+
+/// One row of `poses.csv`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankedPose {
+    /// From the ligand's file frame to the receptor's.
+    pub pose: Pose,
+    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    pub score: f64,
+    /// 1-based cluster number, best cluster first.
+    pub cluster: Option<usize>,
+    /// Number of poses in that cluster.
+    pub cluster_size: Option<usize>,
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at least the best pose's.
+    pub cluster_score: Option<f64>,
+    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
+    pub refined: bool,
+    /// Index in the rotation set of the grid pose that this row came from.
+    pub rotation: usize,
+    /// Score of that grid pose as the fast path computed it.
+    pub score_grid: f64,
+    /// B&I's own sum (no low-pass) at `pose`.
+    pub score_unfiltered: f64,
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `score`; `None` where the effect is off.
+    pub terms: [Option<f64>; Effect::ALL.len()],
+    /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
+    pub slices: [f64; 3],
+    /// Weighted fine contact potential at `pose`, [`knotdock_scoring::rescoring`]; `None` where poses are not rescored.
+    pub fine_contact: Option<f64>,
+    /// Weighted atom pair potential there; `None` likewise.
+    pub atom_pair: Option<f64>,
+    /// Weighted energy there once the pose has given way; `None` likewise.
+    pub relaxed: Option<f64>,
+    /// What the residues earn that touch of those that are attracted, or of a peptidase's active site; `None` where there are none.
+    pub attraction: Option<f64>,
+    /// What atoms cost that lie where residues of the other side are missing; `None` where none are.
+    pub missing: Option<f64>,
+    /// What atoms near ends of chains cost that touch; `None` where none are.
+    pub chain_ends: Option<f64>,
+    /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
+    pub other_copies: Option<f64>,
+    /// What rows are ranked by: `score`, where poses are rescored `fine_contact`, `atom_pair`, `relaxed`, `attraction`, `missing` and `chain_ends` besides, and `other_copies`.
+    pub pose_score: f64,
+    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    pub z_score: Option<f64>,
+}
+
+/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores anything.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeasuredError {
+    /// Grid poses over which it was measured.
+    pub poses: usize,
+    /// Root mean square of |fast - exact| / |best exact score|.
+    pub rms: f64,
+    /// Largest of the same.
+    pub worst: f64,
+    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
+    pub low_pass_share: f64,
+}
+
+/// Scores below this are none: a pair of balls that touch earns about one.
+const NOTHING: f64 = 1e-6;
+
+/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by more than `ringing` of that. Transforms ring about
+/// zero by their tolerance where no pose scores (lambda = 0, or no skin); exact sums do not.
+pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -> f64 {
+    let (best, largest) = scores
+        .into_iter()
+        .fold((0.0f64, 0.0f64), |(best, largest), score| {
+            (best.max(score), largest.max(score.abs()))
+        });
+    if best > ringing * largest {
+        best
+    } else {
+        largest
+    }
+}
+
+impl MeasuredError {
+    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
+    pub(crate) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
+        let poses = peaks.len().min(exact.len());
+        if best < NOTHING {
+            return Self {
+                poses,
+                rms: f64::INFINITY,
+                worst: f64::INFINITY,
+                low_pass_share: f64::INFINITY,
+            };
+        }
+        let (mut squares, mut worst, mut removed) = (0.0, 0.0f64, 0.0);
+        for (peak, exact) in peaks.iter().zip(exact) {
+            let error = (peak.score - exact.score).abs() / best;
+            squares += error * error;
+            worst = worst.max(error);
+            removed += (exact.terms[Effect::Shape as usize] - exact.unfiltered).abs() / best;
+        }
+        Self {
+            poses,
+            rms: (squares / poses.max(1) as f64).sqrt(),
+            worst,
+            low_pass_share: removed / poses.max(1) as f64,
+        }
+    }
+}
+
+/// What one term of the score cost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectCost {
+    /// The term.
+    pub effect: Effect,
+    /// Whether it was on.
+    pub on: bool,
+    /// Why it was on or off.
+    pub reason: String,
+    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out would save.
+    pub rank: usize,
+    /// Milliseconds that it adds to a rotation on one thread, likewise, peaks not counted.
+    #[serde(skip)]
+    pub milliseconds_per_rotation: f64,
+}
+
+/// Time of one stage of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StageTime {
+    /// Name of the stage.
+    pub name: &'static str,
+    /// Wall-clock seconds.
+    pub wall_seconds: f64,
+    /// CPU seconds of the whole process, where the system tells.
+    pub cpu_seconds: Option<f64>,
+}
+
+/// All that a docking run found.
+#[derive(Clone, Debug)]
+pub struct DockOutcome {
+    /// Rows of the ranking, best first: one a cluster, or every pose where the options ask for it.
+    pub poses: Vec<RankedPose>,
+    /// Poses kept before clustering.
+    pub poses_kept: usize,
+    /// Number of clusters.
+    pub clusters: usize,
+    /// Rotations of the set that were searched.
+    pub searched: usize,
+    /// Where the run stopped for a deadline, or one that it repeats did; `None` where it went to its end.
+    pub stopped: Option<Stopped>,
+    /// The fast path's error as measured.
+    pub error: MeasuredError,
+    /// Rank of the compressed functions in use.
+    pub rank: usize,
+    /// Error of the compressed functions at the probe rotations, relative to their best score.
+    pub rank_error: f64,
+    /// What each term cost.
+    pub effects: Vec<EffectCost>,
+    /// What a finer search about the best rotations covered, where one was asked for.
+    pub fine: Option<FineSearched>,
+    /// Time by stage.
+    pub timing: Vec<StageTime>,
+    /// The graphics processor that correlated, where one did.
+    pub adapter: Option<Adapter>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
+    #[test]
+    fn errors_are_shares_of_the_best_score_and_of_magnitudes_only_where_nothing_scores() {
+        assert_eq!(error_scale([100.0, 30.0, -20_000.0], 0.0), 100.0);
+        assert_eq!(error_scale([-30.0, -20_000.0], 0.0), 20_000.0);
+        assert_eq!(error_scale([-3.0, 1e-9, -20_000.0], 1e-2), 20_000.0);
+        assert_eq!(error_scale([], 1e-2), 0.0);
+    }
+}

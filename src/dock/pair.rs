@@ -1,0 +1,198 @@
+//! Two bodies made ready to be docked, once or again and again with other options.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use knotdock_structures::mesh::Solid;
+use knotdock_structures::molecule::Molecule;
+
+use crate::dock::outcome::StageTime;
+use crate::dock::plan::{DockPlan, plan, plan_scene};
+use crate::dock::run::molecule_points;
+use crate::dock::scene::Scene;
+use crate::error::SearchError;
+use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, PER_AXIS, SampleWeights, sample_pair};
+use crate::options::DockOptions;
+
+/// Two bodies, the receptor first.
+#[derive(Clone, Copy)]
+pub enum Pair<'a> {
+    /// Molecules, in Å.
+    Molecules([&'a Molecule; 2]),
+    /// Meshes, in one unit of length.
+    Meshes([&'a Solid; 2]),
+}
+
+/// Why a setting cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PairError {
+    /// The search refuses it.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// The meshes cannot be sampled so.
+    #[error(transparent)]
+    Mesh(#[from] MeshSceneError),
+}
+
+impl PairError {
+    /// What the user may do about it.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Search(error) => error.remedy(),
+            Self::Mesh(error) => error.remedy().to_owned(),
+        }
+    }
+}
+
+/// Meshes as balls, and what it took to make them.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// The balls of both.
+    pub pair: MeshPair,
+    /// Time.
+    pub time: StageTime,
+}
+
+impl Sampling {
+    /// Samples two meshes.
+    ///
+    /// # Errors
+    /// [`MeshSceneError`].
+    pub fn of(
+        [receptor, ligand]: [&Solid; 2],
+        options: &MeshOptions,
+    ) -> Result<Self, MeshSceneError> {
+        let (pair, time) = timed("sample", || sample_pair(receptor, ligand, options));
+        Ok(Self { pair: pair?, time })
+    }
+}
+
+/// A docking made ready to run.
+pub struct PreparedPair {
+    /// Its plan.
+    pub plan: DockPlan,
+    /// Points of the ligand whose RMSD makes clusters.
+    pub points: Vec<[f64; 3]>,
+    /// How meshes were sampled.
+    pub sampling: Option<Arc<Sampling>>,
+    /// What sampling (of meshes) and planning took.
+    pub timing: Vec<StageTime>,
+}
+
+impl PreparedPair {
+    /// Plans a docking of molecules.
+    ///
+    /// # Errors
+    /// [`SearchError`].
+    pub fn molecules(
+        [receptor, ligand]: [&Molecule; 2],
+        options: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        let (planned, time) = timed("plan", || plan(receptor, ligand, options));
+        Ok(Self {
+            plan: planned?,
+            points: molecule_points(ligand),
+            sampling: None,
+            timing: vec![time],
+        })
+    }
+
+    /// Plans a docking of sampled meshes; `options` have all lengths.
+    ///
+    /// # Errors
+    /// [`SearchError`].
+    pub fn meshes(sampling: Arc<Sampling>, options: &DockOptions) -> Result<Self, SearchError> {
+        let (planned, time) = timed("plan", || {
+            let scene = Scene::of_meshes(&sampling.pair, options)?;
+            plan_scene(scene, options)
+        });
+        Ok(Self {
+            plan: planned?,
+            points: sampling.pair.parts[1].knots.centers.clone(),
+            timing: vec![sampling.time, time],
+            sampling: Some(sampling),
+        })
+    }
+}
+
+/// Makes dockings of a pair ready, with the samplings of its meshes that were needed so far.
+pub struct Preparer<'a> {
+    pair: Pair<'a>,
+    sampled: Vec<(SamplingKey, Arc<Sampling>)>,
+}
+
+/// What a sampling depends on, of one pair and one offset.
+type SamplingKey = (usize, SampleWeights);
+
+fn key(options: &DockOptions) -> SamplingKey {
+    (
+        options.sample_grid.unwrap_or(PER_AXIS),
+        options.sample_weights.unwrap_or_default(),
+    )
+}
+
+impl<'a> Preparer<'a> {
+    /// Knows what `first`, prepared with `options`, needed.
+    pub fn new(pair: Pair<'a>, options: &DockOptions, first: &PreparedPair) -> Self {
+        let sampled = first.sampling.iter();
+        Self {
+            pair,
+            sampled: sampled
+                .map(|sampling| (key(options), Arc::clone(sampling)))
+                .collect(),
+        }
+    }
+
+    /// Samples what has to be and plans. Of meshes, `options` have all lengths; a sampling that is at hand is used again, with the time
+    /// that it took.
+    ///
+    /// # Errors
+    /// [`PairError`].
+    pub fn prepare(&mut self, options: &DockOptions) -> Result<PreparedPair, PairError> {
+        match self.pair {
+            Pair::Molecules(molecules) => Ok(PreparedPair::molecules(molecules, options)?),
+            Pair::Meshes(solids) => {
+                let sampling = self.sampling(solids, options)?;
+                Ok(PreparedPair::meshes(sampling, options)?)
+            }
+        }
+    }
+
+    fn sampling(
+        &mut self,
+        solids: [&Solid; 2],
+        options: &DockOptions,
+    ) -> Result<Arc<Sampling>, MeshSceneError> {
+        let wanted = key(options);
+        if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
+            return Ok(Arc::clone(known));
+        }
+        let (per_axis, weights) = wanted;
+        let sampling = Arc::new(Sampling::of(
+            solids,
+            &MeshOptions {
+                per_axis,
+                offset: Some(options.offset),
+                weights,
+                alpha: options.alpha,
+            },
+        )?);
+        self.sampled.push((wanted, Arc::clone(&sampling)));
+        Ok(sampling)
+    }
+}
+
+/// The result of a call with its wall and CPU time.
+fn timed<T>(name: &'static str, call: impl FnOnce() -> T) -> (T, StageTime) {
+    let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
+    let result = call();
+    let time = StageTime {
+        name,
+        wall_seconds: wall.elapsed().as_secs_f64(),
+        cpu_seconds: cpu
+            .and_then(|cpu| cpu.try_elapsed().ok())
+            .map(|cpu| cpu.as_secs_f64()),
+    };
+    (result, time)
+}

@@ -1,0 +1,216 @@
+//! The plan of a docking run: engine plan, rotations, and the memory that it will take.
+
+use crate::dock::loose::Loose;
+use crate::dock::memory::{MemoryPlan, most_in_flight};
+use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::error::SearchError;
+use crate::options::{DockOptions, REFINED_BY_SHAPE};
+use crate::pose_space::PoseSpace;
+use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::rank::rescoring::Asked;
+use crate::search::plan::SearchPlan;
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::lifted_axis::RadiusBasis;
+use knotdock_scoring::rescoring::Rescorer;
+use knotdock_structures::Knots;
+use knotdock_structures::molecule::{LabelReport, Molecule};
+use serde::Serialize;
+use std::sync::Arc;
+
+/// A planned docking run.
+#[derive(Clone, Debug, Serialize)]
+pub struct DockPlan {
+    /// The options it was made from.
+    #[serde(skip)]
+    pub options: DockOptions,
+    /// Unit of all lengths.
+    pub unit: LengthUnit,
+    /// Number of rotations, of rings that of axes.
+    pub rotations: usize,
+    /// Name of the rotation set.
+    pub rotation_set: &'static str,
+    /// Measured covering radius of the set, of rings that of their axes, degrees.
+    pub covering_radius_degrees: f64,
+    /// Grid points per axis.
+    pub grid: [usize; 3],
+    /// Grid spacing, Å.
+    pub spacing: f64,
+    /// Fine grid of the nufft transforms, points per axis.
+    pub fine_grid: [usize; 3],
+    /// Width of the spreading window, fine cells.
+    pub spreading_width: usize,
+    /// Three-dimensional modes kept, conjugates not counted.
+    pub modes: usize,
+    /// Modes of the lifted axis, k = -K..K.
+    pub lifted_modes: usize,
+    /// Distance in Å at which the ranking kernel ends.
+    pub kernel_reach: f64,
+    /// Pass frequency of the low-pass, 1/Å.
+    pub pass_frequency: f64,
+    /// Stop frequency of the low-pass, 1/Å.
+    pub stop_frequency: f64,
+    /// Distinct radii of receptor and ligand.
+    pub radii: [usize; 2],
+    /// What plays the part of an Ångström, in `unit`.
+    #[serde(skip)]
+    pub(crate) angstrom: f64,
+    /// Bytes that everything but rotations in flight takes.
+    pub fixed_bytes: u64,
+    /// Bytes that a rotation in flight takes.
+    pub bytes_in_flight: u64,
+    /// Which effects are on, and why.
+    #[serde(skip)]
+    pub decisions: Vec<Decision>,
+    /// What poses should touch.
+    #[serde(skip)]
+    pub(crate) attracted: ActiveResidues,
+    /// What was assumed of charges and contact types, of receptor and ligand.
+    pub labels: [LabelReport; 2],
+    /// Residues that are missing, and those near ends of chains, of receptor and ligand.
+    #[serde(flatten)]
+    pub loose: Loose,
+    /// What is searched, and how.
+    #[serde(skip)]
+    pub(crate) search: SearchPlan,
+    #[serde(skip)]
+    pub(crate) receptor: Knots,
+    #[serde(skip)]
+    pub(crate) ligand: Knots,
+}
+
+/// Plans the docking of two molecules.
+///
+/// # Errors
+/// [`SearchError`] on options out of range, unusable knots, or too little memory for a single rotation.
+pub fn plan(
+    receptor: &Molecule,
+    ligand: &Molecule,
+    options: &DockOptions,
+) -> Result<DockPlan, SearchError> {
+    options.check()?;
+    plan_scene(Scene::new(receptor, ligand, options)?, options)
+}
+
+/// Plans the docking of a scene, whatever it was made from.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
+    options.check()?;
+    let engine = scene.engine_plan(options)?;
+    let memory = MemoryPlan::new(&scene, &engine, options)?;
+    let space = PoseSpace::new(options.symmetry, scene.ring_axis);
+    let limits = (memory.in_flight, memory.graphics);
+    let search = SearchPlan::new(Arc::new(engine), space, options, limits);
+    let engine = &search.engine;
+    let radii = match engine.basis() {
+        RadiusBasis::Classes { receptor, ligand } => [receptor.len(), ligand.len()],
+        _ => engine.basis().sizes(engine.axis()).into(),
+    };
+    Ok(DockPlan {
+        unit: scene.unit,
+        angstrom: scene.angstrom,
+        rotations: options.rotations,
+        rotation_set: search.rotations.name,
+        covering_radius_degrees: search.rotations.covering_radius.to_degrees(),
+        grid: engine.size(),
+        spacing: engine.spacing(),
+        fine_grid: engine.fine(),
+        spreading_width: engine.width(),
+        modes: engine.modes().count,
+        lifted_modes: engine.axis().modes(),
+        kernel_reach: engine.kernel().reach(),
+        pass_frequency: 1.0 / engine.options().kernel.pass_length,
+        stop_frequency: engine.kernel().stop(),
+        radii,
+        fixed_bytes: memory.fixed,
+        bytes_in_flight: memory.per_rotation,
+        decisions: scene.decisions,
+        attracted: scene.attracted,
+        labels: scene.labels,
+        loose: scene.loose,
+        options: options.clone(),
+        receptor: scene.receptor,
+        ligand: scene.ligand,
+        search,
+    })
+}
+
+impl DockPlan {
+    /// The knots that are docked, of receptor and ligand.
+    pub fn knots(&self) -> [&Knots; 2] {
+        [&self.receptor, &self.ligand]
+    }
+
+    /// Rotations in flight at once.
+    pub fn in_flight(&self) -> usize {
+        self.search.in_flight
+    }
+
+    /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
+    pub fn unresolved(&self) -> [usize; 2] {
+        [&self.receptor, &self.ligand].map(|knots| self.search.engine.unresolved(knots).len())
+    }
+
+    /// The exact sum of what is ranked.
+    ///
+    /// # Errors
+    /// [`SearchError::Knots`] on knots that cannot be summed.
+    pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
+        Ok(ExactScorer::with_effects(
+            self.search.engine.kernel(),
+            &self.receptor,
+            &self.ligand,
+            self.search.engine.effects(),
+        )?)
+    }
+
+    /// Number of poses to refine: all where none lies on the grid, as of rings.
+    pub fn refined(&self) -> usize {
+        if !self.search.space.is_on_grid() {
+            return self.options.poses;
+        }
+        let alone = self
+            .decisions
+            .iter()
+            .all(|decision| decision.effect == Effect::Shape || !decision.on);
+        self.options
+            .refine
+            .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
+    }
+
+    /// What poses are rescored with; `None` where there is nothing to ask.
+    pub(crate) fn rescorer(&self) -> Option<Rescorer> {
+        let bodies = [&self.receptor, &self.ligand];
+        self.asked()
+            .rescorer(bodies, &self.attracted, &self.loose, &self.options)
+    }
+
+    /// The active site that the partner of a peptidase is assumed to bind, where one is.
+    pub fn active_site(&self) -> Option<&AssumedSite> {
+        self.attracted.assumed.as_ref()
+    }
+
+    /// What poses are asked beside their score.
+    pub(crate) fn asked(&self) -> Asked {
+        Asked::of(&self.decisions, &self.attracted, &self.loose, &self.options)
+    }
+
+    /// Rotations that would be in flight if there were more than enough of them.
+    pub(crate) fn most_in_flight(&self) -> usize {
+        most_in_flight(&self.options, self.fixed_bytes, self.bytes_in_flight)
+    }
+
+    /// Whether an effect is on.
+    pub fn is_on(&self, effect: Effect) -> bool {
+        self.decisions.iter().any(|d| d.effect == effect && d.on)
+    }
+
+    /// Bytes that the run is expected to take at its peak.
+    pub fn memory_bytes(&self) -> u64 {
+        self.fixed_bytes
+            + self.search.in_flight as u64 * self.bytes_in_flight
+            + self.search.graphics_bytes
+    }
+}

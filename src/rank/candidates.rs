@@ -1,0 +1,158 @@
+//! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
+
+use crate::pose_space::refine::RefinedPose;
+use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
+use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
+use knotdock_scoring::se3::Pose;
+use rayon::prelude::*;
+
+/// A pose in the running.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    /// The pose.
+    pub pose: Pose,
+    /// The fast path's score at `pose`, and what rescoring adds there.
+    pub score: f64,
+    /// What rescoring says of `pose`.
+    pub rescored: Rescored,
+    /// The pose that it was refined from.
+    pub start: Pose,
+    /// All terms at `start`, where they are known already.
+    pub terms: Option<ExactScore>,
+    /// Whether `pose` was moved off the grid.
+    pub refined: bool,
+    /// Index of the rotation that it came from.
+    pub rotation: usize,
+    /// The grid's score where it came from.
+    pub score_grid: f64,
+}
+
+/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
+pub(crate) fn candidates(
+    peaks: &[Peak],
+    placed: &[RefinedPose],
+    at_start: &[ExactScore],
+    rescorer: Option<&Rescorer>,
+) -> Vec<Candidate> {
+    let mut candidates: Vec<Candidate> = peaks
+        .par_iter()
+        .zip(placed)
+        .enumerate()
+        .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
+            let rescored = rescorer
+                .map(|rescorer| rescorer.score(&placed.pose, workspace))
+                .unwrap_or_default();
+            Candidate {
+                pose: placed.pose,
+                score: placed.score + rescored.sum(),
+                rescored,
+                start: placed.start,
+                terms: at_start.get(index).copied(),
+                refined: placed.refined,
+                rotation: peak.rotation as usize,
+                score_grid: peak.score,
+            }
+        })
+        .filter(|candidate| candidate.score.is_finite())
+        .collect();
+    // The list comes in the order of the grid's scores, which breaks ties.
+    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    candidates
+}
+
+/// Drops refined poses that ended where a better one did.
+pub(crate) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
+    let poses: Vec<Pose> = candidates
+        .iter()
+        .filter(|candidate| candidate.refined)
+        .map(|candidate| candidate.pose)
+        .collect();
+    let groups = greedy(body, &poses, distance);
+    let (mut index, mut seen) = (0, 0);
+    candidates.retain(|candidate| {
+        if !candidate.refined {
+            return true;
+        }
+        let is_best = groups[index] == seen;
+        index += 1;
+        seen += usize::from(is_best);
+        is_best
+    });
+}
+
+/// Each candidate's cluster, numbered from 0 in the order of their centres.
+pub(crate) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
+    let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
+    greedy(body, &poses, radius)
+}
+
+/// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster.
+///
+/// A refined pose has left the samples of the search and stands for those about it. They still count in its cluster,
+/// whose size says how broad the maximum is; a list of poses needs only one of them.
+pub(crate) fn deduplicated(
+    candidates: &[Candidate],
+    clusters: &[usize],
+    body: &RigidBody,
+    step: f64,
+) -> Vec<bool> {
+    let count = clusters.iter().max().map_or(0, |last| last + 1);
+    let mut standing: Vec<Vec<PlacedBody>> = vec![Vec::new(); count];
+    candidates
+        .iter()
+        .zip(clusters)
+        .map(|(candidate, &cluster)| {
+            let others = &mut standing[cluster];
+            let near = body.first_within(others, &candidate.pose, step);
+            let apart = near.is_none();
+            if apart && candidate.refined {
+                others.push(body.place(&candidate.pose));
+            }
+            apart
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.
+    #[test]
+    fn repeats_are_not_listed_within_their_cluster() {
+        let body = RigidBody::new(&[[0.0; 3]]);
+        let at = |x: f64| Pose {
+            translation: Vector3::new(x, 0.0, 0.0),
+            ..Pose::identity()
+        };
+        let found = |x: f64, score: f64, refined: bool| {
+            let peak = Peak {
+                score: 0.0,
+                rotation: 0,
+                voxel: 0,
+            };
+            let grid = (at(x), if refined { 0.0 } else { score });
+            let placed = RefinedPose::best_of(grid, refined.then_some((at(x), score)));
+            (peak, placed)
+        };
+        let (peaks, placed): (Vec<Peak>, Vec<RefinedPose>) = [
+            found(0.0, 9.0, true),
+            found(1.0, 8.0, true),
+            found(0.5, 7.0, false),
+            found(3.5, 6.0, false),
+            found(3.0, 5.0, true),
+            found(2.5, 4.0, true),
+        ]
+        .into_iter()
+        .unzip();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let of = |clusters: &[usize]| deduplicated(&candidates, clusters, &body, 2.0);
+        assert_eq!(of(&[0; 6]), [true, false, false, true, true, false]);
+        // The second cluster's best pose, and what lies beyond it.
+        let seconds = [0, 1, 0, 1, 1, 1];
+        assert_eq!(of(&seconds), [true, true, false, true, false, false]);
+    }
+}

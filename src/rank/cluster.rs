@@ -1,0 +1,198 @@
+//! Clusters of poses by the ligand's RMSD, in closed form.
+//!
+//! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')), c the images
+//! of the points' mean and C their covariance: O(1) a pair of poses.
+
+use crate::pose_space::equivalents::Equivalents;
+use knotdock_scoring::se3::Pose;
+use nalgebra::{Matrix3, Vector3};
+
+/// The body whose RMSD is taken: mean and covariance of its points in its own frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    mean: Vector3<f64>,
+    covariance: Matrix3<f64>,
+    /// Poses that are one with a pose.
+    equivalents: Equivalents,
+}
+
+/// A pose with what its distances to others need.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedBody {
+    center: Vector3<f64>,
+    rotation: Matrix3<f64>,
+    /// R C.
+    turned: Matrix3<f64>,
+}
+
+impl RigidBody {
+    /// The body of some points (Å); without any it is a single point at the origin.
+    pub fn new(points: &[[f64; 3]]) -> Self {
+        let count = points.len().max(1) as f64;
+        let mean = points
+            .iter()
+            .fold(Vector3::zeros(), |sum, &p| sum + Vector3::from(p))
+            / count;
+        let covariance = points.iter().fold(Matrix3::zeros(), |sum, &p| {
+            let d = Vector3::from(p) - mean;
+            sum + d * d.transpose()
+        }) / count;
+        Self {
+            mean,
+            covariance,
+            equivalents: Equivalents::None,
+        }
+    }
+
+    /// The body in a space in which further poses are one with a pose.
+    pub fn with_equivalents(self, equivalents: Equivalents) -> Self {
+        Self {
+            equivalents,
+            ..self
+        }
+    }
+
+    /// The body at all poses that are one with this one, itself first.
+    fn images(&self, pose: &Pose) -> Vec<PlacedBody> {
+        let poses = self.equivalents.of(pose);
+        poses.map(|pose| self.place(&pose)).collect()
+    }
+
+    /// The first of some placed bodies that a pose, or one that is one with it, lies within `distance` (Å RMSD) of.
+    pub fn first_within(&self, placed: &[PlacedBody], pose: &Pose, distance: f64) -> Option<usize> {
+        let images = self.images(pose);
+        placed.iter().position(|other| {
+            let within = |image| self.mean_square(other, image) <= distance * distance;
+            images.iter().any(within)
+        })
+    }
+
+    /// RMSD in Å between two poses that are `shift` (Å) and a turn by `angle` (radians) about the body's middle apart, as the root of the mean square over axes.
+    ///
+    /// About a unit axis n the turn moves the points by 2 (1 - cos angle) (tr C - n' C n) in mean square, and n' C n is a third of tr C in the mean.
+    pub fn step(&self, shift: f64, angle: f64) -> f64 {
+        let turned = 4.0 / 3.0 * (1.0 - angle.cos()) * self.covariance.trace();
+        (shift * shift + turned).sqrt()
+    }
+
+    /// Radius of gyration, Å.
+    pub fn gyration(&self) -> f64 {
+        self.covariance.trace().sqrt()
+    }
+
+    /// Places the body.
+    pub fn place(&self, pose: &Pose) -> PlacedBody {
+        let rotation = *pose.rotation.to_rotation_matrix().matrix();
+        PlacedBody {
+            center: rotation * self.mean + pose.translation,
+            rotation,
+            turned: rotation * self.covariance,
+        }
+    }
+
+    /// Mean square distance in Å^2 of the body's points between two poses.
+    pub fn mean_square(&self, a: &PlacedBody, b: &PlacedBody) -> f64 {
+        let between = (a.center - b.center).norm_squared();
+        // Rounding may leave a hair below zero for equal rotations.
+        (between + 2.0 * (self.covariance.trace() - a.turned.component_mul(&b.rotation).sum()))
+            .max(0.0)
+    }
+}
+
+/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
+/// becomes the centre of a new one. Returns each pose's cluster, numbered from 0 in that order.
+pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
+    let mut centres: Vec<PlacedBody> = Vec::new();
+    poses
+        .iter()
+        .map(|pose| {
+            let near = body.first_within(&centres, pose, radius);
+            near.unwrap_or_else(|| {
+                centres.push(body.place(pose));
+                centres.len() - 1
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::symmetry::RingAxis;
+
+    #[test]
+    fn closed_form_is_the_rmsd_of_the_points() {
+        let points = [
+            [1.0, 2.0, 3.0],
+            [-4.0, 0.5, 2.0],
+            [7.0, -1.0, 0.0],
+            [0.0, 3.0, -5.0],
+        ];
+        let body = RigidBody::new(&points);
+        let a = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [5.0, 6.0, -7.0]);
+        let b = Pose::from_parts([-0.2, 0.7, 0.3, 0.4], [4.0, -6.0, 1.0]);
+        let direct = points
+            .iter()
+            .map(|&p| (Vector3::from(a.apply(p)) - Vector3::from(b.apply(p))).norm_squared())
+            .sum::<f64>()
+            / 4.0;
+        assert!((body.mean_square(&body.place(&a), &body.place(&b)) - direct).abs() < 1e-10);
+        assert!(body.mean_square(&body.place(&a), &body.place(&a)) < 1e-10);
+    }
+
+    /// A third of a turn back is the same ring as a third forward, and only where rings are asked for.
+    #[test]
+    fn rings_are_one_with_their_inverses() {
+        let body = RigidBody::new(&[[9.0, 0.0, 0.0], [10.0, 3.0, 0.0], [9.0, 1.0, 5.0]]);
+        let half = std::f64::consts::FRAC_PI_3;
+        let forward = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
+        let poses = [forward, forward.inverse()];
+        assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
+        assert_eq!(
+            greedy(&body.with_equivalents(Equivalents::Inverse), &poses, 5.0),
+            [0, 0]
+        );
+    }
+
+    /// A second ring is the same whichever of its copies is called the first.
+    #[test]
+    fn second_rings_are_one_with_their_turns() {
+        let copy = vec![[9.0, 0.0, 0.0], [10.0, 3.0, 0.0], [9.0, 1.0, 5.0]];
+        let other = copy
+            .iter()
+            .map(|&[x, y, z]: &[f64; 3]| [-x, -y, z])
+            .collect();
+        let copies = [copy, other];
+        let axis = RingAxis::of(&copies).unwrap();
+        let body = RigidBody::new(&copies.concat());
+        let pose = Pose::from_parts([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 12.0]);
+        let turned = pose.after(&axis.turns().next().unwrap());
+        assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 1]);
+        let body = body.with_equivalents(Equivalents::Rotated(axis.turns().collect()));
+        assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 0]);
+    }
+
+    /// Turns about the three axes of a frame have the mean over all axes, since n' C n is quadratic in n.
+    #[test]
+    fn a_step_is_the_rmsd_of_a_turn_and_a_shift() {
+        let body = RigidBody::new(&[[9.0, 1.0, 0.0], [10.0, -3.0, 2.0], [-4.0, 1.0, 5.0]]);
+        let place = |pose: &Pose| body.place(pose);
+        let (angle, shift) = (0.7f64, 1.3);
+        let squares = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| {
+            let turn = nalgebra::UnitQuaternion::new(angle * axis);
+            let middle = body.mean + shift * axis;
+            let moved = Pose::about(turn, body.mean, middle);
+            body.mean_square(&place(&Pose::identity()), &place(&moved))
+        });
+        let expected = (squares.iter().sum::<f64>() / 3.0).sqrt();
+        assert!((body.step(shift, angle) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn greedy_takes_the_best_as_centre() {
+        let body = RigidBody::new(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+        let at = |x: f64| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+        let clusters = greedy(&body, &[at(0.0), at(8.0), at(4.0), at(6.0), at(20.0)], 5.0);
+        assert_eq!(clusters, [0, 1, 0, 1, 2]);
+    }
+}

@@ -1,0 +1,7 @@
+//! The ranking: candidates, clusters and the rows that are reported.
+
+pub(crate) mod candidates;
+pub mod cluster;
+pub(crate) mod ranking;
+pub(crate) mod rescoring;
+pub(crate) mod time_left;

@@ -1,0 +1,384 @@
+//! The ranking: clusters by the fast path's scores, and every row that is reported by its exact score.
+//!
+//! The fast path's error is measured in every run and far below what sets clusters apart, while an exact sum costs as much as a whole
+//! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
+//! pose was refined); rows of the table carry exact scores.
+//!
+//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the pose score; of rings with what copies beyond the
+//! neighbours add to it.
+//!
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores: the best pose's where it stands alone, more where many
+//! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
+//! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
+//!
+//! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same score,
+//! so that such a cluster has many good poses; where a joint fits there is one place.
+
+use crate::dock::outcome::RankedPose;
+use crate::dock::scene::LengthUnit;
+use crate::pose_space::PoseSpace;
+use crate::progress::Progress;
+use crate::rank::candidates::Candidate;
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::rescoring::{Rescorer, Workspace};
+use knotdock_scoring::se3::Pose;
+use rayon::prelude::*;
+
+/// What rows of the table are scored by.
+#[derive(Clone, Copy)]
+pub(crate) struct PoseScorer<'a> {
+    /// The exact score.
+    pub scorer: &'a ExactScorer,
+    /// What poses are rescored with.
+    pub rescorer: Option<&'a Rescorer>,
+    /// Which effects are on, by effect.
+    pub on: [bool; Effect::ALL.len()],
+    /// The poses that are searched.
+    pub space: &'a PoseSpace,
+    /// T of the clusters' scores, as a share of the run's best score.
+    pub cluster_temperature: f64,
+}
+
+/// What is reported of the ranking.
+pub(crate) struct Ranking {
+    /// Best first.
+    pub poses: Vec<RankedPose>,
+    pub clusters: usize,
+}
+
+/// T as a share of the run's best score, by what is docked.
+pub(crate) fn cluster_temperature(unit: LengthUnit) -> f64 {
+    match unit {
+        LengthUnit::Angstrom => 0.1,
+        LengthUnit::File => 0.0,
+    }
+}
+
+/// Most rows that a thread takes at once: refined ones take longer and come first.
+const ROWS_TOGETHER: usize = 8;
+
+/// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
+/// clusters are numbered; ties in the order given.
+///
+/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are scored.
+pub(crate) fn report(
+    pose_scorer: PoseScorer,
+    candidates: &[Candidate],
+    clusters: (&[usize], &[bool]),
+    every_pose: bool,
+    margin: f64,
+    progress: &dyn Progress,
+) -> Ranking {
+    let (clusters, listed) = clusters;
+    let count = clusters.iter().max().map_or(0, |last| last + 1);
+    let mut sizes = vec![0; count];
+    let mut weights = vec![0.0; count];
+    let best = candidates.first().map_or(0.0, |best| best.score.abs());
+    let temperature = (pose_scorer.cluster_temperature * best).max(f64::MIN_POSITIVE);
+    let background = Background::of(candidates);
+    let mut centres = vec![f64::NEG_INFINITY; count];
+    let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
+    for ((candidate, &cluster), &listed) in candidates.iter().zip(clusters).zip(listed) {
+        sizes[cluster] += 1;
+        // The centre comes first, being the best by the fast path.
+        centres[cluster] = centres[cluster].max(candidate.score);
+        // Scores against the centre's, so that nothing overflows.
+        weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
+        if listed && (every_pose || candidate.score >= centres[cluster] - margin) {
+            wanted.push((candidate, cluster));
+        }
+    }
+    progress.stage("score", wanted.len() as u64);
+    let mut rows: Vec<(RankedPose, usize)> = wanted
+        .into_par_iter()
+        .with_max_len(ROWS_TOGETHER)
+        .map(|(candidate, cluster)| {
+            let row = candidate.reported(pose_scorer);
+            progress.advance(1);
+            (row, cluster)
+        })
+        .filter(|(row, _)| row.pose_score.is_finite() && row.score_unfiltered.is_finite())
+        .collect();
+    rows.sort_by(|(a, _), (b, _)| b.pose_score.total_cmp(&a.pose_score));
+    // Rows come best first: the first of a cluster is its best.
+    let mut order: Vec<(usize, f64)> = Vec::new();
+    let mut seen = vec![false; count];
+    for (row, cluster) in &rows {
+        if !std::mem::replace(&mut seen[*cluster], true) {
+            order.push((
+                *cluster,
+                row.pose_score + temperature * weights[*cluster].ln(),
+            ));
+        }
+    }
+    order.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let mut places: Vec<Option<(usize, f64)>> = vec![None; count];
+    for (place, &(cluster, score)) in order.iter().enumerate() {
+        places[cluster] = Some((place, score));
+    }
+    let mut poses: Vec<RankedPose> = rows
+        .into_iter()
+        .filter_map(|(row, cluster)| {
+            let (place, score) = places[cluster]?;
+            let first = std::mem::replace(&mut seen[cluster], false);
+            (first || every_pose).then_some(RankedPose {
+                cluster: Some(place + 1),
+                cluster_size: Some(sizes[cluster]),
+                cluster_score: Some(score),
+                z_score: background.z_score(row.pose_score),
+                ..row
+            })
+        })
+        .collect();
+    if !every_pose {
+        poses.sort_by_key(|row| row.cluster);
+    }
+    Ranking {
+        poses,
+        clusters: order.len(),
+    }
+}
+
+/// What the run's kept poses score on the whole.
+struct Background {
+    mean: f64,
+    /// Nothing where scores differ by no more than the fast path may be off by.
+    deviation: Option<f64>,
+}
+
+/// Least spread of scores, as a share of the largest, that tells one pose from another.
+const MIN_SPREAD: f64 = 1e-3;
+
+impl Background {
+    /// Mean and standard deviation of the candidates' pose scores by the fast path.
+    fn of(candidates: &[Candidate]) -> Self {
+        let count = candidates.len().max(1) as f64;
+        let mean = candidates.iter().map(|c| c.score).sum::<f64>() / count;
+        let squares = candidates.iter().map(|c| (c.score - mean).powi(2));
+        let deviation = (squares.sum::<f64>() / count).sqrt();
+        let largest = candidates.iter().map(|c| c.score.abs()).fold(0.0, f64::max);
+        Self {
+            mean,
+            deviation: (deviation > MIN_SPREAD * largest).then_some(deviation),
+        }
+    }
+
+    fn z_score(&self, pose_score: f64) -> Option<f64> {
+        let z = (pose_score - self.mean) / self.deviation?;
+        z.is_finite().then_some(z)
+    }
+}
+
+impl Candidate {
+    /// Its row of the table, exactly scored, not yet in a cluster.
+    fn reported(&self, pose_scorer: PoseScorer) -> RankedPose {
+        let PoseScorer {
+            scorer,
+            rescorer,
+            on,
+            space,
+            cluster_temperature: _,
+        } = pose_scorer;
+        let others = |pose: &Pose| space.other_copies(scorer, pose);
+        let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
+        let (pose, terms, others, refined) = if self.refined {
+            let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
+            // A climb on the fast path's values that the exact sum does not confirm is undone.
+            let before = match &self.terms {
+                Some(terms) => terms.score,
+                None => scorer.score_only(&self.start),
+            };
+            let start = others(&self.start);
+            if terms.score + beyond.unwrap_or(0.0) >= before + start.unwrap_or(0.0) {
+                (self.pose, terms, beyond, true)
+            } else {
+                (self.start, at_start(), start, false)
+            }
+        } else {
+            (self.start, at_start(), others(&self.start), false)
+        };
+        let rescored = match rescorer {
+            // An undone climb leaves another pose than was rescored.
+            Some(rescorer) if refined != self.refined => {
+                rescorer.score(&pose, &mut Workspace::default())
+            }
+            _ => self.rescored,
+        };
+        RankedPose {
+            pose,
+            fine_contact: rescored.fine_contact,
+            atom_pair: rescored.atom_pair,
+            relaxed: rescored.relaxed,
+            attraction: rescored.attraction,
+            missing: rescored.missing,
+            chain_ends: rescored.chain_ends,
+            other_copies: others,
+            pose_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
+            z_score: None,
+            score: terms.score,
+            cluster: None,
+            cluster_size: None,
+            cluster_score: None,
+            refined,
+            rotation: self.rotation,
+            score_grid: self.score_grid,
+            score_unfiltered: terms.unfiltered,
+            terms: std::array::from_fn(|effect| on[effect].then_some(terms.terms[effect])),
+            slices: terms.slices,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose_space::refine::RefinedPose;
+    use crate::rank::candidates::candidates;
+    use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+    use knotdock_scoring::peaks::Peak;
+    use knotdock_structures::Knots;
+    use nalgebra::Vector3;
+
+    struct Silent;
+    impl Progress for Silent {
+        fn stage(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64) {}
+    }
+
+    fn scorer() -> ExactScorer {
+        let options = KernelOptions {
+            lambda: 10.0,
+            offset: 2.2,
+            alpha: 2.0,
+            resolution: 4.5,
+            pass_length: 9.0,
+            trim: Trim::FlatTop,
+        };
+        let ball = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
+        let kernel = RankingKernel::new(options, 3.4, 3.4, 1.15).unwrap();
+        ExactScorer::new(&kernel, &ball, &ball).unwrap()
+    }
+
+    fn at(x: f64) -> Pose {
+        Pose {
+            translation: Vector3::new(x, 0.0, 0.0),
+            ..Pose::identity()
+        }
+    }
+
+    /// Scores 1, 2, 3, 4 have mean 2.5 and variance 1.25; where all are alike nothing stands out.
+    #[test]
+    fn z_scores_are_against_the_kept_poses() {
+        let with = |scores: &[f64]| {
+            let peaks: Vec<Peak> = scores
+                .iter()
+                .map(|&score| Peak {
+                    score,
+                    rotation: 0,
+                    voxel: 0,
+                })
+                .collect();
+            let placed = |peak: &Peak| RefinedPose::best_of((at(0.0), peak.score), None);
+            let placed: Vec<RefinedPose> = peaks.iter().map(placed).collect();
+            Background::of(&candidates(&peaks, &placed, &[], None))
+        };
+        let z = with(&[1.0, 2.0, 3.0, 4.0]).z_score(5.0).unwrap();
+        assert!((z - 2.5 / 1.25f64.sqrt()).abs() < 1e-12);
+        assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
+    }
+
+    /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
+    #[test]
+    fn an_undone_climb_is_reported_as_unrefined() {
+        let scorer = scorer();
+        let exact = |x: f64| scorer.score_only(&at(x));
+        let (touching, overlapping) = (4.2, 0.5);
+        assert!(exact(touching) > exact(overlapping));
+        let climbed = |from: f64, to: f64| {
+            let peak = Peak {
+                score: exact(from),
+                rotation: 0,
+                voxel: 0,
+            };
+            // The fast path claims a gain of one.
+            let refined = Some((at(to), peak.score + 1.0));
+            let placed = RefinedPose::best_of((at(from), peak.score), refined);
+            let candidates = candidates(&[peak], &[placed], &[], None);
+            let pose_scorer = PoseScorer {
+                scorer: &scorer,
+                rescorer: None,
+                on: [true, false, false, false],
+                space: &PoseSpace::Free,
+                cluster_temperature: 0.1,
+            };
+            let ranking = report(
+                pose_scorer,
+                &candidates,
+                (&[0], &[true]),
+                true,
+                0.0,
+                &Silent,
+            );
+            ranking.poses[0].clone()
+        };
+        let undone = climbed(touching, overlapping);
+        assert!(!undone.refined && undone.pose == at(touching));
+        assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
+        let stands = climbed(overlapping, touching);
+        assert!(stands.refined && stands.pose == at(touching));
+        assert_eq!(stands.terms[1..], [None; 3]);
+    }
+
+    /// Found by a user: a flat face slides on another at nearly the same score, and that cluster came before the joint that
+    /// fits, whose one pose had by 19% the best score of the run.
+    #[test]
+    fn company_counts_among_molecules_and_not_among_meshes() {
+        let scorer = scorer();
+        let score = |x: f64| scorer.score_only(&at(x));
+        // The best distance of the two atoms, and five farther apart that score nearly as much.
+        let tenths = (30..60).map(|tenths| f64::from(tenths) / 10.0);
+        let best = tenths
+            .max_by(|a, b| score(*a).total_cmp(&score(*b)))
+            .unwrap();
+        let all: Vec<f64> = (0..1000)
+            .map(|step| best + 1e-3 * f64::from(step))
+            .collect();
+        let near = all
+            .iter()
+            .find(|x| score(**x) < 0.97 * score(best))
+            .unwrap();
+        let poses: Vec<f64> = [best]
+            .into_iter()
+            .chain((0..5).map(|step| near + 1e-4 * f64::from(step)))
+            .collect();
+        assert!(poses.iter().all(|x| score(*x) > 0.9 * score(best)));
+        let peak = |x: &f64| Peak {
+            score: score(*x),
+            rotation: 0,
+            voxel: 0,
+        };
+        let peaks: Vec<Peak> = poses.iter().map(peak).collect();
+        let placed = |x: &f64| RefinedPose::best_of((at(*x), score(*x)), None);
+        let placed: Vec<RefinedPose> = poses.iter().map(placed).collect();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let first = |unit| {
+            let pose_scorer = PoseScorer {
+                scorer: &scorer,
+                rescorer: None,
+                on: [true, false, false, false],
+                space: &PoseSpace::Free,
+                cluster_temperature: cluster_temperature(unit),
+            };
+            let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
+            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &Silent);
+            let first = &ranking.poses[0];
+            (
+                first.cluster_size,
+                first.cluster_score == Some(first.pose_score),
+            )
+        };
+        assert_eq!(first(LengthUnit::Angstrom), (Some(5), false));
+        assert_eq!(first(LengthUnit::File), (Some(1), true));
+    }
+}

@@ -1,0 +1,76 @@
+//! How many poses there is time to rescore and score until a deadline.
+//!
+//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is done, on
+//! the machine as it then is, and the poses that scored least are left out where time is short.
+
+use crate::options::DockOptions;
+use crate::pose_space::refine::RefinedPose;
+use crate::rank::candidates::{candidates, clusters_of};
+use crate::rank::cluster::RigidBody;
+use crate::search::deadline::Deadline;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::rescoring::Rescorer;
+use std::time::Instant;
+
+/// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
+pub(crate) const FEWEST: usize = 100;
+/// Poses that are rescored to see how long one takes.
+const PROBES: usize = 48;
+
+/// The number of poses that are kept, best first. `scoring` is the seconds that the exact score of one takes.
+pub(crate) fn poses_in_time(
+    deadline: &Deadline,
+    (peaks, placed): (&[Peak], &[RefinedPose]),
+    rescorer: Option<&Rescorer>,
+    scoring: f64,
+    body: &RigidBody,
+    options: &DockOptions,
+) -> usize {
+    let count = peaks.len();
+    if count <= FEWEST {
+        return count;
+    }
+    let rescoring = rescorer.map_or(0.0, |rescorer| {
+        let step = count.div_ceil(PROBES);
+        let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
+        let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
+        let begun = Instant::now();
+        let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
+        begun.elapsed().as_secs_f64() / probed.max(1) as f64
+    });
+    // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
+    let scored = if options.every_pose {
+        1.0
+    } else {
+        let unscored = candidates(peaks, placed, &[], None);
+        let clusters = clusters_of(&unscored, body, options.cluster_radius);
+        let count = clusters.iter().max().map_or(0, |last| last + 1);
+        count as f64 / unscored.len().max(1) as f64
+    };
+    within(deadline.left(), rescoring + scored * scoring, count)
+}
+
+/// How many poses of `count` fit into the seconds left, [`FEWEST`] at least.
+fn within(left: f64, each: f64, count: usize) -> usize {
+    // Rounding down; infinite where poses take no time.
+    let fit = left / each;
+    if fit >= count as f64 {
+        return count;
+    }
+    (fit as usize).clamp(FEWEST.min(count), count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_poses_are_kept_as_fit() {
+        assert_eq!(within(10.0, 0.001, 2000), 2000);
+        assert_eq!(within(1.0, 0.001, 2000), 1000);
+        assert_eq!(within(0.0, 0.001, 2000), FEWEST);
+        assert_eq!(within(1.0, 0.0, 2000), 2000);
+        assert_eq!(within(0.0, 0.0, 2000), FEWEST);
+        assert_eq!(within(0.0, 0.001, 7), 7);
+    }
+}
