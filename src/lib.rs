@@ -3,6 +3,7 @@
 pub mod evaluate;
 pub mod output;
 pub mod pose_geometry;
+pub mod priors;
 pub mod score;
 pub mod search;
 pub mod tradeoff;
