@@ -6,13 +6,12 @@ use clap::{ArgGroup, Args};
 use knotdock::options::DockOptions;
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
-use knotdock::priors::active_residues::sites_told;
-use knotdock::priors::restraints::domains_told;
+use knotdock::priors::{Findings, PRIORS};
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
 };
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::cli::arguments::output_file::{check_output, is_same};
 use crate::cli::arguments::reading::ReadingArguments;
@@ -101,23 +100,14 @@ impl Inspect {
             .accessible_areas(surface_points(molecule.atoms.len()))
             .iter()
             .sum();
-        let antibody = molecule.antibody();
-        let active_sites = molecule.active_sites();
+        let findings = PRIORS.map(|prior| prior.findings(molecule));
         let missing = molecule.missing_residues();
         let ends = molecule.chain_ends();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(
-                &labels,
-                (&missing, &ends),
-                self.ph,
-                area,
-                volume,
-                antibody.as_ref(),
-                &active_sites
-            )
+            told(&labels, (&missing, &ends), self.ph, area, volume, &findings)
         ));
         if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;
@@ -131,17 +121,22 @@ impl Inspect {
                 path.display()
             ));
         }
-        console.result(&json!({
-            "input": input.entry()?,
-            "labels": labels,
-            "antibody": antibody.map(|antibody| antibody.domains),
-            "active_sites": active_sites,
-            "missing_residues": missing,
-            "chain_end_residues": ends,
-            "accessible_area": area,
-            "volume": volume.value,
-            "volume_error": volume.error,
-        }))?;
+        let mut entries = Map::new();
+        entries.insert("input".to_owned(), json!(input.entry()?));
+        entries.insert("labels".to_owned(), json!(labels));
+        for (prior, found) in PRIORS.iter().zip(findings) {
+            entries.insert(prior.entry_name().to_owned(), found.entry);
+        }
+        for (name, entry) in [
+            ("missing_residues", json!(missing)),
+            ("chain_end_residues", json!(ends)),
+            ("accessible_area", json!(area)),
+            ("volume", json!(volume.value)),
+            ("volume_error", json!(volume.error)),
+        ] {
+            entries.insert(name.to_owned(), entry);
+        }
+        console.result(&Value::Object(entries))?;
         Ok(())
     }
 }
@@ -162,8 +157,7 @@ fn told(
     ph: f64,
     area: f64,
     volume: Volume,
-    antibody: Option<&Antibody>,
-    active_sites: &[ActiveSite],
+    findings: &[Findings],
 ) -> String {
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
@@ -192,28 +186,11 @@ fn told(
             volume.value, volume.error
         ),
     ];
-    if let Some(antibody) = antibody {
-        lines.push(format!(
-            "Variable domains of an antibody: {}",
-            domains_told(antibody)
-        ));
-        for domain in &antibody.domains {
-            let cdrs = domain.cdrs.iter().map(|cdr| match cdr.as_slice() {
-                [] => "none".to_owned(),
-                [only] => only.clone(),
-                [first, .., last] => format!("{first}-{last}"),
-            });
-            lines.push(format!(
-                "CDRs of {} {}: {}",
-                domain.kind.name(),
-                domain.chain,
-                cdrs.collect::<Vec<_>>().join(", ")
-            ));
-        }
-    }
-    if !active_sites.is_empty() {
-        lines.push(format!("A peptidase, {}", sites_told(active_sites)));
-    }
+    lines.extend(
+        findings
+            .iter()
+            .flat_map(|found| found.lines.iter().cloned()),
+    );
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(
             "No charges known, counted as none: {}",

@@ -1,9 +1,10 @@
 //! What a pose should touch: residues that the user names, or else the active site of a peptidase.
 
 use crate::options::DockOptions;
+use crate::priors::{ActiveSite, Antibody};
 use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_scoring::rescoring::Residues;
-use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
+use knotdock_structures::molecule::{Molecule, Partner};
 use serde::Serialize;
 
 /// Sets of residues, of which poses should touch all of one, and what those earn.
@@ -67,7 +68,7 @@ impl AssumedSite {
     /// Where one of the two is a peptidase and the other is none, sites left out that are to stay free of contact. What an antibody was raised against is as
     /// likely to be anywhere.
     fn of(molecules: [&Molecule; 2], marks: [&[ResidueRole]; 2]) -> Option<Self> {
-        let (partner, mut sites, marks) = match molecules.map(Molecule::active_sites) {
+        let (partner, mut sites, marks) = match molecules.map(ActiveSite::all) {
             [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
             [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
             _ => return None,
@@ -76,7 +77,7 @@ impl AssumedSite {
             let mut atoms = site.atoms.iter().flatten();
             !atoms.any(|&atom| marks.get(atom) == Some(&ResidueRole::Excluded))
         });
-        let none = sites.is_empty() || molecules.iter().any(|m| m.antibody().is_some());
+        let none = sites.is_empty() || molecules.iter().any(|m| Antibody::of(m).is_some());
         (!none).then_some(Self { partner, sites })
     }
 
@@ -91,22 +92,9 @@ impl AssumedSite {
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (partner, sites) = (self.partner, sites_told(&self.sites));
+        let (partner, sites) = (self.partner, ActiveSite::all_in_words(&self.sites));
         write!(f, "the {partner} is a peptidase, {sites}")
     }
-}
-
-/// Active sites in words.
-pub fn sites_told(sites: &[ActiveSite]) -> String {
-    let told = |site: &ActiveSite| {
-        format!(
-            "of family {} like {} (catalytic {})",
-            site.family,
-            site.known_by,
-            site.residues.join(", ")
-        )
-    };
-    sites.iter().map(told).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]

@@ -2,10 +2,9 @@
 
 use crate::error::SearchError;
 use crate::options::DockOptions;
+use crate::priors::Antibody;
 use knotdock_scoring::effect::restraint::ResidueRole;
-use knotdock_structures::molecule::{
-    Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,
-};
+use knotdock_structures::molecule::{Molecule, ResidueSelection};
 use serde::{Deserialize, Serialize};
 
 /// What part of an antibody may touch.
@@ -67,17 +66,14 @@ impl Restraints {
         {
             let side = named.side;
             if options.antibody == AntibodySurface::Cdrs
-                && let Some(antibody) = molecule.antibody()
+                && let Some(antibody) = Antibody::of(molecule)
             {
                 for (mark, paratope) in marks.iter_mut().zip(&antibody.paratope) {
                     if !paratope {
                         *mark = ResidueRole::Excluded;
                     }
                 }
-                reasons.push(format!(
-                    "the {side} is an antibody ({}), which binds by its CDRs and what lies within {PARATOPE_EDGE} Å of them",
-                    domains_told(&antibody)
-                ));
+                reasons.push(format!("the {side} is {}", antibody.reason()));
             }
             for (option, residues, mark, told) in [
                 (named.block, named.blocked, ResidueRole::Excluded, "blocked"),
@@ -165,16 +161,6 @@ fn selected(
             value: unknown.part.clone(),
             bound: format!("residues that the {side} has, among {}", unknown.present()),
         })
-}
-
-/// The variable domains of an antibody in words.
-pub fn domains_told(antibody: &Antibody) -> String {
-    let told = |domain: &VariableDomain| {
-        let [first, last] = &domain.residues;
-        format!("{} {}:{first}-{last}", domain.kind.name(), domain.chain)
-    };
-    let domains = antibody.domains.iter().map(told);
-    domains.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
