@@ -6,7 +6,7 @@
 //!
 //! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
-//! The cases are made by `scripts/scoring_cases.py`.
+//! The cases are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

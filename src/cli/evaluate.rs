@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::evaluate::{Capri, PoseQuality};
+use knotdock::evaluate::{Capri, Criterion, PoseQuality};
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::{quality, report};
@@ -86,6 +86,8 @@ impl Evaluate {
                 "fnat": quality.fnat,
                 "dockq": quality.dockq,
                 "capri": quality.capri.name(),
+                "acceptable": Criterion::Acceptable.is_met(quality),
+                "near_native": Criterion::NearNative.is_met(quality),
             })
         });
         let matched = serde_json::to_value(evaluator.report()).map_err(Failure::other)?;

@@ -30,6 +30,7 @@
 mod alignment;
 mod contacts;
 mod copies;
+mod criterion;
 #[cfg(test)]
 mod copy_tests;
 mod dockq;
@@ -57,6 +58,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
+pub use criterion::Criterion;
 pub use dockq::{Capri, dockq};
 pub use error::EvaluateError;
 pub use native::Native;

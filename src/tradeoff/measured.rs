@@ -17,19 +17,17 @@ use crate::tradeoff::settings::Setting;
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
-/// Interface RMSD in Å up to which a pose is near-native.
-pub const NEAR_NATIVE: f64 = 2.5;
 
 /// How a setting ranks poses near the known complex, by rows of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NativeRanks {
-    /// Rank of the first pose that CAPRI calls acceptable or better.
+    /// Rank of the first acceptable pose ([`Criterion`](crate::evaluate::Criterion)).
     pub first_acceptable: Option<usize>,
-    /// Rank of the first pose whose interface RMSD is at most [`NEAR_NATIVE`].
+    /// Rank of the first near-native pose.
     pub first_near_native: Option<usize>,
-    /// Acceptable or better ones among the first 100.
+    /// Acceptable poses among the first 100.
     pub acceptable: usize,
-    /// Near-native ones among the first 100.
+    /// Near-native poses among the first 100.
     pub near_native: usize,
 }
 

@@ -9,14 +9,14 @@ use crate::dock::pair::{Pair, PairError, PreparedPair, Preparer};
 use crate::dock::plan::DockPlan;
 use crate::dock::run::dock;
 use crate::error::SearchError;
-use crate::evaluate::{Capri, Evaluator};
+use crate::evaluate::{Criterion, Evaluator};
 use crate::options::DockOptions;
 use crate::options::Precision;
 use crate::progress::Progress;
 use crate::rank::cluster::RigidBody;
 use crate::tradeoff::agreement::{agreement, compare};
 use crate::tradeoff::front::front;
-use crate::tradeoff::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
+use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Refused, Tradeoff};
 use crate::tradeoff::settings::{Knob, Planned, Setting, settings};
 
 /// Who is told how far a sweep has come.
@@ -207,25 +207,16 @@ fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, SearchError
 }
 
 fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
-    let qualities: Vec<(bool, bool)> = outcome
-        .poses
-        .par_iter()
-        .map(|row| {
-            let quality = evaluator.evaluate(&row.pose);
-            (
-                quality.capri != Capri::Incorrect,
-                quality.irmsd <= NEAR_NATIVE,
-            )
-        })
-        .collect();
-    let rank = |near: fn(&(bool, bool)) -> bool| qualities.iter().position(near).map(|at| at + 1);
-    let count =
-        |near: fn(&&(bool, bool)) -> bool| qualities.iter().take(FIRST).filter(near).count();
+    let poses = outcome.poses.par_iter();
+    let qualities: Vec<_> = poses.map(|row| evaluator.evaluate(&row.pose)).collect();
+    let met = |criterion: Criterion| qualities.iter().map(move |quality| criterion.is_met(quality));
+    let rank = |criterion| met(criterion).position(|met| met).map(|place| place + 1);
+    let count = |criterion| met(criterion).take(FIRST).filter(|met| *met).count();
     NativeRanks {
-        first_acceptable: rank(|near| near.0),
-        first_near_native: rank(|near| near.1),
-        acceptable: count(|near| near.0),
-        near_native: count(|near| near.1),
+        first_acceptable: rank(Criterion::Acceptable),
+        first_near_native: rank(Criterion::NearNative),
+        acceptable: count(Criterion::Acceptable),
+        near_native: count(Criterion::NearNative),
     }
 }
 

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """Reference values of the bump function's 3D Fourier transform, by mpmath at 40 digits.
 
-psi_a(x) = exp(1 / (1 - x^-a)), psi^(q) = 4 pi int_0^1 x^2 psi(x) sinc(2 q x) dx.  Prints the table that stands in
-scoring/src/kernel/reference.rs.  Needs mpmath (PyPI).
+    python3 scripts/reference/kernel_reference.py
+
+psi_a(x) = exp(1 / (1 - x^-a)), psi^(q) = 4 pi int_0^1 x^2 psi(x) sinc(2 q x) dx. Prints the table that stands in
+scoring/src/kernel/reference.rs. Needs mpmath (PyPI).
 """
+
 import mpmath as mp
 
 mp.mp.dps = 40

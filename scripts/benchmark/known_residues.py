@@ -1,20 +1,24 @@
-"""Residues that a known complex has in contact, as an experiment might tell some of them: what `scripts/benchmark.py --attract` gives a docking to know."""
+"""Contact residues drawn from a known complex, as an experiment might find some of them.
+
+Imported by benchmark.py, whose option --active gives them to each docking.
+"""
 
 import random
 from collections import defaultdict
 from itertools import product
 
-CONTACT = 5.0  # A, between heavy atoms, as native contacts are counted
+CONTACT = 5.0  # Å, between heavy atoms, as native contacts are counted
 
 
-def attraction(texts, name, seed, count):
-    """Options of `knotdock dock` that attract `count` residues of each side, drawn from its known interface by name and seed alone.
+def active_residues(texts, name, seed, count):
+    """Options of `knotdock dock` for `count` active residues of each side, drawn by name and seed alone.
 
-    `texts` holds the PDB text of receptor_bound, ligand_bound, receptor_unbound and ligand_unbound; residues are matched by number, and those that the
-    unbound file lacks are not drawn. With fewer than `count` in the interface all are taken. A number that a file has in several
-    chains is an error.
+    `texts` holds the PDB text of receptor_bound, ligand_bound, receptor_unbound and ligand_unbound. Residues are
+    matched by number; those that the unbound file lacks are not drawn. With fewer than `count` in the interface all
+    are taken. A number that a file has in several chains is an error.
     """
     bound = {side: list(atoms(texts[f"{side}_bound"])) for side in ("receptor", "ligand")}
+    # The seed's word is that of older runs, so that they can be repeated.
     source = random.Random(f"{name} {seed} attraction")
     options = []
     for side, other in (("receptor", "ligand"), ("ligand", "receptor")):
@@ -24,21 +28,24 @@ def attraction(texts, name, seed, count):
         known = [number for number in sorted(touching, key=order) if number in unbound]
         drawn = sorted(source.sample(known, min(count, len(known))), key=order)
         if drawn:
-            options += [f"--attract-{side}", ",".join(f"{unbound[number]}:{number}" for number in drawn)]
+            options += [f"--active-{side}", ",".join(f"{unbound[number]}:{number}" for number in drawn)]
     return options
 
 
 def chains_by_number(rows, what):
-    """The chain of each residue number; numbers that tell no residue by themselves are refused."""
+    """The chain of each residue number; a number that stands in several chains is refused."""
     chains = {}
     for chain, number, _ in rows:
         if chains.setdefault(number, chain) != chain:
-            raise ValueError(f"{what} has residue {number} in chains {chains[number]} and {chain}: residues are matched by number alone")
+            raise ValueError(
+                f"{what} has residue {number} in chains {chains[number]} and {chain}: "
+                "residues are matched by number alone"
+            )
     return chains
 
 
 def order(number):
-    """Numbers in order, insertion codes after their number."""
+    """Sort key: numbers in order, insertion codes after their number."""
     return int(number.rstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")), number
 
 
@@ -60,7 +67,8 @@ def residues_within(own, others):
         if number in found:
             continue
         home = tuple(int(x // CONTACT) for x in position)
-        near = (other for step in product((-1, 0, 1), repeat=3) for other in cells.get(tuple(map(sum, zip(home, step))), ()))
+        steps = product((-1, 0, 1), repeat=3)
+        near = (other for step in steps for other in cells.get(tuple(map(sum, zip(home, step))), ()))
         if any(sum((a - b) ** 2 for a, b in zip(position, other)) <= CONTACT**2 for other in near):
             found.add(number)
     return found

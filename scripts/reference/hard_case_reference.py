@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """Reference values of the kernels at their hard ends, by mpmath at 34 digits.
 
-Prints the tables that stand in tests/hard_kernel.rs and tests/hard_transform.rs, each under its name, in a minute.  Needs mpmath
-(PyPI).
+    python3 scripts/reference/hard_case_reference.py
 
-  bump         psi_a(x) = exp(1 / (1 - x^-a)) for x -> 0 and x -> 1, a -> 0 and a -> infinity (Behandish & Ilies, CAD 70, 2016, eq. 10)
+Prints the tables that stand in tests/hard_cases/, each under its name, in a minute. Needs mpmath (PyPI).
+
+  bump         psi_a(x) = exp(1 / (1 - x^-a)) for x -> 0 and x -> 1, a -> 0 and a -> infinity
+               (Behandish & Ilies, CAD 70, 2016, eq. 10)
   ball         transform of the unit ball's indicator, tiny and huge |w|
   transform    psi^(q) = 4 pi int x^2 psi(x) sinc(2 q x) dx for a far from 2, tiny and huge q
-  low_passed   int 4 pi w^2 W(w) sigma^3 psi^(w sigma) sinc(2 w d) dw with the C-infinity low-pass W: the ranking kernel's slice before
-               its window
+  low_passed   int 4 pi w^2 W(w) sigma^3 psi^(w sigma) sinc(2 w d) dw with the C-infinity low-pass W: the ranking
+               kernel's slice before its window
 """
+
 import mpmath as mp
 
 mp.mp.dps = 34
@@ -36,8 +39,8 @@ def transform(alpha, q):
     if alpha == mp.inf:
         return ball(q)
 
-    # x = (1 + tanh(pi/2 sinh t)) / 2 takes in the cusp at 0 and the essential singularity at 1; 1 - u from expm1 on the distance to
-    # the nearer end.
+    # x = (1 + tanh(pi/2 sinh t)) / 2 takes in the cusp at 0 and the essential singularity at 1; 1 - u from expm1 on the
+    # distance to the nearer end.
     def integrand(t):
         s = mp.pi / 2 * mp.sinh(t)
         end = 1 / (1 + mp.exp(2 * abs(s)))
@@ -75,8 +78,16 @@ def low_passed(alpha, sigma, resolution, pass_length, distances):
     count = int(16 * stop * (sigma + max(distances))) * 4 + 64
     step = stop / count
     rows = [
-        (n * step, 4 * mp.pi * (n * step) ** 2 * low_pass(n * step, passes, stop) * sigma**3
-         * transform(alpha, n * step * sigma) * step)
+        (
+            n * step,
+            4
+            * mp.pi
+            * (n * step) ** 2
+            * low_pass(n * step, passes, stop)
+            * sigma**3
+            * transform(alpha, n * step * sigma)
+            * step,
+        )
         for n in range(count)
     ]
     return [mp.fsum(weight * sinc(2 * w * d) for w, weight in rows) for d in distances]
@@ -98,7 +109,9 @@ def table(name, rows):
 
 def main():
     # All exact in binary.
-    powers = [(repr(1 - 2.0**-k), mp.mpf(1 - 2.0**-k)) for k in (1, 3, 6, 10)] + [("1.0 - f64::EPSILON", mp.mpf(1 - 2.0**-52))]
+    powers = [(repr(1 - 2.0**-k), mp.mpf(1 - 2.0**-k)) for k in (1, 3, 6, 10)] + [
+        ("1.0 - f64::EPSILON", mp.mpf(1 - 2.0**-52))
+    ]
     tiny = [(repr(2.0**-k), mp.mpf(2.0**-k)) for k in (30, 1000)]
     rows = []
     for alpha in (2.0**-10, 0.5, 2.0, 7.0, 1024.0, 2.0**30):
@@ -106,8 +119,13 @@ def main():
             value = bump(mp.mpf(alpha), x)
             rows.append((mp.mpf(alpha), text, value if value > 1e-320 else mp.mpf(0)))
     table("bump: alpha, x, psi", rows)
-    table("ball: q, transform", [(mp.mpf(q), ball(mp.mpf(q))) for q in
-                                 (2.0**-60, 2.0**-20, 2.0**-10, 2.0**-9, 0.125, 1.0, 37.25, 1024.5, 2.0**20)])
+    table(
+        "ball: q, transform",
+        [
+            (mp.mpf(q), ball(mp.mpf(q)))
+            for q in (2.0**-60, 2.0**-20, 2.0**-10, 2.0**-9, 0.125, 1.0, 37.25, 1024.5, 2.0**20)
+        ],
+    )
     rows = []
     for alpha in (0.125, 1.0, 64.0, 1024.0):
         for q in (2.0**-60, 0.25, 2.5, 20.0, 200.0):
@@ -116,12 +134,16 @@ def main():
     distances = [mp.mpf(d) for d in (0.0, 1.0, 2.5, 4.0, 5.5)]
     for alpha in (mp.mpf("0.125"), mp.mpf(2), mp.mpf(64), mp.inf):
         values = low_passed(alpha, mp.mpf(4), 4, 8, distances)
-        table("low_passed at sigma = 4, resolution 4, pass length 8: alpha, d, kernel",
-              [(alpha, d, value) for d, value in zip(distances, values)])
+        table(
+            "low_passed at sigma = 4, resolution 4, pass length 8: alpha, d, kernel",
+            [(alpha, d, value) for d, value in zip(distances, values)],
+        )
     # Gibbs: a sharp ball ten times the resolution, from its middle through its edge.
     distances = [mp.mpf(d) for d in (0, 15, 25, 30, 33, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 47, 50)]
     values = low_passed(mp.inf, mp.mpf(40), 4, 8, distances)
-    table("low_passed at sigma = 40, resolution 4, pass length 8, alpha infinite: d, kernel", list(zip(distances, values)))
+    table(
+        "low_passed at sigma = 40, resolution 4, pass length 8, alpha infinite: d, kernel", list(zip(distances, values))
+    )
 
 
 if __name__ == "__main__":

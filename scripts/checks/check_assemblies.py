@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Checks the biological assemblies that knotdock builds against gemmi's (PyPI), atom by atom.
 
-    python scripts/check_assemblies.py target/release/knotdock FOLDER          # the files of scripts/check_gemmi.py
-    python scripts/check_assemblies.py target/release/knotdock FOLDER --few    # those of the smaller packages
+    python scripts/checks/check_assemblies.py target/release/knotdock FOLDER        # the files of check_gemmi.py
+    python scripts/checks/check_assemblies.py target/release/knotdock FOLDER --few  # those of the smaller packages
 
-Of every file that describes assemblies `knotdock inspect --assembly` must build each (the first four of a file) of the same atoms as
-gemmi: names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy that gemmi has and knotdock
-has not must lie within half an Ångström of one that it has, as those on axes of symmetry do. Exit code 0 when nothing differs, 1 when
-something does, 2 when the check could not be made.
+`knotdock inspect --assembly` must build each assembly that a file describes (the first four of a file) of the same
+atoms as gemmi: names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy
+that gemmi has and knotdock lacks must lie within half an Ångström of one that it has, as those on axes of symmetry do.
+
+Exit code 0: nothing differs; 1: something does; 2: the check could not be made.
 """
 
 import argparse
@@ -31,7 +32,18 @@ EQUAL, ON_AXIS = 0.01, 0.51
 
 def built(knotdock, path, name, table):
     """Positions by atom of an assembly as knotdock builds it, and what it says of it."""
-    command = [knotdock, "inspect", str(path), "--assembly", name, "--atoms", str(table), "--force", "--json", "--quiet"]
+    command = [
+        knotdock,
+        "inspect",
+        str(path),
+        "--assembly",
+        name,
+        "--atoms",
+        str(table),
+        "--force",
+        "--json",
+        "--quiet",
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     told = json.loads(done.stdout)
     if done.returncode:
@@ -97,7 +109,7 @@ def main():
                 ours, told = built(options.knotdock, path, assembly.name, Path(scratch) / "atoms.csv")
                 where = f"{path.relative_to(options.folder)}, assembly {assembly.name}"
                 if ours is None:
-                    # Files of which atoms were cut may have none of the assembly's chains left, and some cannot be read at all.
+                    # A file that was cut may have none of the assembly's chains left, and some cannot be read at all.
                     meant = (not theirs and "no atom" in told) or any(part in str(path) for part in MEANT)
                     kind = "refused as meant" if meant else "REFUSED"
                     counts[kind] += 1

@@ -1,25 +1,27 @@
 #!/usr/bin/env python3
 """Derives the contact potential of knotdock from complexes of known structure.
 
-    python3 scripts/contact_potential.py DIR [--fine] [--split fit] [--without-fold K/N] [--exclude ID,...] [--decoys RUNS] [-o FILE]
+    python3 scripts/potentials/contact_potential.py DIR [--fine] [--decoys RUNS] [--split fit] [--without-fold K/N]
+        [--exclude ID,...] [-o FILE]
 
-DIR is a folder as `scripts/benchmark.py` reads it; the pairs of the split give the statistics. Energies are
-e_ab = -ln(n_ab / m_ab) in units of RT, n_ab the contacts of types a and b across the bound interfaces, counted as the score
-counts them (1 up to 5 A, falling smoothly to 0 at 7 A), each complex weighing the same, and m_ab those of a reference state with
-as many contacts:
+DIR is a benchmark folder (scripts/docked_pairs.py); the pairs of the split give the statistics. Energies are
+e_ab = -ln(n_ab / m_ab) in units of RT. n_ab are the contacts of types a and b across the bound interfaces, counted as
+the score counts them (1 up to 5 A, falling smoothly to 0 at 7 A), each complex with the same weight. m_ab are those of
+a reference state with as many contacts:
 
-- without --decoys: pairs of surface atoms at random, m_ab = s_a s_b, s the share of a type among the solvent-accessible
-  surface areas;
+- without --decoys: pairs of surface atoms at random, m_ab = s_a s_b, s the share of a type among the
+  solvent-accessible surface areas;
 - with --decoys: the contacts of docked poses, which keeps shape out of the potential (DARS, Chuang, Kozakov, Brenke,
-  Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227). RUNS is the --out folder of a `scripts/benchmark.py` run with
+  Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227). RUNS is the --out folder of a `benchmark.py` run with
   `-- --effects shape` on the same pairs; the poses of --ranks are taken.
 
-A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of the
-reference state is taken out, so that the potential counts no shape again. Of the table's eigenvectors (types weighed by their share of
-the contacts) the strongest --rank are kept: they hold what is known of it, and each further one costs a transform in the search.
+A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of
+the reference state is taken out, so that the potential does not count shape again. Of the table's eigenvectors (types
+weighted by their share of the contacts) the strongest --rank are kept: each further one costs a transform in the
+search.
 
-With --fine the table has three ranges of distance, each with energies of its own and of full rank: what poses are rescored with. Its decoys
-are best poses docked with all effects, since those are what it has to tell from the answer.
+With --fine the table has three ranges of distance, each with energies of its own and of full rank; poses are rescored
+with it. Its decoys are best poses docked with all effects, since those are what it must separate from the answer.
 
 Needs Python 3.9 or later and NumPy.
 """
@@ -27,20 +29,23 @@ Needs Python 3.9 or later and NumPy.
 import argparse
 import csv
 import datetime
-import gzip
 import re
 import sys
 from pathlib import Path
 
 import numpy as np
 
-from whole_file import write
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from docked_pairs import ROOT, check_known, find_part, fold, in_fold, names, read_text, select, write
 
-ROOT = Path(__file__).resolve().parent.parent
 TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
 TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
-RANGES = {"near": (3.5, 4.5), "middle": (5.0, 6.0), "far": (7.0, 8.0)}  # ends in A, as in scoring/src/rescoring/potential.rs
+RANGES = {
+    "near": (3.5, 4.5),
+    "middle": (5.0, 6.0),
+    "far": (7.0, 8.0),
+}  # ends in A, as in scoring/src/rescoring/potential.rs
 PROBE = 1.4  # A
 RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 
@@ -48,12 +53,12 @@ RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 def main():
     options = parse_arguments()
     kinds = read_types()
-    pairs = select(options)
+    pairs = selected(options)
     count = fine_contacts if options.fine else contacts
     native, reference, used = [], [], []
     for pair in pairs:
         folder = options.folder / pair
-        receptor, ligand = (read_atoms(part(folder, f"{side}_bound"), kinds) for side in ("receptor", "ligand"))
+        receptor, ligand = (read_atoms(find_part(folder, f"{side}_bound"), kinds) for side in ("receptor", "ligand"))
         counts = count(receptor, ligand)
         if (counts.sum(axis=(-2, -1)) == 0).any():
             print(f"{pair}: no contacts, left out", file=sys.stderr)
@@ -71,7 +76,8 @@ def main():
     if not used:
         sys.exit("no complex can be used")
     native, reference = (shares(sum(parts)) for parts in (native, reference))
-    # Shares of all contacts, about 1,000 a complex and range; a pair of types expected less often than the pseudocount counts for less.
+    # Shares of all contacts, about 1,000 a complex and range. A pair of types that is expected less often than the
+    # pseudocount counts for less.
     scale = 1000.0 * len(used)
     energies = -np.log((native * scale + options.pseudocount) / (reference * scale + options.pseudocount))
     energies -= (energies * reference).sum(axis=(-2, -1), keepdims=True)
@@ -88,9 +94,21 @@ def shares(counts):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     pair_arguments(parser)
-    parser.add_argument("--decoys", type=Path, metavar="RUNS", help="output folder of benchmark.py; without, the reference is the surface")
-    parser.add_argument("--ranks", type=lambda text: tuple(map(int, text.split("-"))), default=(1, 1000), help="ranks of the decoys (default: 1-1000)")
-    parser.add_argument("--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)")
+    parser.add_argument(
+        "--decoys",
+        type=Path,
+        metavar="RUNS",
+        help="output folder of benchmark.py; without, the reference is the surface",
+    )
+    parser.add_argument(
+        "--ranks",
+        type=lambda text: tuple(map(int, text.split("-"))),
+        default=(1, 1000),
+        help="ranks of the decoys (default: 1-1000)",
+    )
+    parser.add_argument(
+        "--poses", type=int, default=50, help="decoys taken of each run, evenly over the ranks (default: 50)"
+    )
     parser.add_argument("--fine", action="store_true", help="a table by ranges of distance, for rescoring")
     parser.add_argument("--pseudocount", type=float, help="expected contacts (default: 50, with --fine 20)")
     parser.add_argument("--rank", type=int, default=4, help="eigenvectors kept (default: 4)")
@@ -99,39 +117,39 @@ def parse_arguments():
     if options.pseudocount is None:
         options.pseudocount = 20.0 if options.fine else 50.0
     if options.output is None:
-        options.output = ROOT / "scoring/src" / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
+        options.output = (
+            ROOT
+            / "scoring/src"
+            / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
+        )
     return options
 
 
 def pair_arguments(parser):
     """The options that say which pairs the statistics are of, for `select`."""
     parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
-    parser.add_argument("--split", default="fit", choices=("train", "fit"), help="pairs to use (default: fit, train without relatives in eval)")
-    parser.add_argument("--without-fold", type=fold, help="K/N: leave out the pairs of `benchmark.py --fold K/N` of the same split, without --ids there, for cross-validation")
-    parser.add_argument("--exclude", type=lambda text: text.split(","), default=[], help="pairs to leave out, for cross-validation")
+    parser.add_argument(
+        "--split",
+        default="fit",
+        choices=("train", "fit"),
+        help="pairs to use (default: fit, train without relatives in eval)",
+    )
+    parser.add_argument(
+        "--without-fold",
+        type=fold,
+        help="K/N: leave out the pairs of `benchmark.py --fold K/N` (no --ids) of the same split, for cross-validation",
+    )
+    parser.add_argument("--exclude", type=names, default=[], help="pairs to leave out, for cross-validation")
 
 
-def fold(text):
-    """K/N as two numbers."""
-    part, count = map(int, text.split("/"))
-    if not 0 <= part < count:
-        raise argparse.ArgumentTypeError(f"{text} is not K/N with 0 <= K < N")
-    return part, count
-
-
-def select(options):
-    with open(options.folder / "manifest.csv", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["split"] == "train"]
-    if options.split == "fit":
-        rows = [row for row in rows if not row["near_eval"].strip()]
-    pairs = sorted(row["id"] for row in rows)
-    unknown = set(options.exclude) - set(pairs)
-    if unknown:
-        raise SystemExit(f"not in split {options.split} of the manifest: {', '.join(sorted(unknown))}")
+def selected(options):
+    """Ids of the pairs that the options choose, in order."""
+    rows = select(options.folder, options.split)
+    check_known(options.exclude, rows, options.split)
+    left_out = set(options.exclude)
     if options.without_fold:
-        part, count = options.without_fold
-        options.exclude = options.exclude + pairs[part::count]
-    return [pair for pair in pairs if pair not in options.exclude]
+        left_out |= {pair["id"] for pair in in_fold(rows, *options.without_fold)}
+    return sorted({pair["id"] for pair in rows} - left_out)
 
 
 def read_types():
@@ -140,19 +158,10 @@ def read_types():
         return {(row["residue"], row["atom"]): TYPES.index(row["type"]) for row in rows}
 
 
-def part(folder, name):
-    return next(path for ending in (".pdb", ".pdb.gz") if (path := folder / (name + ending)).exists())
-
-
-def open_text(path):
-    data = path.read_bytes()
-    return (gzip.decompress(data) if path.suffix == ".gz" else data).decode("latin-1")
-
-
 def read_atoms(path, kinds):
     """Positions, types (-1: none) and radii of the heavy atoms of the first model."""
     positions, types, radii = [], [], []
-    for line in open_text(path).split("\nENDMDL")[0].splitlines():
+    for line in read_text(path).split("\nENDMDL")[0].splitlines():
         if not line.startswith(("ATOM  ", "HETATM")) or line[16] not in " A1":
             continue
         name, residue = line[12:16].strip(), line[17:20].strip()
@@ -252,8 +261,8 @@ def decoy_contacts(options, folder, pair, kinds, count):
         table = run / "run/poses.csv"
         if not table.exists():
             continue
-        receptor = read_atoms(part(folder, "receptor_unbound"), kinds)
-        positions, types, radii = read_atoms(run / "ligand_turned.pdb", kinds)
+        receptor = read_atoms(find_part(folder, "receptor_unbound"), kinds)
+        positions, types, radii = read_atoms(run / "ligand_rotated.pdb", kinds)
         with open(table, newline="") as file:
             rows = [row for row in csv.DictReader(file) if options.ranks[0] <= int(row["rank"]) <= options.ranks[1]]
         for row in rows[:: max(1, len(rows) // options.poses)]:
@@ -280,12 +289,16 @@ def low_rank(energies, shares, rank):
 
 
 def write_table(options, used, energies):
-    reference = f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
+    reference = (
+        f"docked poses of ranks {options.ranks[0]}-{options.ranks[1]}" if options.decoys else "surface composition"
+    )
     detail = "full rank" if options.fine else f"rank {options.rank}"
     lines = [
         "# Contact potential in units of RT, -ln(observed / expected), mean removed; lower is better.",
-        f"# Written by scripts/contact_potential.py on {datetime.date.today()}; reference: {reference}; pseudocount {options.pseudocount:g}; {detail}.",
-        f"# {len(used)} bound complexes of Docking Benchmark 5 (Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041): {' '.join(used)}",
+        f"# Written by scripts/potentials/contact_potential.py on {datetime.date.today()}; reference: {reference}; "
+        f"pseudocount {options.pseudocount:g}; {detail}.",
+        f"# {len(used)} bound complexes of Docking Benchmark 5 (Vreven et al., J. Mol. Biol. 427 (2015) 3031-3041): "
+        f"{' '.join(used)}",
         ("range," if options.fine else "") + "type," + ",".join(TYPES),
     ]
     tables = [(f"{name},", table) for name, table in zip(RANGES, energies)] if options.fine else [("", energies)]

@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
 """Our transform from points to modes beside FINUFFT and NFFT3: time and agreement, on the same numbers, on one thread.
 
-    python3 scripts/finufft_reference.py [--venv FOLDER] [--runs 15] [--skip-large] [--executable FILE]
+    python3 scripts/reference/finufft_reference.py [--venv FOLDER] [--runs 15] [--skip-large] [--executable FILE]
 
-Builds `benches/nfft.rs`, installs finufft and numpy (and pyNFFT3, if it can be had) from PyPI into a virtual environment of
-its own, and prints two tables in Markdown. What is timed is what a user repeats for every new set of points: setpts + execute of
-FINUFFT's plan interface, locate_into + forward of ours, `x =` + adjoint of NFFT3 (its name for this direction). Planning is left out. All run in turns, run by
-run, so that noise of the machine falls on all alike; medians by the wall clock, and in parentheses by the thread's CPU time,
-which other programs on the machine disturb less.
+Builds `benches/nfft.rs`, installs finufft and numpy (and pyNFFT3, where it can be installed) from PyPI into a virtual
+environment of its own, and prints two tables in Markdown.
 
-FINUFFT runs at its own best of several settings (oversampling 1.25, 1.5 and 2, each by a median of three runs, twice), NFFT3 at the
-cheapest of several window widths and grids that meets the tolerance. Errors are relative, in the 2-norm, against the direct
-sum at 300 modes; agreement is between ours and FINUFFT's over all modes. Exits with 1 if ours misses the tolerance anywhere or, at a
-settled load, takes more than 1.3 times FINUFFT's CPU time.
+Timed is what a user repeats for every new set of points: setpts + execute of FINUFFT's plan interface, locate_into +
+forward of ours, `x =` + adjoint of NFFT3 (its name for this direction). Planning is left out. All run in turn, run by
+run, so that noise of the machine affects all alike. Medians are by the wall clock, and in parentheses by the thread's
+CPU time, which other programs on the machine disturb less.
+
+FINUFFT runs at its own best of several settings (oversampling 1.25, 1.5 and 2, each by a median of three runs, twice),
+NFFT3 at the cheapest of several window widths and grids that meets the tolerance. Errors are relative, in the 2-norm,
+against the direct sum at 300 modes; agreement is between ours and FINUFFT's over all modes.
+
+Exits with 1 if ours misses the tolerance anywhere or, at a settled load, takes more than 1.3 times FINUFFT's CPU time.
 """
+
 import argparse
 import json
 import os
@@ -25,7 +29,7 @@ import time
 import venv
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 BAR = 1.3
 
 
@@ -56,7 +60,9 @@ class Ours:
     """`benches/nfft.rs --serve`, one line a request."""
 
     def __init__(self, executable):
-        self.process = subprocess.Popen([executable, "--serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [executable, "--serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
 
     def ask(self, line):
         self.process.stdin.write(line + "\n")
@@ -216,7 +222,8 @@ def show(rows, peer, title):
         size = "x".join(map(str, row["modes"]))
         settings = f"{row['plan']}; {row[peer + '_setting']}"
         print(
-            f"| {row['points']} | {size} | {row['tolerance']:.0e} | {milliseconds(row['ours'])} | {milliseconds(row[peer])} "
+            f"| {row['points']} | {size} | {row['tolerance']:.0e} | {milliseconds(row['ours'])} "
+            f"| {milliseconds(row[peer])} "
             f"| {ratio[0]:.2f} ({ratio[1]:.2f}) | {row['ours_error']:.1e} | {row[peer + '_error']:.1e} | {settings} |",
             flush=True,
         )
@@ -232,7 +239,9 @@ def processor():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--venv", default=str(ROOT / "target" / "reference-venv"), help="virtual environment to make or use")
+    parser.add_argument(
+        "--venv", default=str(ROOT / "target" / "reference-venv"), help="virtual environment to make or use"
+    )
     parser.add_argument("--runs", type=int, default=15, help="timed runs of each program")
     parser.add_argument("--skip-large", action="store_true", help="leave the 128^3 cases out")
     parser.add_argument("--executable", help="the benchmark, if it is built already")
@@ -261,7 +270,10 @@ def main():
                 rows.append(compare(ours, modes, count, tolerance, options.runs, folder, beside))
                 print(f"  {rows[-1]}", file=sys.stderr, flush=True)
     load = os.getloadavg()[0]
-    print(f"{processor()}, {os.cpu_count()} cores, one thread; load {load:.1f}; medians of {options.runs} runs, wall clock (CPU)")
+    print(
+        f"{processor()}, {os.cpu_count()} cores, one thread; load {load:.1f}; "
+        f"medians of {options.runs} runs, wall clock (CPU)"
+    )
     show(rows, "finufft", "FINUFFT")
     show(rows, "nfft3", "NFFT3")
     # Written so that what is no number is wrong.

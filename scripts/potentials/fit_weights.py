@@ -1,19 +1,22 @@
 #!/usr/bin/env python3
 """Ranks the poses of benchmark runs again with other weights, and chooses weights by cross-validation over pairs.
 
-    python3 scripts/fit_weights.py DIR RUNS [RUNS ...] [--knotdock PROGRAM] [--lambdas 8,9,10] [--electrostatics 0,16,24,32] [--contact 0,1,2,3]
-                                   [--fine 0,1,2,3] [--pairs 0,1,2,3] [--relaxed 0,3]
+    python3 scripts/potentials/fit_weights.py DIR RUNS [RUNS ...] [--lambdas 8,9,10] [--electrostatics 0,16,24,32]
+        [--contact 0,1,2,3] [--fine 0,1,2,3] [--pairs 0,1,2,3] [--relaxed 0,3] [--clusters]
 
-DIR is the benchmark folder; each RUNS is the --out folder of a `scripts/benchmark.py` run on training pairs, best without refinement
-(poses were climbed by the weights of their run). A pose's terms and slices are linear in the weights, and so are the terms that it is rescored with
-(fine contacts, atom pairs, atom pairs once relaxed), so its score under others needs no docking; the poses of a pair and turn in all RUNS are pooled. How near each pose is to the answer is measured once and kept
-beside its run (`quality.json`).
+DIR is the benchmark folder. Each RUNS is the --out folder of a `benchmark.py` run on training pairs, docked with
+`--diagnostics` (for the slices) and best without refinement: refined poses were maximized under their run's weights.
 
-Printed, for every combination: mean log rank of the first acceptable pose (5,000 where there is none), and pairs with one in the
-first 1, 10, 100, 1000, as means over turns, then over pairs; the mean log rank of the first near-native one; both against the weights of
-the first run; then the same for weights chosen for each fold of the pairs on the others, which is what
-a choice like this is worth on pairs that it has not seen; then a bootstrap interval over pairs of the difference between the two
-best combinations. With --clusters temperatures are compared instead, at the runs' own weights: clusters ordered by
+A pose's slices and terms are linear in the weights, so its score under others needs no docking. The poses of a pair
+and seed in all RUNS are pooled. Whether each pose is acceptable and near-native, `knotdock evaluate` is run for once,
+and its answer is kept beside the run (`verdicts.json`).
+
+Printed for every combination: the mean log rank of the first acceptable pose, pairs with one in the first 1, 10, 100
+and 1000, as means over seeds, then over pairs; and the mean log rank of the first near-native one; both against the
+weights of the first run. Then the same for weights chosen for each fold of the pairs on the others, which is what a
+choice like this is worth on new pairs. Then a bootstrap interval over pairs of the difference between the two best.
+
+With --clusters temperatures are compared instead, at the runs' own weights: clusters ordered by
 T ln sum exp(score / T), T a share of the run's best score (0: the best pose alone).
 
 Needs Python 3.9 or later and NumPy.
@@ -23,18 +26,17 @@ import argparse
 import csv
 import itertools
 import json
-import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 
-from whole_file import write
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from docked_pairs import CRITERIA, DEPTHS, NOT_FOUND, evaluate, log_rank, native_options, write
 
-DEPTHS = (1, 10, 100, 1000)
-NOT_FOUND = 5000
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
 TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair", "relaxed")
-HELD = ("restraint", "attraction", "missing", "chain_ends")  # at the weights of their runs
+HELD = ("restraint", "active_residues", "unresolved", "termini")  # at the weights of their runs
 SUMMED = len(FEATURES) + len(TERMS) + len(HELD)
 ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(SUMMED, SUMMED + 4)
 TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
@@ -62,8 +64,12 @@ def main():
         compare_weights(options, decoys, weights[0], set(TERMS).intersection(*computed))
 
 
+def numbers(text):
+    """Numbers separated by commas."""
+    return [float(part) for part in text.split(",")]
+
+
 def parse_arguments():
-    numbers = lambda text: [float(part) for part in text.split(",")]
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("folder", type=Path, metavar="DIR", help="benchmark folder")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="output folder of benchmark.py")
@@ -83,52 +89,47 @@ def parse_arguments():
 
 
 def load(options, folder, pair):
-    """Rows of slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), rank score, cluster; the weights of the run; and the terms it has."""
+    """The poses of a run as rows, the weights of the run, and the names of the terms that it has.
+
+    A row holds slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), pose score
+    and cluster.
+    """
     table = folder / "run/poses.csv"
-    found = qualities(options, folder, pair, table)
+    found = verdicts(options, folder, pair, table)
     recorded = json.loads((folder / "run/run.json").read_text())["options"]
     rows, computed = [], set()
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
+            if "slice_0" not in row:
+                raise SystemExit(f"{table} has no slices; dock the pairs with `benchmark.py ... -- --diagnostics`")
             computed.update(name for name in TERMS if row.get(name))
             terms = [float(row.get(name) or 0) / (recorded.get(f"{name}_weight") or 1.0) for name in TERMS]
             terms += [float(row.get(name) or 0) for name in HELD]
-            score = float(row.get("rank_score") or row["score"])
-            rows.append([*(float(row[name]) for name in FEATURES), *terms, *found[row["rank"]], score, float(row["cluster"])])
+            slices = (float(row[name]) for name in FEATURES)
+            rows.append([*slices, *terms, *found[row["rank"]], float(row["pose_score"]), float(row["cluster"])])
     weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
     return np.array(rows, dtype=float), weights, computed
 
 
-def qualities(options, folder, pair, table):
-    """Whether a pose is acceptable and whether it is near-native, by rank: measured once and kept beside the run."""
-    cache = folder / "quality.json"
+def verdicts(options, folder, pair, table):
+    """Whether a pose meets each criterion, by rank: measured once and kept beside the run."""
+    cache = folder / "verdicts.json"
     if cache.exists() and cache.stat().st_mtime >= table.stat().st_mtime:
-        found = json.loads(cache.read_text())
-        # Kept by an older version of this script, which did not ask for near-native ones.
-        if all(isinstance(pose, list) for pose in found.values()):
-            return found
-    native = []
-    for side in ("receptor", "ligand"):
-        paths = (options.folder / pair / f"{side}_bound{ending}" for ending in (".pdb", ".pdb.gz"))
-        native += [f"--native-{side}", str(next(path for path in paths if path.exists()))]
-    command = [options.knotdock, "evaluate", str(folder / "run"), *native, "--json", "--quiet"]
-    answer = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-    within = lambda value, limit: value is not None and value <= limit
-    found = {
-        str(pose["rank"]): (within(pose["lrmsd"], 10.0) or within(pose["irmsd"], 4.0), within(pose["irmsd"], 2.5))
-        for pose in answer["poses"]
-    }
+        return json.loads(cache.read_text())
+    poses = evaluate(options.knotdock, folder / "run", native_options(options.folder / pair))
+    found = {str(pose["rank"]): [pose[criterion] for criterion in CRITERIA] for pose in poses}
     write(cache, json.dumps(found))
     return found
 
 
 def first_rank(scores, wanted):
+    """1-based rank of the first wanted pose by falling score, at most NOT_FOUND."""
     ranked = np.flatnonzero(wanted[np.argsort(-scores, kind="stable")])
     return min(ranked[0] + 1, NOT_FOUND) if len(ranked) else NOT_FOUND
 
 
 def by_pair(ranks, measure):
-    """Mean over the turns of each pair of a measure of its ranks, pairs in order."""
+    """Mean over the seeds of each pair of a measure of its ranks, pairs in order."""
     values = {}
     for (pair, _), rank in ranks.items():
         values.setdefault(pair, []).append(measure(rank))
@@ -136,14 +137,14 @@ def by_pair(ranks, measure):
 
 
 def summary(ranks):
-    """Mean log rank, and pairs with one in the first few, as means over turns."""
+    """Mean log rank, and pairs with one in the first few, as means over seeds."""
     found = "  ".join(f"{by_pair(ranks, lambda rank: rank <= depth).sum():5.1f}" for depth in DEPTHS)
-    return f"{by_pair(ranks, np.log).mean():.3f}  {found}"
+    return f"{by_pair(ranks, log_rank).mean():.3f}  {found}"
 
 
 def against(ranks, reference):
     """Difference in mean log rank from others, with its standard error over pairs."""
-    gains = by_pair(ranks, np.log) - by_pair(reference, np.log)
+    gains = by_pair(ranks, log_rank) - by_pair(reference, log_rank)
     error = gains.std(ddof=1) / np.sqrt(len(gains)) if len(gains) > 1 else np.nan
     return f"{gains.mean():+.3f} ({error:.3f})"
 
@@ -165,13 +166,18 @@ def compare_weights(options, decoys, own, computed):
         scores = {key: rows[:, : len(factors)] @ factors for key, rows in decoys.items()}
         acceptable[weights] = {key: first_rank(scores[key], rows[:, ACCEPTABLE]) for key, rows in decoys.items()}
         near_native[weights] = {key: first_rank(scores[key], rows[:, NEAR_NATIVE]) for key, rows in decoys.items()}
-    mean = {weights: by_pair(acceptable[weights], np.log) for weights in grid}
+    mean = {weights: by_pair(acceptable[weights], log_rank) for weights in grid}
     order = sorted(grid, key=lambda weights: mean[weights].mean())
-    print("Against: difference from the weights of the first run in mean log rank, with its standard error over pairs.\n")
-    print("lambda  electrostatics  contact     fine    pairs  relaxed   acceptable: mean log rank, top 1, 10, 100, 1000; against   near-native: mean log rank; against")
+    print(
+        "Against: difference from the weights of the first run in mean log rank, with its standard error over pairs.\n"
+    )
+    print(
+        "lambda  electrostatics  contact     fine    pairs  relaxed   acceptable: mean log rank, top 1, 10, 100, 1000; "
+        "against   near-native: mean log rank; against"
+    )
 
     def show(name, ranks, near_ranks):
-        told = f"{by_pair(near_ranks, np.log).mean():.3f}  {against(near_ranks, near_native[own])}"
+        told = f"{by_pair(near_ranks, log_rank).mean():.3f}  {against(near_ranks, near_native[own])}"
         print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {told}")
 
     for weights in order:
