@@ -49,7 +49,7 @@ impl Export {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let symmetry = run.options.dock.symmetry;
+        let symmetry = run.options.search.symmetry;
         if let Some(symmetry) = symmetry
             && let Some(row) = rows.iter().find(|row| symmetry.ring(&row.pose).is_none())
         {
@@ -60,11 +60,7 @@ impl Export {
             .at(&table_path)
             .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
         }
-        let bodies = Bodies::recorded(
-            [&run.receptor, &run.ligand],
-            &run_path,
-            &run.options.reading,
-        )?;
+        let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
         let own = self.run.join("top");
         let folder = self.output.unwrap_or_else(|| own.clone());
         // What the run itself wrote there is what would be written again.

@@ -80,7 +80,7 @@ pub(crate) fn costs<T: Real>(
 /// Least milliseconds of a rotation on one thread, over a few.
 fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     // Axes of rings do not share a transform of the ligand.
-    let images = match plan.options.symmetry {
+    let images = match plan.options.search.symmetry {
         Some(_) => &HalfTurn::ALL[..1],
         None => &HalfTurn::ALL[..],
     };

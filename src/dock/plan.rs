@@ -3,7 +3,7 @@
 use crate::dock::loose::Loose;
 use crate::dock::scene::{Decision, LengthUnit, Scene};
 use crate::error::SearchError;
-use crate::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
+use crate::options::{DockOptions, EngineChoice, KernelOptions, Precision, REFINED_BY_SHAPE};
 use crate::pose_space::ring::Rings;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::rank::rescoring::Asked;
@@ -138,17 +138,17 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         Plan::with_effects(
             &receptor,
             &ligand,
-            options.engine(),
-            options.tolerance,
+            options.kernel.engine(),
+            options.kernel.tolerance,
             terms.clone(),
         )
     };
     let engine = planned(options)?;
-    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) = match options.precision
-    {
-        Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
-        Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
-    };
+    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) =
+        match options.search.precision {
+            Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
+            Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
+        };
     let needs = |engine: &Plan| {
         let functions = engine.functions();
         let rank = functions.min(EXPECTED_RANK);
@@ -158,24 +158,24 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             2 * real_bytes * engine.modes.count as u64 * (functions + 1 + 5 * rank / 2) as u64
                 + PotentialGrid::bytes(engine) as u64
                 + 200 * (receptor.len() + ligand.len()) as u64
-                + 64 * options.rotations as u64
+                + 64 * options.search.rotations as u64
                 + fine_bytes(options)
-                + BYTES_RELAXED * options.rotations.min(MAX_RELAXED) as u64
-                + 400 * options.poses as u64
+                + BYTES_RELAXED * options.search.rotations.min(MAX_RELAXED) as u64
+                + 400 * options.search.poses as u64
                 + (16 << 20);
         (fixed, per_rotation)
     };
     let (fixed, per_rotation) = needs(&engine);
-    let in_flight = most_in_flight(options, fixed, per_rotation).min(options.rotations);
-    if let (0, Some(allowed)) = (in_flight, options.memory) {
+    let in_flight = most_in_flight(options, fixed, per_rotation).min(options.search.rotations);
+    if let (0, Some(allowed)) = (in_flight, options.machine.memory) {
         let fits = least_coarse(|step| {
             let coarser = coarser(options, step, angstrom);
             let plan = planned(&coarser).ok()?;
             let spacing = rounded_up(plan.spacing, angstrom);
             let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
-            (fixed + per_rotation <= allowed).then_some(DockOptions {
+            (fixed + per_rotation <= allowed).then(|| KernelOptions {
                 spacing: Some(spacing),
-                ..coarser
+                ..coarser.kernel
             })
         });
         return Err(SearchError::Memory {
@@ -184,31 +184,34 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
             shows_little: fits
                 .as_ref()
-                .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
+                .is_some_and(|coarser| coarser.resolution > 3.0 * options.kernel.resolution),
             resolution: fits
                 .as_ref()
                 .map(|coarser| coarser.resolution)
-                .filter(|&resolution| resolution > options.resolution),
+                .filter(|&resolution| resolution > options.kernel.resolution),
             pass_length: fits
                 .and_then(|coarser| coarser.pass_length)
-                .filter(|&length| Some(length) > options.pass_length),
+                .filter(|&length| Some(length) > options.kernel.pass_length),
         });
     }
-    let graphics_bytes = match options.engine {
+    let graphics_bytes = match options.search.engine {
         EngineChoice::Cpu => 0,
         EngineChoice::Gpu => {
             let taken = fixed + in_flight as u64 * per_rotation;
-            let left = options.memory.map(|allowed| allowed.saturating_sub(taken));
+            let left = options
+                .machine
+                .memory
+                .map(|allowed| allowed.saturating_sub(taken));
             left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
         }
     };
-    let rings = options.symmetry.map(|symmetry| Rings {
+    let rings = options.search.symmetry.map(|symmetry| Rings {
         symmetry,
         axis: ring_axis,
     });
     let (set, set_name, covering_radius) = match &rings {
         Some(rings) => {
-            let (axes, radius) = rings.axes(options.rotations);
+            let (axes, radius) = rings.axes(options.search.rotations);
             let rotation = |axis| rings.symmetry.rotation(axis);
             let name = match rings.axis {
                 Some(_) => "axes across the ring's own",
@@ -217,12 +220,15 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             (axes.iter().map(rotation).collect(), name, radius)
         }
         None => {
-            let set = rotation_set(options.rotations);
+            let set = rotation_set(options.search.rotations);
             let radius = covering_radius(&set);
-            (set, set_name(options.rotations), radius)
+            (set, set_name(options.search.rotations), radius)
         }
     };
-    let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
+    let fine_set = options
+        .search
+        .fine_rotations
+        .map_or_else(Vec::new, spiral_set);
     let (a, b) = match &engine.basis {
         knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
             (receptor.len(), ligand.len())
@@ -232,7 +238,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     Ok(DockPlan {
         unit,
         angstrom,
-        rotations: options.rotations,
+        rotations: options.search.rotations,
         rotation_set: set_name,
         covering_radius_degrees: covering_radius.to_degrees(),
         grid: engine.size(),
@@ -265,9 +271,9 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
 
 /// Bytes of a finer search: its rotations with their cells, and the peaks of those searched, as found and as sorted.
 fn fine_bytes(options: &DockOptions) -> u64 {
-    let finer = options.fine_rotations.unwrap_or(0);
-    let searched = (options.fine_share * finer as f64).ceil() as u64;
-    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
+    let finer = options.search.fine_rotations.unwrap_or(0);
+    let searched = (options.search.fine_share * finer as f64).ceil() as u64;
+    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.search.per_rotation as u64
 }
 
 /// What fits at the least of 60 ever coarser steps, found by halving. From the coarse end, where a plan takes least: its time falls with the square of the resolution,
@@ -289,22 +295,18 @@ fn least_coarse<T>(at: impl Fn(i32) -> Option<T>) -> Option<T> {
 /// too coarse for the resolution is small as well, but its scores are wrong.
 fn coarser(options: &DockOptions, step: i32, angstrom: f64) -> DockOptions {
     let resolution = match step {
-        0 => options.resolution,
-        _ => rounded_up(options.resolution * 1.1f64.powi(step), angstrom),
+        0 => options.kernel.resolution,
+        _ => rounded_up(options.kernel.resolution * 1.1f64.powi(step), angstrom),
     };
-    let scale = resolution / options.resolution;
-    DockOptions {
-        resolution,
-        pass_length: options.pass_length.map(|length| {
-            if step == 0 {
-                length
-            } else {
-                rounded_up(scale * length, angstrom)
-            }
-        }),
-        spacing: None,
-        ..options.clone()
-    }
+    let scale = resolution / options.kernel.resolution;
+    options.changed(|options| {
+        options.kernel.resolution = resolution;
+        if step > 0 {
+            let length = &mut options.kernel.pass_length;
+            *length = length.map(|length| rounded_up(scale * length, angstrom));
+        }
+        options.kernel.spacing = None;
+    })
 }
 
 /// A spacing rounded up to hundredths of an Ångström, or of the power of ten below what plays its part.
@@ -321,7 +323,7 @@ impl DockPlan {
 
     /// A rotation by its index, those of the finer set after those of the coarse one, and which half-turn of the first of its four it is.
     pub(crate) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
-        if self.options.symmetry.is_some() {
+        if self.options.search.symmetry.is_some() {
             return (self.set[index], HalfTurn::None);
         }
         match index.checked_sub(self.set.len()) {
@@ -350,14 +352,15 @@ impl DockPlan {
 
     /// Number of poses to refine: of rings all, for none lies on the grid.
     pub fn refined(&self) -> usize {
-        if self.options.symmetry.is_some() {
-            return self.options.poses;
+        if self.options.search.symmetry.is_some() {
+            return self.options.search.poses;
         }
         let alone = self
             .decisions
             .iter()
             .all(|decision| decision.effect == Effect::Shape || !decision.on);
         self.options
+            .search
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
@@ -397,11 +400,8 @@ impl DockPlan {
 
 /// Rotations in flight: as many as threads, where memory has room for them.
 fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u64) -> usize {
-    let threads = match options.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
-    };
-    let room = options.memory.map_or(u64::MAX, |allowed| {
+    let threads = options.machine.threads.count();
+    let room = options.machine.memory.map_or(u64::MAX, |allowed| {
         allowed.saturating_sub(fixed) / per_rotation.max(1)
     });
     threads.min(usize::try_from(room).unwrap_or(usize::MAX))
@@ -412,7 +412,7 @@ impl std::fmt::Display for DockPlan {
         // Three significant digits or so, two decimals of an Ångström.
         let below = -self.angstrom.log10().floor() as i32;
         let (digits, finer) = ((2 + below).max(0) as usize, (3 - below).max(0) as usize);
-        let rotations = match self.options.symmetry {
+        let rotations = match self.options.search.symmetry {
             Some(symmetry) => format!("axes of {symmetry}"),
             None if self.rotations == 1 => "rotation".to_owned(),
             None => "rotations".to_owned(),
@@ -440,17 +440,17 @@ impl std::fmt::Display for DockPlan {
             digits = digits,
             finer = finer,
         )?;
-        if self.options.precision == Precision::Double {
+        if self.options.search.precision == Precision::Double {
             write!(f, "; in double precision")?;
         }
-        if self.options.engine == EngineChoice::Gpu {
+        if self.options.search.engine == EngineChoice::Gpu {
             write!(f, "; on a graphics processor")?;
         }
-        if let Some(finer) = self.options.fine_rotations {
+        if let Some(finer) = self.options.search.fine_rotations {
             write!(
                 f,
                 "; then about {:.0}% of {finer} finer rotations, about the best",
-                100.0 * self.options.fine_share
+                100.0 * self.options.search.fine_share
             )?;
         }
         Ok(())

@@ -95,7 +95,7 @@ pub fn dock_until(
         .num_threads(plan.in_flight)
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| match plan.options.precision {
+    pool.install(|| match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
     })
@@ -129,7 +129,14 @@ fn dock_in<T: Real>(
     let Scanned {
         mut peaks,
         rotations: searched,
-    } = scan(plan, &engine, &quartets, options.poses, deadline, progress)?;
+    } = scan(
+        plan,
+        &engine,
+        &quartets,
+        options.search.poses,
+        deadline,
+        progress,
+    )?;
     clock.lap("search");
     if peaks.is_empty() {
         return Err(SearchError::NoPose);
@@ -188,7 +195,7 @@ fn dock_in<T: Real>(
         progress.stage("rescore", 1);
     }
     // No ring starts on the grid.
-    let at_start = match options.symmetry {
+    let at_start = match options.search.symmetry {
         Some(_) => &[][..],
         None => &at_grid[..],
     };
@@ -199,7 +206,7 @@ fn dock_in<T: Real>(
     clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let kept = candidates.len();
-    let clusters = clusters_of(&candidates, &body, options.cluster_radius);
+    let clusters = clusters_of(&candidates, &body, options.ranking.cluster_radius);
     // Closer than neighbouring samples of the search are to each other, poses are one place to it.
     let step = body.step(plan.spacing, ligand_turn(plan));
     let listed = listed(&candidates, &clusters, &body, step);
@@ -210,15 +217,15 @@ fn dock_in<T: Real>(
         scorer: &scorer,
         rescorer: rescorer.as_ref(),
         on,
-        symmetry: options.symmetry,
+        symmetry: options.search.symmetry,
         cluster_temperature: cluster_temperature(plan.unit),
     };
     let ranking = report(
         judge,
         &candidates,
         (&clusters, &listed),
-        options.every_pose,
-        2.0 * options.tolerance * best_peak.abs(),
+        options.ranking.no_cluster,
+        2.0 * options.kernel.tolerance * best_peak.abs(),
         progress,
     );
     // Rows stand for clusters by their pose scores; the best score may be another pose's.
@@ -248,7 +255,7 @@ fn dock_in<T: Real>(
 /// Angle in radians between neighbouring rotations of the search: the set's covering radius. Of rings that is of axes, and a copy turns by up to twice as much
 /// as its axis.
 fn ligand_turn(plan: &DockPlan) -> f64 {
-    let turns = if plan.options.symmetry.is_some() {
+    let turns = if plan.options.search.symmetry.is_some() {
         2.0
     } else {
         1.0

@@ -34,13 +34,14 @@ pub fn chance(
 /// Whether nothing is asked that moves the ranking: threads, memory and the engine do not, and which effects are on is seen by themselves.
 fn is_default(options: &DockOptions) -> bool {
     let default = DockOptions::default();
-    let rest = DockOptions {
-        effects: default.effects.clone(),
-        threads: default.threads,
-        memory: default.memory,
-        engine: default.engine,
-        ..options.clone()
-    };
+    let rest = options.changed(|options| {
+        options.kernel.effects = default.kernel.effects.clone();
+        options.search.engine = default.search.engine;
+        options.machine = default.machine.clone();
+        // What is read and written moves no ranking.
+        options.input = default.input.clone();
+        options.output = default.output.clone();
+    });
     rest == default
 }
 
@@ -48,6 +49,7 @@ fn is_default(options: &DockOptions) -> bool {
 mod tests {
     use crate::options::EffectChoice;
     use crate::options::EngineChoice;
+    use crate::options::SampleGrid;
     use crate::search::chance::*;
 
     /// As `auto` has them for two proteins.
@@ -57,13 +59,12 @@ mod tests {
     #[test]
     fn default_rankings_have_one_whatever_threads_memory_engine_and_names() {
         assert_eq!(chance(&DockOptions::default(), AUTO, 10), Some(SHARE));
-        let options = DockOptions {
-            threads: 2,
-            memory: Some(1 << 30),
-            engine: EngineChoice::Gpu,
-            effects: EffectChoice::Only(ON.to_vec()),
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.machine.threads = 2.into();
+            options.machine.memory = Some(1 << 30);
+            options.search.engine = EngineChoice::Gpu;
+            options.kernel.effects = EffectChoice::Only(ON.to_vec());
+        });
         assert_eq!(chance(&options, AUTO, 1000), Some(SHARE));
     }
 
@@ -77,22 +78,22 @@ mod tests {
             assert_eq!(chance(&default(), on, 1000), None);
         }
         let changes: [fn(&mut DockOptions); 16] = [
-            |options| options.rotations = 7200,
-            |options| options.resolution = 6.0,
-            |options| options.tolerance = 1e-3,
-            |options| options.contact_weight = 1.0,
-            |options| options.fine_contact_weight = 0.0,
-            |options| options.atom_pair_weight = 0.0,
-            |options| options.relaxed_weight = 0.0,
-            |options| options.restraint_weight = 2.0,
-            |options| options.peptidase_weight = 0.0,
-            |options| options.unresolved_weight = 0.0,
-            |options| options.termini_weight = 0.0,
-            |options| options.poses = 1000,
-            |options| options.refine = Some(300),
-            |options| options.cluster_radius = 4.0,
-            |options| options.every_pose = true,
-            |options| options.sample_grid = Some(64),
+            |options| options.search.rotations = 7200,
+            |options| options.kernel.resolution = 6.0,
+            |options| options.kernel.tolerance = 1e-3,
+            |options| options.terms.contact_weight = 1.0,
+            |options| options.terms.fine_contact_weight = 0.0,
+            |options| options.terms.atom_pair_weight = 0.0,
+            |options| options.terms.relaxed_weight = 0.0,
+            |options| options.restraints.restraint_weight = 2.0,
+            |options| options.restraints.peptidase_weight = 0.0,
+            |options| options.terms.unresolved_weight = 0.0,
+            |options| options.terms.termini_weight = 0.0,
+            |options| options.search.poses = 1000,
+            |options| options.search.refine = Some(300),
+            |options| options.ranking.cluster_radius = 4.0,
+            |options| options.ranking.no_cluster = true,
+            |options| options.sampling.sample_grid = Some(SampleGrid::default()),
         ];
         for change in changes {
             let mut options = default();

@@ -40,7 +40,7 @@ pub(crate) fn search_finer<T: Real>(
     for &cell in &cell_of {
         sizes[cell as usize] += 1;
     }
-    let wanted = (plan.options.fine_share * plan.fine_set.len() as f64).ceil() as usize;
+    let wanted = (plan.options.search.fine_share * plan.fine_set.len() as f64).ceil() as usize;
     let mut chosen = vec![false; plan.set.len()];
     let (mut rotations, mut cells) = (0, 0);
     for peak in &coarse {
@@ -84,13 +84,13 @@ pub(crate) fn search_finer<T: Real>(
     for group in crowded.chunk_by(|a, b| cell(a) == cell(b)) {
         peaks.extend(apart(
             group,
-            plan.options.per_rotation,
+            plan.options.search.per_rotation,
             plan.spacing,
             position,
         ));
     }
     peaks.sort_unstable_by(Peak::order);
-    peaks.truncate(plan.options.poses);
+    peaks.truncate(plan.options.search.poses);
     Ok((peaks, FineSearched { rotations, cells }))
 }
 

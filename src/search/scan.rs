@@ -91,7 +91,7 @@ pub(crate) fn choose_rank<T: Real>(plan: &DockPlan, folded: &ReceptorSpectra<T>)
         return chosen;
     }
     let probes = Probes::new(plan, &chosen.engine);
-    let limit = plan.options.tolerance / 3.0;
+    let limit = plan.options.kernel.tolerance / 3.0;
     // `chosen` serves, and no rank below `least` does.
     let mut least = 1;
     while least < chosen.engine.rank() {
@@ -134,7 +134,7 @@ pub(crate) struct Scanned {
 /// The coarse set, in fours; axes of rings one by one, for half-turns make no rings of rings.
 pub(crate) fn all_rotations(plan: &DockPlan) -> Vec<Quartet> {
     let count = plan.set.len();
-    if plan.options.symmetry.is_some() {
+    if plan.options.search.symmetry.is_some() {
         let wanted = [true, false, false, false];
         return (0..count).map(|first| Quartet { first, wanted }).collect();
     }
@@ -158,7 +158,7 @@ pub(crate) fn scan<T: Real>(
     progress: &dyn Progress,
 ) -> Result<Scanned, SearchError> {
     // No list grows beyond all peaks that there are.
-    let most = most.min(4 * quartets.len() * plan.options.per_rotation);
+    let most = most.min(4 * quartets.len() * plan.options.search.per_rotation);
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
         Some(gpu) => scan_on_card(plan, gpu, quartets, most, progress)?,
@@ -184,7 +184,7 @@ fn scan_on_card(
 ) -> Result<Scanned, SearchError> {
     // Peaks that come back together.
     const TOGETHER: usize = 1 << 20;
-    let part = (TOGETHER / (4 * plan.options.per_rotation)).max(1);
+    let part = (TOGETHER / (4 * plan.options.search.per_rotation)).max(1);
     let mut peaks: Vec<Peak> = Vec::new();
     for quartets in quartets.chunks(part) {
         let turn = |quartet: &Quartet| Turn {
@@ -234,7 +234,7 @@ fn scan_on_cores<T: Real>(
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace();
-            let mut found = Vec::with_capacity(2 * most + options.per_rotation);
+            let mut found = Vec::with_capacity(2 * most + options.search.per_rotation);
             while let Some(quartet) = take() {
                 let (rotation, _) = plan.rotation(quartet.first);
                 engine.turn(&rotation, &mut work);
@@ -251,7 +251,7 @@ fn scan_on_cores<T: Real>(
                         &mut work.grid,
                         &mut work.row_best,
                         (quartet.first + image) as u32,
-                        options.per_rotation,
+                        options.search.per_rotation,
                         &mut found,
                     );
                     if found.len() >= 2 * most {

@@ -36,7 +36,7 @@ impl<T: Real> ScanEngine<T> {
     /// # Errors
     /// [`SearchError::Graphics`] where there is no graphics processor, or it cannot be used.
     pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
-        if plan.options.engine == EngineChoice::Cpu {
+        if plan.options.search.engine == EngineChoice::Cpu {
             return Ok(Self {
                 cpu,
                 gpu: None,
@@ -48,7 +48,7 @@ impl<T: Real> ScanEngine<T> {
         let gpu = GpuEngine::new(
             &device,
             &cpu,
-            plan.options.per_rotation,
+            plan.options.search.per_rotation,
             NEIGHBOURS,
             plan.graphics_bytes,
         )?;
@@ -73,7 +73,7 @@ impl<T: Real> ScanEngine<T> {
     /// # Errors
     /// [`SearchError::Graphics`] where a graphics processor is wanted, for this build has none.
     pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
-        match plan.options.engine {
+        match plan.options.search.engine {
             EngineChoice::Cpu => Ok(Self { cpu, adapter: None }),
             EngineChoice::Gpu => Err(SearchError::Graphics(
                 "this build was made without the feature `gpu`".to_owned(),

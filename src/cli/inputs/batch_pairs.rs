@@ -5,25 +5,17 @@ use std::path::Path;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
+use knotdock::options::definition::names_file;
+use knotdock::options::text::first_paragraph as message;
 use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::cli::dock::Dock;
+use crate::cli::dock::{Dock, refusing_recorded};
 use crate::cli::inputs::molecules::label;
+use crate::cli::judging_numbers;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
-use crate::cli::{judging_numbers, message};
-
-/// Columns that name files.
-const FILES: [&str; 6] = [
-    "native",
-    "native_receptor",
-    "native_ligand",
-    "contact_potential",
-    "fine_contact_potential",
-    "atom_pair_potential",
-];
 
 /// Options that are the batch's to set.
 const OWN: [&str; 3] = ["output", "rerun", "force"];
@@ -94,8 +86,19 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
 /// Stand for a row's files where only the options are looked at.
 const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
 
+fn pair_command() -> clap::Command {
+    refusing_recorded(PairCommand::command())
+}
+
+/// Whether a column names files.
+fn names_files(column: &str) -> bool {
+    let command = pair_command();
+    let mut arguments = command.get_arguments();
+    arguments.any(|argument| argument.get_id() == column && names_file(argument))
+}
+
 fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
-    let matches = judging_numbers(PairCommand::command()).try_get_matches_from(words)?;
+    let matches = judging_numbers(pair_command()).try_get_matches_from(words)?;
     PairCommand::from_arg_matches(&matches)
 }
 
@@ -171,7 +174,7 @@ fn command(
         if OWN.contains(&column.as_str()) {
             return Err((format!("a column cannot be `{column}`"), None));
         }
-        let value = if FILES.contains(&column.as_str()) {
+        let value = if names_files(column) {
             at(folder, value)
         } else {
             value.clone()
