@@ -37,8 +37,8 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
         &[
             "active",
             "active-residues",
-            "active-receptor",
-            "active-ligand",
+            "attract-receptor",
+            "attract-ligand",
             "attract",
             "attraction",
             "interface",
