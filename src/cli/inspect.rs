@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
-use knotdock::options::DockOptions;
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
 use knotdock::priors::{Findings, PRIORS};
@@ -13,9 +12,8 @@ use knotdock_structures::molecule::{
 };
 use serde_json::{Map, Value, json};
 
+use crate::cli::arguments::options::{OfInspect, OptionArguments};
 use crate::cli::arguments::output_file::{check_output, is_same};
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::values::not_negative;
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::metal_bound;
@@ -39,10 +37,7 @@ pub struct Inspect {
     #[arg(long, requires = "written")]
     force: bool,
     #[command(flatten)]
-    reading: ReadingArguments,
-    /// pH at which charges are assigned.
-    #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph)]
-    ph: f64,
+    options: OptionArguments<OfInspect>,
 }
 
 /// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about 0.3% of the total.
@@ -53,13 +48,9 @@ fn surface_points(atoms: usize) -> usize {
 impl Inspect {
     /// Inspects.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        if self.ph > 14.0 {
-            return Err(Failure::input(format!(
-                "--ph is {}; it must be between 0 and 14",
-                self.ph
-            )));
-        }
-        let reading = self.reading.options();
+        let options = self.options.given()?.options;
+        let reading = options.input.reading();
+        let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
         if let Some(file) = &self.atoms {
             check_output(file, [structure.as_path()], self.force)?;
@@ -95,7 +86,7 @@ impl Inspect {
                     .remedy("give the file a name that ends in .cif")
             })?;
         }
-        let labels = molecule.labels(self.ph).report;
+        let labels = molecule.labels(ph).report;
         let area: f64 = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))
             .iter()
@@ -107,7 +98,7 @@ impl Inspect {
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(&labels, (&missing, &ends), self.ph, area, volume, &findings)
+            told(&labels, (&missing, &ends), ph, area, volume, &findings)
         ));
         if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;

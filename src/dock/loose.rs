@@ -17,10 +17,10 @@ impl Loose {
     /// What is loose of two molecules.
     pub(crate) fn of(molecules: [&Molecule; 2], options: &DockOptions) -> Self {
         let mut loose = Self::default();
-        if options.unresolved_weight > 0.0 {
+        if options.terms.unresolved_weight > 0.0 {
             loose.missing_residues = molecules.map(Molecule::missing_residues);
         }
-        if options.termini_weight > 0.0 {
+        if options.terms.termini_weight > 0.0 {
             loose.chain_end_residues = molecules.map(Molecule::chain_ends);
         }
         loose

@@ -100,7 +100,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     options.check()?;
     let engine = scene.engine_plan(options)?;
     let memory = MemoryPlan::new(&scene, &engine, options)?;
-    let space = PoseSpace::new(options.symmetry, scene.ring_axis);
+    let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
     let limits = (memory.in_flight, memory.graphics);
     let search = SearchPlan::new(Arc::new(engine), space, options, limits);
     let engine = &search.engine;
@@ -111,7 +111,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     Ok(DockPlan {
         unit: scene.unit,
         angstrom: scene.angstrom,
-        rotations: options.rotations,
+        rotations: options.search.rotations,
         rotation_set: search.rotations.name,
         covering_radius_degrees: search.rotations.covering_radius.to_degrees(),
         grid: engine.size(),
@@ -169,13 +169,14 @@ impl DockPlan {
     /// Number of poses to refine: all where none lies on the grid, as of rings.
     pub fn refined(&self) -> usize {
         if !self.search.space.is_on_grid() {
-            return self.options.poses;
+            return self.options.search.poses;
         }
         let alone = self
             .decisions
             .iter()
             .all(|decision| decision.effect == Effect::Shape || !decision.on);
         self.options
+            .search
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }

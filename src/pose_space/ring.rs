@@ -96,7 +96,7 @@ mod tests {
             [0.8, -2.5, 2.0],
         ];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
-        let engine = DockOptions::default().engine();
+        let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &folded, &knots);
@@ -174,12 +174,11 @@ mod tests {
         let ring = Molecule::new(atoms, Format::Pdb);
         // Off the file's origin.
         let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
-        let options = DockOptions {
-            symmetry: Some("D2".parse().unwrap()),
-            rotations: 12,
-            threads: 1,
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.search.symmetry = Some("D2".parse().unwrap());
+            options.search.rotations = 12;
+            options.machine.threads = 1.into();
+        });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
         let folded = ReceptorSpectra::<f32>::new(

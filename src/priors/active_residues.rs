@@ -33,7 +33,7 @@ impl ActiveResidues {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.active_weight,
+            weight: options.restraints.active_weight,
             assumed: None,
         }
     }
@@ -44,7 +44,7 @@ impl ActiveResidues {
         marks: [&[ResidueRole]; 2],
         options: &DockOptions,
     ) -> Self {
-        let weight = options.peptidase_weight;
+        let weight = options.restraints.peptidase_weight;
         let assumed = (weight > 0.0).then(|| AssumedSite::of(molecules, marks));
         let assumed = assumed.flatten();
         let sets = assumed.as_ref().map_or(Vec::new(), |assumed| {
@@ -101,7 +101,7 @@ impl std::fmt::Display for AssumedSite {
 mod tests {
     use super::*;
     use crate::dock::scene::{Decision, Scene};
-    use crate::priors::restraints::AntibodySurface;
+    use crate::options::AntibodySurface;
     use knotdock_scoring::effect::Effect;
     use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};
 
@@ -125,7 +125,10 @@ mod tests {
             of([&trypsin, &inhibitor], &options)
         };
         let default = with(|_| {});
-        assert_eq!(default.weight, DockOptions::default().peptidase_weight);
+        assert_eq!(
+            default.weight,
+            DockOptions::default().restraints.peptidase_weight
+        );
         let site = default.assumed.clone().unwrap();
         assert_eq!(
             site.to_string(),
@@ -152,19 +155,22 @@ mod tests {
         let two = of([&trypsin, &trypsin], &DockOptions::default());
         assert!(!two.any() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
-            |options| options.peptidase_weight = 0.0,
-            |options| options.effects = "shape,electrostatics".parse().unwrap(),
-            |options| options.block_receptor = Some("A:195".parse().unwrap()),
-            |options| options.active_ligand = Some("B:5".parse().unwrap()),
+            |options| options.restraints.peptidase_weight = 0.0,
+            |options| options.kernel.effects = "shape,electrostatics".parse().unwrap(),
+            |options| options.restraints.block_receptor = Some("A:195".parse().unwrap()),
+            |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
-                options.active_receptor = Some("A:20".parse().unwrap());
-                options.active_weight = 0.0;
+                options.restraints.active_receptor = Some("A:20".parse().unwrap());
+                options.restraints.active_weight = 0.0;
             },
         ];
         for change in changes {
             assert_eq!(with(change).assumed, None);
         }
-        assert!(with(|options| options.block_receptor = Some("A:20-30".parse().unwrap())).any());
+        assert!(
+            with(|options| options.restraints.block_receptor = Some("A:20-30".parse().unwrap()))
+                .any()
+        );
     }
 
     /// The heavy chain of trastuzumab, as alpha carbons; it is none the less an antibody where all of it may touch.
@@ -194,10 +200,8 @@ mod tests {
         let antibody = Molecule::new(atoms, Format::Pdb);
         let trypsin = example("receptor_unbound");
         for surface in [AntibodySurface::Cdrs, AntibodySurface::Whole] {
-            let options = DockOptions {
-                antibody: surface,
-                ..DockOptions::default()
-            };
+            let options =
+                DockOptions::default().changed(|options| options.restraints.antibody = surface);
             let scene = Scene::new(&trypsin, &antibody, &options).unwrap();
             let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
             assert!(scene.decisions.iter().any(contact));

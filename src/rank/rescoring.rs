@@ -33,12 +33,12 @@ impl Asked {
         let typed = decisions.iter().any(contact);
         let when = |asked: bool, weight: f64| if asked { weight } else { 0.0 };
         Self {
-            fine_contact: when(typed, options.fine_contact_weight),
-            atom_pair: when(typed, options.atom_pair_weight),
-            relaxed: when(typed, options.relaxed_weight),
+            fine_contact: when(typed, options.terms.fine_contact_weight),
+            atom_pair: when(typed, options.terms.atom_pair_weight),
+            relaxed: when(typed, options.terms.relaxed_weight),
             attraction: when(attracted.any(), attracted.weight),
-            missing: when(loose.any_missing(), options.unresolved_weight),
-            chain_ends: when(loose.any_ends(), options.termini_weight),
+            missing: when(loose.any_missing(), options.terms.unresolved_weight),
+            chain_ends: when(loose.any_ends(), options.terms.termini_weight),
         }
     }
 
@@ -68,10 +68,20 @@ impl Asked {
         options: &DockOptions,
     ) -> Option<Rescorer> {
         let asked = |weight: f64| (weight > 0.0).then_some(weight);
-        let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
+        let pair_potential = || {
+            options
+                .terms
+                .atom_pair_potential
+                .clone()
+                .unwrap_or_default()
+        };
         self.any().then(|| Rescorer {
             fine_contacts: asked(self.fine_contact).map(|weight| {
-                let potential = options.fine_contact_potential.clone().unwrap_or_default();
+                let potential = options
+                    .terms
+                    .fine_contact_potential
+                    .clone()
+                    .unwrap_or_default();
                 FineContacts::new(receptor, ligand, &potential, weight)
             }),
             atom_pairs: asked(self.atom_pair)
