@@ -27,7 +27,7 @@ import numpy as np
 from contact_potential import ROOT, TYPES_FILE, neighbours, open_text, pair_arguments, part, select
 from whole_file import write
 
-DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/rescoring/pair_potential.rs
+DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/terms/pose/atom_pair_potential.rs
 STEP = 0.5  # A
 
 
@@ -61,7 +61,7 @@ def parse_arguments():
     parser.add_argument("--pseudocount", type=float, default=30.0, help="expected pairs, counted from both sides (default: 30)")
     parser.add_argument("--burial", type=float, default=0.5, metavar="B", help="share of burial that energies keep, 0 to 1 (default: 0.5)")
     parser.add_argument(
-        "-o", "--output", type=Path, default=ROOT / "scoring/src/rescoring/atom_pair_potential.csv", help="default: the program's own table"
+        "-o", "--output", type=Path, default=ROOT / "scoring/src/terms/pose/atom_pair_potential.csv", help="default: the program's own table"
     )
     options = parser.parse_args()
     if not 0.0 <= options.burial <= 1.0:

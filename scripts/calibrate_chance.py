@@ -39,9 +39,9 @@ from whole_file import write
 DEPTH = 10
 # Tables that the program carries, used where a run names no other.
 CARRIED = {
-    "--contact-potential": "scoring/src/effect/contact_potential.csv",
-    "--fine-contact-potential": "scoring/src/rescoring/fine_contact_potential.csv",
-    "--atom-pair-potential": "scoring/src/rescoring/atom_pair_potential.csv",
+    "--contact-potential": "scoring/src/terms/effect/contact_potential.csv",
+    "--fine-contact-potential": "scoring/src/terms/pose/fine_contact_potential.csv",
+    "--atom-pair-potential": "scoring/src/terms/pose/atom_pair_potential.csv",
 }
 COLUMNS = ("cluster", "cluster_size", "cluster_score", "z_score", "rank_score", "contact", "fine_contact", "atom_pair", "relaxed")
 ON = {"shape", "electrostatics", "contact"}  # as src/search/chance.rs has it

@@ -39,8 +39,8 @@ from whole_file import write
 ROOT = Path(__file__).resolve().parent.parent
 TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
-TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
-RANGES = {"near": (3.5, 4.5), "middle": (5.0, 6.0), "far": (7.0, 8.0)}  # ends in A, as in scoring/src/rescoring/potential.rs
+TAPER = (5.0, 7.0)  # A, as in scoring/src/terms/effect/contact.rs
+RANGES = {"near": (3.5, 4.5), "middle": (5.0, 6.0), "far": (7.0, 8.0)}  # ends in A, as in scoring/src/terms/pose/distance_binned_potential.rs
 PROBE = 1.4  # A
 RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 
@@ -99,7 +99,7 @@ def parse_arguments():
     if options.pseudocount is None:
         options.pseudocount = 20.0 if options.fine else 50.0
     if options.output is None:
-        options.output = ROOT / "scoring/src" / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
+        options.output = ROOT / "scoring/src" / ("terms/pose/fine_contact_potential.csv" if options.fine else "terms/effect/contact_potential.csv")
     return options
 
 

@@ -31,7 +31,7 @@ def main():
     for folder in sorted(folder for runs in options.runs for folder in runs.glob("*/seed_*") if (folder / "run/run.json").exists()):
         pair = folder.parent.name
         rows, _, _ = load(options, folder, pair)
-        earned = rows[:, ACCEPTABLE - len(HELD) + HELD.index("attraction")]
+        earned = rows[:, ACCEPTABLE - len(HELD) + HELD.index("active_residues")]
         scores = rows[:, SCORE] - earned
         for name, column in (("acceptable", ACCEPTABLE), ("near-native", NEAR_NATIVE)):
             right = rows[:, column] > 0

@@ -18,17 +18,18 @@
 //! a search keeps, [`rescoring`] asks what is too dear for the grid. [`symmetry`] has the poses of rings. Fast paths stand beside a slow exact one that tests hold them to.
 
 pub mod affinity;
-pub mod effect;
 pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod potential_grid;
-pub mod rescoring;
 pub mod se3;
 pub mod symmetry;
+pub mod terms;
 #[cfg(test)]
 mod test_support;
 pub mod transform;
 pub mod truncated;
 mod vectorized;
+
+pub use terms::{effect, pose as rescoring};

@@ -274,6 +274,19 @@ impl DockOptions {
         }
     }
 
+    /// Weight of the pose term with an id.
+    pub(crate) fn term_weight(&self, id: &str) -> f64 {
+        match id {
+            "fine_contact" => self.fine_contact_weight,
+            "atom_pair" => self.atom_pair_weight,
+            "relaxed" => self.relaxed_weight,
+            "active_residues" => self.active_weight,
+            "unresolved" => self.unresolved_weight,
+            "termini" => self.termini_weight,
+            _ => unreachable!("no weight of '{id}'"),
+        }
+    }
+
     /// The engine's part of the options.
     pub fn engine(&self) -> EngineOptions {
         EngineOptions {

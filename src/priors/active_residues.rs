@@ -2,7 +2,7 @@
 
 use crate::options::DockOptions;
 use knotdock_scoring::effect::restraint::ResidueRole;
-use knotdock_scoring::rescoring::Residues;
+use knotdock_scoring::terms::pose::Residues;
 use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
 use serde::Serialize;
 
@@ -55,11 +55,6 @@ impl ActiveResidues {
             weight,
             assumed,
         }
-    }
-
-    /// Whether poses have anything to earn.
-    pub(crate) fn any(&self) -> bool {
-        !self.sets.is_empty() && self.weight > 0.0
     }
 }
 
@@ -129,7 +124,7 @@ mod tests {
         let (trypsin, inhibitor) = (example("receptor_unbound"), example("ligand_unbound"));
         let of = |molecules: [&Molecule; 2], options: &DockOptions| {
             let [receptor, ligand] = molecules;
-            Scene::new(receptor, ligand, options).unwrap().attracted
+            Scene::new(receptor, ligand, options).unwrap().active
         };
         let with = |change: fn(&mut DockOptions)| {
             let mut options = DockOptions::default();
@@ -162,7 +157,7 @@ mod tests {
         assert_eq!(turned.sets, [[Vec::new(), receptor.clone()]]);
 
         let two = of([&trypsin, &trypsin], &DockOptions::default());
-        assert!(!two.any() && two.assumed.is_none());
+        assert!(two.sets.is_empty() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
             |options| options.peptidase_weight = 0.0,
             |options| options.effects = "shape,electrostatics".parse().unwrap(),
@@ -176,7 +171,8 @@ mod tests {
         for change in changes {
             assert_eq!(with(change).assumed, None);
         }
-        assert!(with(|options| options.block_receptor = Some("A:20-30".parse().unwrap())).any());
+        let elsewhere = with(|options| options.block_receptor = Some("A:20-30".parse().unwrap()));
+        assert_eq!(elsewhere.sets, default.sets);
     }
 
     /// The heavy chain of trastuzumab, as alpha carbons; it is none the less an antibody where all of it may touch.
@@ -213,7 +209,7 @@ mod tests {
             let scene = Scene::new(&trypsin, &antibody, &options).unwrap();
             let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
             assert!(scene.decisions.iter().any(contact));
-            assert!(!scene.attracted.any());
+            assert!(scene.active.sets.is_empty());
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
 use crate::search::peaks::Peak;
 use crate::search::schedule::Deadline;
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
 /// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
