@@ -8,7 +8,6 @@
 mod example;
 
 use knotdock::options::DockOptions;
-use knotdock::search::rotations::rotation_set;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
@@ -16,6 +15,7 @@ use knotdock_scoring::engine::{
 use knotdock_scoring::kernel::{Band, ProductScorer};
 use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::so3::rotation_set;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;

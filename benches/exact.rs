@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let brute = Brute::new(&plan, &receptor, &ligand);
     let mut times: [Vec<f64>; 4] = Default::default();
     let (mut pairs, mut best, mut worst) = (0, f64::MIN_POSITIVE, 0.0f64);
-    for rotation in knotdock::search::rotations::rotation_set(POSES) {
+    for rotation in knotdock_scoring::so3::rotation_set(POSES) {
         engine.correlate(&rotation, &mut work);
         let peak = (0..work.grid.len())
             .max_by(|&a, &b| work.grid[a].total_cmp(&work.grid[b]))

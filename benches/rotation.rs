@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
         let mut work = engine.workspace();
         let mut stages: [Vec<f64>; 6] = Default::default();
-        for rotation in knotdock::search::rotations::rotation_set(ROTATIONS) {
+        for rotation in knotdock_scoring::so3::rotation_set(ROTATIONS) {
             let seconds = engine.stage_seconds(&rotation, &mut work);
             for (times, value) in stages.iter_mut().zip(seconds) {
                 times.push(value);

@@ -91,10 +91,6 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             "version"
         ]
     );
-    // Forty rotations are not what the chance was calibrated on.
-    let results = recorded["results"].as_object().unwrap();
-    assert!(results["chance_acceptable_in_10"].is_null());
-    assert!(!String::from_utf8_lossy(&output.stderr).contains("Chance"));
     assert!(
         recorded["options"].get("threads").is_none(),
         "threads are the machine's"

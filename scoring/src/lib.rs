@@ -22,8 +22,10 @@ pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
+pub mod peaks;
 pub mod potential_grid;
 pub mod se3;
+pub mod so3;
 pub mod symmetry;
 pub mod terms;
 #[cfg(test)]

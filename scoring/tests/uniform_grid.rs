@@ -242,8 +242,8 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
         centers.extend([[-20.0; 3], [20.0; 3]]);
         let mut radii = cloud.radii.clone();
         radii.extend([1.5; 2]);
-        let mut weights = vec![Complex64::new(1.0, 0.0); cloud.len()];
-        weights.extend([Complex64::default(); 2]);
+        let mut weights = vec![1.0; cloud.len()];
+        weights.extend([0.0; 2]);
         Knots::with_weights(centers, radii, weights).unwrap()
     };
     let b = cloud(20, 4.0, &RADII, 12);
@@ -421,7 +421,7 @@ fn refuses_what_cannot_be_gridded() {
     for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9] {
         assert!(UniformGridPlan::new(&a, &b, grid_options(2.0, Band::Whole, spacing)).is_err());
     }
-    let mut complex = a.clone();
-    complex.weights[2].im = 1.0;
-    assert!(UniformGridPlan::new(&complex, &b, grid_options(2.0, Band::Whole, 1.0)).is_err());
+    let mut infinite = a.clone();
+    infinite.weights[2] = f64::INFINITY;
+    assert!(UniformGridPlan::new(&infinite, &b, grid_options(2.0, Band::Whole, 1.0)).is_err());
 }

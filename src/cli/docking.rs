@@ -14,7 +14,7 @@ use knotdock::output::quality;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::staging::Staging;
-use knotdock::search::schedule::Deadline;
+use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::{Value, json};
@@ -26,7 +26,7 @@ use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
-    assumed, chance_told, error_warning, few_rotations_warning, regions_text, told,
+    assumed, error_warning, few_rotations_warning, regions_text, told,
 };
 use crate::cli::messages::failure::Failure;
 
@@ -53,11 +53,11 @@ impl Docking {
         clock: Clock,
         console: Console,
     ) -> Result<Self, Failure> {
-        let symmetry = request.options.dock.symmetry;
-        if symmetry.is_none() {
+        let arrangement = request.arrangement();
+        if !arrangement.is_ring() {
             request.bodies.note_shared_chains();
         }
-        request.bodies.describe(symmetry, console);
+        request.bodies.describe(arrangement, console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);
@@ -76,10 +76,7 @@ impl Docking {
         };
         let plan = &prepared.plan;
         console.say(format!("\n{plan}"));
-        let sides: &[&str] = match symmetry {
-            Some(_) => &["molecule"],
-            None => &["receptor", "ligand"],
-        };
+        let sides = arrangement.sides();
         for (side, count) in sides.iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
@@ -170,9 +167,10 @@ impl Docking {
             .rows()
             .get(..request.options.write_top)
             .unwrap_or(table.rows());
-        let symmetry = request.options.dock.symmetry;
         let top_folder = staging.folder().join("top");
-        let written = request.bodies.write(top, symmetry, &top_folder)?;
+        let written = request
+            .bodies
+            .write(top, request.arrangement(), &top_folder)?;
         let inputs = request.inputs(sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
@@ -184,7 +182,6 @@ impl Docking {
                 clusters: outcome.clusters,
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
-                chance_acceptable_in_10: outcome.chance,
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
@@ -221,9 +218,6 @@ impl Docking {
             }
         }
         console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
-        if let Some(chance) = outcome.chance {
-            console.say(format!("\n{}", chance_told(chance)));
-        }
         console.say(format!(
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),

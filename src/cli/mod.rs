@@ -23,6 +23,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use messages::console::Console;
 use messages::failure::Failure;
 use messages::suggestions;
+use messages::usage::{message, with_negative_numbers};
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
@@ -63,7 +64,7 @@ fn version() -> &'static str {
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
     let parsed = Cli::command()
-        .mut_subcommands(judging_numbers)
+        .mut_subcommands(with_negative_numbers)
         .try_get_matches_from(&arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
         .map_err(suggestions::explained);
@@ -99,14 +100,6 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// A command in which a negative number is the value of the option before it, so that what is wrong with it can be said.
-fn judging_numbers(command: clap::Command) -> clap::Command {
-    command.mut_args(|argument| {
-        let takes_value = argument.get_action().takes_values();
-        argument.allow_negative_numbers(takes_value)
-    })
-}
-
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
 fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     let asked = matches!(
@@ -132,12 +125,4 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     } else {
         ExitCode::from(2)
     }
-}
-
-/// What is wrong with a command line, without the lines on usage.
-fn message(error: &clap::Error) -> String {
-    // clap's text is the message with usage lines; its first paragraph is the message.
-    let text = error.render().to_string();
-    let message = text.split("\n\n").next().unwrap_or(&text);
-    message.trim_start_matches("error: ").trim().to_owned()
 }

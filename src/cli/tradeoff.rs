@@ -86,7 +86,7 @@ impl TradeoffCommand {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
         });
-        request.bodies.describe(None, console);
+        request.bodies.describe(request.arrangement(), console);
         let evaluator = request.evaluator()?;
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);

@@ -2,8 +2,10 @@
 
 mod effect_timings;
 pub mod flexible_regions;
+mod memory;
 pub mod outcome;
 pub mod pair;
 pub mod plan;
+mod plan_text;
 pub mod run;
 pub mod scene;

@@ -2,9 +2,10 @@
 
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
-use crate::search::peaks::Peak;
+use crate::search::scan_engine::Adapter;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::TermValues;
 use serde::Serialize;
@@ -130,19 +131,6 @@ pub struct StageTime {
     pub cpu_seconds: Option<f64>,
 }
 
-/// The graphics processor that correlated.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Adapter {
-    /// Its name.
-    pub name: String,
-    /// The interface that it was driven through, such as `vulkan`.
-    pub backend: &'static str,
-    /// Whether it is a program on the CPU that plays one.
-    pub software: bool,
-    /// Rotations that were in flight at once, half-turns counted.
-    pub rotations_in_flight: usize,
-}
-
 /// All that a docking run found.
 #[derive(Clone, Debug)]
 pub struct DockOutcome {
@@ -156,8 +144,6 @@ pub struct DockOutcome {
     pub searched: usize,
     /// Where the run stopped for a deadline, or one that it repeats did; `None` where it went to its end.
     pub stopped: Option<Stopped>,
-    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated, [`super::chance::chance`].
-    pub chance: Option<f64>,
     /// The fast path's error as measured.
     pub error: MeasuredError,
     /// Rank of the compressed functions in use.
@@ -176,7 +162,7 @@ pub struct DockOutcome {
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::outcome::*;
+    use super::*;
 
     /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
     #[test]

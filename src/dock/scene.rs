@@ -9,6 +9,7 @@ use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::{AntibodySurface, Restraints};
 use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
+use knotdock_scoring::engine::Plan;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
@@ -260,6 +261,18 @@ impl Scene {
         })
     }
 
+    /// The engine's plan for the scene.
+    ///
+    /// # Errors
+    /// [`SearchError`] on knots or options that no engine can correlate.
+    pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
+        let terms = self.terms.clone();
+        let engine = options.engine();
+        let tolerance = options.tolerance;
+        let plan = Plan::with_effects(&self.receptor, &self.ligand, engine, tolerance, terms)?;
+        Ok(plan)
+    }
+
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
     pub fn active_site(&self) -> Option<&AssumedSite> {
         self.active.assumed.as_ref()
@@ -328,7 +341,7 @@ fn lacking(
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::scene::*;
+    use super::*;
     use crate::priors::restraints::tests::peptide;
     use knotdock_scoring::terms::pose;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};

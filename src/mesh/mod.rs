@@ -23,6 +23,8 @@
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
+use knotdock_structures::numeric::Bump;
+use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
 use knotdock_structures::sampler::hausdorff::HausdorffMeter;
@@ -92,6 +94,9 @@ pub enum MeshSceneError {
         /// Why.
         source: SampleError,
     },
+    /// The bump function has no such exponent.
+    #[error(transparent)]
+    Alpha(#[from] AlphaError),
     /// The balls are not usable.
     #[error(transparent)]
     Knots(#[from] KnotsError),
@@ -141,7 +146,7 @@ impl MeshSceneError {
             Self::Sample { part, .. } | Self::Size { part, .. } | Self::Thin { part, .. } => {
                 Some(*part)
             }
-            Self::Knots(_) | Self::Offset { .. } => None,
+            Self::Alpha(_) | Self::Knots(_) | Self::Offset { .. } => None,
         }
     }
 
@@ -151,6 +156,7 @@ impl MeshSceneError {
             Self::Sample { .. } => {
                 "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
             }
+            Self::Alpha(_) => "give --alpha a number above zero",
             Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
             Self::Size { .. } => {
                 "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
@@ -276,7 +282,9 @@ pub fn sample_pair(
         let fitted = options
             .weights
             .are_fitted()
-            .then(|| weights::fit(field, &balls, options.alpha, volume()));
+            .then(|| Bump::new(options.alpha))
+            .transpose()?
+            .map(|bump| weights::fit(field, &balls, bump, volume()));
         // A ball without weight would only cost time.
         let (balls, weights): (Vec<_>, Vec<f64>) = balls
             .into_iter()

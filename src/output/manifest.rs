@@ -14,12 +14,13 @@ use super::program::Program;
 use super::run_options::RunOptions;
 use super::whole_file::{FileError, write_json};
 use crate::dock::outcome::MeasuredError;
-use crate::dock::outcome::{Adapter, DockOutcome, EffectCost, StageTime};
+use crate::dock::outcome::{DockOutcome, EffectCost, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
 use crate::priors::active_residues::AssumedSite;
 use crate::search::coarse_to_fine::FineSearched;
+use crate::search::scan_engine::Adapter;
 use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::effect::Effect;
 
@@ -64,8 +65,6 @@ pub struct Results {
     pub poses: usize,
     /// Rotations that were searched.
     pub rotations: usize,
-    /// Chance that one of the first ten clusters is acceptable; `None` where it is not calibrated.
-    pub chance_acceptable_in_10: Option<f64>,
 }
 
 /// What an effect cost.

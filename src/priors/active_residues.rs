@@ -106,8 +106,8 @@ pub fn sites_told(sites: &[ActiveSite]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::dock::scene::{Decision, Scene};
-    use crate::priors::active_residues::*;
     use crate::priors::restraints::AntibodySurface;
     use knotdock_scoring::effect::Effect;
     use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};

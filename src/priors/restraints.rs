@@ -179,7 +179,7 @@ pub fn domains_told(antibody: &Antibody) -> String {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use crate::priors::restraints::*;
+    use super::*;
     use knotdock_structures::molecule::{Atom, Format};
 
     /// Alpha carbons of glycine, number 1 to 4, so many Å apart.

@@ -4,10 +4,11 @@
 //! the machine as it then is, and the poses that scored least are left out where time is short.
 
 use crate::options::DockOptions;
-use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
+use crate::pose_space::refine::RefinedPose;
+use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
-use crate::search::peaks::Peak;
-use crate::search::schedule::Deadline;
+use crate::search::deadline::Deadline;
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
@@ -61,7 +62,7 @@ fn within(left: f64, each: f64, count: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::time_left::*;
+    use super::*;
 
     #[test]
     fn as_many_poses_are_kept_as_fit() {

@@ -157,10 +157,10 @@ fn seconds(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::dock::outcome::MeasuredError;
     use crate::dock::outcome::StageTime;
     use crate::options::DockOptions;
-    use crate::tradeoff::advice::*;
     use crate::tradeoff::settings::Setting;
 
     fn measured(knob: Knob, rotations: usize, cost: f64, rms: f64, agreement: f64) -> Measured {

@@ -70,7 +70,7 @@ pub(super) fn tick_text(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::axis::*;
+    use super::*;
 
     #[test]
     fn ticks_lie_within_the_axis_and_read_as_people_write() {

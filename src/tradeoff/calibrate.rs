@@ -126,7 +126,7 @@ fn run(options: &DockOptions, progress: &dyn Progress) -> Result<Timed, SearchEr
             ..Workload::of(&plan)
         },
         rotations: plan.rotations as f64,
-        in_flight: plan.in_flight as f64,
+        in_flight: plan.in_flight() as f64,
         rotation_set_seconds,
         checked: outcome.error.poses as f64,
         stages: outcome.timing,
@@ -271,7 +271,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::calibrate::*;
+    use super::*;
     use crate::tradeoff::cost_model::LADDER;
 
     #[test]

@@ -92,7 +92,7 @@ pub(super) fn three_digits(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::change::*;
+    use super::*;
 
     #[test]
     fn lengths_have_three_digits_in_any_unit() {

@@ -233,7 +233,7 @@ impl Panel {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::chart::*;
+    use super::*;
 
     fn series(name: &str, style: Style, points: Vec<[f64; 2]>) -> Series {
         Series {

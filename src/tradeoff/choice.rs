@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::dock::pair::{PairError, Preparer};
 use crate::dock::plan::DockPlan;
 use crate::options::DockOptions;
-use crate::search::schedule::Deadline;
+use crate::search::deadline::Deadline;
 use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
@@ -85,7 +85,7 @@ impl ChoiceError {
 /// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
 pub fn deadline(model: &CostModel, plan: &DockPlan, end: Instant) -> Deadline {
     let (model, work) = (*model, Workload::of(plan));
-    let threads = plan.in_flight;
+    let threads = plan.in_flight();
     let rotation = model.rotation_seconds(&work) / threads as f64;
     Deadline::new(end, rotation, move |rotations| {
         model.seconds_after_search(&work, rotations, threads)

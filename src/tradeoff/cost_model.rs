@@ -173,7 +173,7 @@ pub struct Workload {
     pub poses: f64,
     /// Peaks kept of each rotation.
     pub per_rotation: f64,
-    /// Share of them that the fast path's error could put before the founder of their cluster; all where every pose is listed.
+    /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is listed.
     pub doubtful: f64,
     /// Poses rescored, each times the share of the pose terms' time that the acting terms take.
     pub rescored: f64,
@@ -231,11 +231,11 @@ impl Workload {
 }
 
 impl Workload {
-    /// Poses that are exactly scored for the table: of each cluster the founder, and whatever might come before it.
+    /// Poses that are exactly scored for the table: of each cluster the centre, and whatever might come before it.
     fn reported(&self, rotations: f64) -> f64 {
         let joining = JOINING / self.ligand * (rotations / 3600.0).powf(CROWDING);
-        let founders = 1.0 / (1.0 + joining);
-        self.poses * (founders + self.doubtful).min(1.0)
+        let centres = 1.0 / (1.0 + joining);
+        self.poses * (centres + self.doubtful).min(1.0)
     }
 }
 
@@ -325,7 +325,7 @@ impl Rung {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::cost_model::*;
+    use super::*;
 
     fn work() -> Workload {
         Workload {

@@ -178,7 +178,7 @@ impl Drawing {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::drawing::*;
+    use super::*;
 
     fn drawing(marks: Vec<Mark>) -> Drawing {
         Drawing {

@@ -225,7 +225,7 @@ pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::settings::*;
+    use super::*;
 
     fn swept(default: &DockOptions) -> Vec<Setting> {
         let planned = Planned {

@@ -10,7 +10,6 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
-use num_complex::Complex64;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::sync::Arc;
@@ -26,9 +25,7 @@ fn knots() -> impl Strategy<Value = Knots> {
         Knots::with_weights(
             list.iter().map(|knot| center(knot.0)).collect(),
             list.iter().map(|knot| radii[knot.1].exp()).collect(),
-            list.iter()
-                .map(|knot| Complex64::new(knot.2, 0.0))
-                .collect(),
+            list.iter().map(|knot| knot.2).collect(),
         )
         .unwrap()
     })
@@ -90,7 +87,7 @@ fn best(plan: &Plan, a: &Knots, b: &Knots) -> f64 {
 }
 
 fn pairs(a: &Knots, b: &Knots) -> f64 {
-    let sum = |knots: &Knots| knots.weights.iter().map(|c| c.re.abs()).sum::<f64>();
+    let sum = |knots: &Knots| knots.weights.iter().map(|c| c.abs()).sum::<f64>();
     sum(a) * sum(b)
 }
 

@@ -175,7 +175,7 @@ fn direct<T: Real>(
 struct Lifted {
     centers: Vec<[f64; 3]>,
     radii: Vec<f64>,
-    weights: Vec<Complex64>,
+    weights: Vec<f64>,
 }
 
 impl Lifted {

@@ -11,7 +11,7 @@ use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::RankingKernel;
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::sampler::weights::bump_volume;
+use knotdock_structures::numeric::Bump;
 use nalgebra::{UnitQuaternion, Vector3};
 
 fn sampled(pair: &Pair) -> MeshPair {
@@ -90,7 +90,7 @@ fn weights_are_volumes() {
             .radii
             .iter()
             .zip(&part.knots.weights)
-            .map(|(radius, weight)| weight.re * radius.powi(3) * bump_volume(2.0))
+            .map(|(radius, weight)| weight * radius.powi(3) * Bump::new(2.0).unwrap().volume())
             .sum();
         assert!(
             (integral / volume - 1.0).abs() < 0.08,

@@ -64,8 +64,7 @@ impl<T: Real> ReceptorSpectra<T> {
             let mut inside = Vec::new();
             let mut weights = Vec::new();
             for (i, &radius) in receptor.radii.iter().enumerate() {
-                let value =
-                    plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i].re;
+                let value = plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i];
                 if value != 0.0 {
                     inside.push(knots.points[i]);
                     weights.push(T::of(value));
@@ -89,7 +88,7 @@ impl<T: Real> ReceptorSpectra<T> {
             .map(|b| {
                 let value = |j: usize| plan.basis.ligand_value(&plan.axis, b, ligand.radii[j]);
                 (0..ligand.len())
-                    .map(|j| ligand.weights[j].re * value(j))
+                    .map(|j| ligand.weights[j] * value(j))
                     .collect()
             })
             .collect();

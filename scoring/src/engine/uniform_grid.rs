@@ -270,7 +270,7 @@ fn balls(knots: &Knots, center: Vector3<f64>) -> Vec<Ball> {
         .map(|i| Ball {
             position: Vector3::from(knots.centers[i]) - center,
             radius: knots.radii[i],
-            weight: knots.weights[i].re,
+            weight: knots.weights[i],
         })
         .collect()
 }

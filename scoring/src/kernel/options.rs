@@ -1,7 +1,7 @@
 //! What defines a kernel, and which kernels cannot be built.
 
-use super::bump::{AlphaError, Bump};
 use super::cone::Trim;
+use knotdock_structures::numeric::bump::{AlphaError, Bump};
 use serde::{Deserialize, Serialize};
 
 /// What defines the ranking kernel. Lengths in the unit of the knots (Å for molecules).

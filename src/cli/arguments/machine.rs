@@ -56,7 +56,7 @@ pub fn machine(plan: &DockPlan) -> Machine {
         architecture: std::env::consts::ARCH,
         hardware_threads: hardware_threads(),
         threads: plan.options.threads,
-        rotations_in_flight: plan.in_flight,
+        rotations_in_flight: plan.in_flight(),
         memory_limit_bytes: plan.options.memory,
         memory_estimate_bytes: plan.memory_bytes(),
         adapter: None,

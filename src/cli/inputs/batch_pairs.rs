@@ -13,7 +13,7 @@ use crate::cli::dock::Dock;
 use crate::cli::inputs::molecules::label;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
-use crate::cli::{judging_numbers, message};
+use crate::cli::messages::usage::{message, with_negative_numbers};
 
 /// Columns that name files.
 const FILES: [&str; 6] = [
@@ -95,7 +95,7 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
 const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
 
 fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
-    let matches = judging_numbers(PairCommand::command()).try_get_matches_from(words)?;
+    let matches = with_negative_numbers(PairCommand::command()).try_get_matches_from(words)?;
     PairCommand::from_arg_matches(&matches)
 }
 

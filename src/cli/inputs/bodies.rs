@@ -12,7 +12,7 @@ use knotdock::output::complexes::write_complexes;
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock::output::poses::PoseRow;
-use knotdock_scoring::symmetry::Symmetry;
+use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
 
 use crate::cli::arguments::idle::refuse_of_meshes;
@@ -98,18 +98,15 @@ impl Bodies {
         }
     }
 
-    /// Says what was read, and what to beware of; of a ring, the one molecule that it is made of.
-    pub fn describe(&self, symmetry: Option<Symmetry>, console: Console) {
+    /// Reports what was read, with warnings; of a ring, the one molecule that it is made of.
+    pub fn describe(&self, arrangement: Arrangement, console: Console) {
         match self {
             Self::Molecules(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
-                if let Some(symmetry) = symmetry {
+                if arrangement.is_ring() {
                     let report = &receptor.molecule.report;
-                    let what = match symmetry.folds() {
-                        Some(_) => "ring",
-                        None => "copy",
-                    };
-                    return console.say(format!("Each {what} of {symmetry}: {report}"));
+                    let (what, suffix) = (arrangement.moved(), arrangement.suffix());
+                    return console.say(format!("Each {what}{suffix}: {report}"));
                 }
                 console.say(format!(
                     "Receptor: {}\nLigand: {}",
@@ -186,13 +183,13 @@ impl Bodies {
     pub fn write(
         &self,
         rows: &[PoseRow],
-        symmetry: Option<Symmetry>,
+        arrangement: Arrangement,
         folder: &Path,
     ) -> Result<WrittenBodies, Failure> {
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                let written = write_complexes(molecules, symmetry, rows, folder)?;
+                let written = write_complexes(molecules, arrangement, rows, folder)?;
                 Ok(WrittenBodies {
                     names: written.names,
                     chains: Some(written.chains),

@@ -9,6 +9,7 @@ use knotdock::output::manifest::Inputs;
 use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::run_options::RunOptions;
+use knotdock::pose_space::arrangement::Arrangement;
 
 use crate::cli::arguments::native::NativeFiles;
 use crate::cli::inputs::bodies::Bodies;
@@ -96,12 +97,18 @@ impl Request {
         })
     }
 
+    /// What the run puts together.
+    pub fn arrangement(&self) -> Arrangement {
+        self.options.dock.symmetry.into()
+    }
+
     /// The directory of a run that names none.
     pub fn directory(&self) -> PathBuf {
         let [receptor, ligand] = self.bodies.labels();
-        PathBuf::from(match self.options.dock.symmetry {
-            Some(symmetry) => format!("knotdock_{receptor}_{symmetry}"),
-            None => format!("knotdock_{receptor}_{ligand}"),
-        })
+        let partner = match self.arrangement() {
+            Arrangement::Pair => ligand,
+            Arrangement::Ring(symmetry) => symmetry.to_string(),
+        };
+        PathBuf::from(format!("knotdock_{receptor}_{partner}"))
     }
 }

@@ -146,14 +146,6 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// The chance that a ranking holds what is looked for, and what it rests on.
-pub fn chance_told(chance: f64) -> String {
-    format!(
-        "Chance that one of the first ten clusters is acceptable: {:.0}%, as of known pairs docked like this",
-        100.0 * chance
-    )
-}
-
 /// Flexible regions of each side that cost poses score: unresolved segments and residues near termini.
 pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
     let regions = regions.unresolved.iter().zip(&regions.termini);

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use knotdock_structures::mesh::{self, Solid};
+use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
 use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampler::weights::{self, FittedWeights};
@@ -221,12 +222,10 @@ impl Sample {
                 .remedy("sample it on a finer --grid, or leave out --weights fitted"));
             }
             let (field, volume) = (&sampling.field, referee.volume());
-            finished.fitted = Some(weights::fit(
-                field,
-                &finished.balls,
-                self.alpha.unwrap_or(FITTED_ALPHA),
-                volume,
-            ));
+            let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA)).map_err(|error| {
+                Failure::input(error).remedy("give --alpha a number above zero")
+            })?;
+            finished.fitted = Some(weights::fit(field, &finished.balls, bump, volume));
             finished.step = Some(Step::since("fitting weights", start));
         }
         if let Some(count) = self.level {

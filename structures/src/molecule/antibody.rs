@@ -6,10 +6,10 @@
 //! Proteins of Immunological Interest, 1991) counts among them: either alone misses residues that touch antigens. T-cell receptors are
 //! left alone, since superantigens hold them by their frameworks.
 
-use super::cells::Cells;
 use super::groups::{Residue, residue_runs};
 use super::sequence::{letter, number, peptides};
 use super::{Molecule, squared_distance};
+use crate::neighbours::SpatialHash;
 use immunum::numbering::region_for_position;
 use immunum::types::{IG_CHAINS, Region};
 use immunum::{Annotator, Chain, Scheme};
@@ -107,10 +107,11 @@ impl Molecule {
             .zip(chosen)
             .filter_map(|(position, chosen)| chosen.then_some(position))
             .collect();
-        let cells = Cells::new(chosen.iter().copied(), distance);
+        let cells = SpatialHash::of_points(chosen.iter().copied(), distance);
         let is_near = |position: [f64; 3]| {
             cells
                 .around(position)
+                .copied()
                 .any(|other| squared_distance(position, chosen[other]) <= distance * distance)
         };
         positions().map(is_near).collect()

@@ -22,7 +22,6 @@ mod alternate;
 mod antibody;
 mod assembly;
 mod buried;
-mod cells;
 mod chain_ends;
 mod chains;
 mod charge_table;

@@ -154,7 +154,7 @@ pub fn term(receptor: &Knots, ligand: &Knots, weight: f64, potential: &Potential
             .map(|index| match knots.contact_types.get(index) {
                 Some(&Some(kind)) if usize::from(kind) < TYPES.len() => Label {
                     class: usize::from(kind),
-                    value: knots.weights.get(index).map_or(0.0, |weight| weight.re),
+                    value: knots.weights.get(index).copied().unwrap_or(0.0),
                 },
                 _ => Label::default(),
             })

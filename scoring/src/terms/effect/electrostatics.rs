@@ -41,7 +41,7 @@ pub fn term(receptor: &Knots, ligand: &Knots, weight: f64) -> Term {
             .map(|index| Label {
                 class: 0,
                 value: knots.charges.get(index).copied().unwrap_or(0.0)
-                    * knots.weights.get(index).map_or(0.0, |weight| weight.re),
+                    * knots.weights.get(index).copied().unwrap_or(0.0),
             })
             .collect()
     };

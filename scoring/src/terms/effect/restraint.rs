@@ -44,7 +44,7 @@ pub fn term(
         (0..knots.len())
             .map(|index| Label {
                 class: marks.get(index).copied().unwrap_or_default() as usize,
-                value: knots.weights.get(index).map_or(0.0, |weight| weight.re),
+                value: knots.weights.get(index).copied().unwrap_or(0.0),
             })
             .collect()
     };

@@ -1,16 +1,18 @@
 //! Two bodies of typed atoms, and sums over the pairs that come near each other at a pose.
 
-use super::cells::{Atom, Cells};
+use super::CELL_EDGE;
 use crate::exact::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
+use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::Vector3;
 
 /// The atoms that have a type, each body's relative to its own middle.
 pub(super) struct Bodies {
-    receptor: Cells,
+    /// By the type of the atom.
+    receptor: CellList<usize>,
     receptor_center: Vector3<f64>,
-    ligand: Vec<Atom>,
+    ligand: Vec<(Vector3<f64>, usize)>,
     ligand_center: Vector3<f64>,
 }
 
@@ -23,9 +25,13 @@ impl Bodies {
         kinds: usize,
     ) -> Self {
         let (atoms, receptor_center) = typed(receptor, types(receptor), kinds);
+        let atoms = atoms.into_iter().map(|(position, item)| Member {
+            position: position.into(),
+            item,
+        });
         let (ligand, ligand_center) = typed(ligand, types(ligand), kinds);
         Self {
-            receptor: Cells::new(atoms),
+            receptor: CellList::new(atoms.collect(), CELL_EDGE),
             receptor_center,
             ligand,
             ligand_center,
@@ -38,12 +44,13 @@ impl Bodies {
         let matrix = pose.rotation.to_rotation_matrix();
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
         let mut total = 0.0;
-        for atom in &self.ligand {
+        for &(atom, kind) in &self.ligand {
             let mut sum = 0.0;
-            let position = matrix * atom.position + place;
-            self.receptor.near(position, reach, |other, square| {
-                sum += worth(other.kind, atom.kind, square.sqrt());
-            });
+            let position = matrix * atom + place;
+            self.receptor
+                .visit_within(position.into(), reach, |&other, square| {
+                    sum += worth(other, kind, square.sqrt());
+                });
             total += sum;
         }
         total
@@ -51,15 +58,16 @@ impl Bodies {
 }
 
 /// The typed atoms of a set of knots relative to its middle, which comes with them.
-fn typed(knots: &Knots, types: &[Option<u8>], kinds: usize) -> (Vec<Atom>, Vector3<f64>) {
+fn typed(
+    knots: &Knots,
+    types: &[Option<u8>],
+    kinds: usize,
+) -> (Vec<(Vector3<f64>, usize)>, Vector3<f64>) {
     let center = center(knots);
     let atoms = knots.centers.iter().zip(types);
     let atoms = atoms.filter_map(|(&x, kind)| {
         let kind = usize::from((*kind)?);
-        (kind < kinds).then(|| Atom {
-            position: Vector3::from(x) - center,
-            kind,
-        })
+        (kind < kinds).then(|| (Vector3::from(x) - center, kind))
     });
     (atoms.collect(), center)
 }

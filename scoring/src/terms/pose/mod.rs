@@ -24,7 +24,6 @@ mod active_residues;
 mod atom_pair;
 mod atom_pair_potential;
 mod bodies;
-mod cells;
 mod distance_binned_potential;
 mod energy_table;
 mod fine_contact;
@@ -48,6 +47,9 @@ pub use values::TermValues;
 
 use crate::se3::Pose;
 use knotdock_structures::{Conformers, Knots};
+
+/// Edge in Å of the cells that hold a body's atoms.
+const CELL_EDGE: f64 = 4.0;
 
 /// Every pose term, in the order of sums, columns and reports.
 pub const POSE_TERMS: &[TermDefinition] = &[

@@ -1,9 +1,10 @@
 //! All atoms of one side of a pose, so that those near a point are found.
 
-use super::cells::{Atom, Cells};
+use super::CELL_EDGE;
 use crate::exact::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
+use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::Vector3;
 
 /// Distance in Å within which two atoms are in contact, as the field counts native contacts.
@@ -11,19 +12,23 @@ const TOUCHING: f64 = 5.0;
 
 /// All atoms of one side, about its middle.
 pub(super) struct Side {
-    atoms: Cells,
+    /// By the index of the atom.
+    atoms: CellList<usize>,
     middle: Vector3<f64>,
 }
 
 impl Side {
     pub fn new(knots: &Knots) -> Self {
         let middle = center(knots);
-        let atom = |(index, x): (usize, &[f64; 3])| Atom {
-            position: Vector3::from(*x) - middle,
-            kind: index,
+        let atom = |(item, x): (usize, &[f64; 3])| Member {
+            position: (Vector3::from(*x) - middle).into(),
+            item,
         };
         Self {
-            atoms: Cells::new(knots.centers.iter().enumerate().map(atom).collect()),
+            atoms: CellList::new(
+                knots.centers.iter().enumerate().map(atom).collect(),
+                CELL_EDGE,
+            ),
             middle,
         }
     }
@@ -31,7 +36,8 @@ impl Side {
     /// Visits the atoms, by their place, that lie within `reach` (Å) of a point of the other side, carried by `pose` into this one's frame.
     pub fn near(&self, pose: &Pose, point: [f64; 3], reach: f64, mut visit: impl FnMut(usize)) {
         let x = Vector3::from(pose.apply(point)) - self.middle;
-        self.atoms.near(x, reach, |atom, _| visit(atom.kind));
+        self.atoms
+            .visit_within(x.into(), reach, |&atom, _| visit(atom));
     }
 
     /// Whether any of the atoms is in contact with an atom of the other side, carried likewise.

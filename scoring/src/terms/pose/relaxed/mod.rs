@@ -11,13 +11,13 @@ mod tests;
 
 use self::descent::{FARTHEST, Slope, descend};
 use super::atom_pair_potential::AtomPairPotential;
-use super::cells::{Atom, Cells};
 use super::energy_table::{EnergyTable, REACH};
-use super::{PoseTerm, TermDefinition};
+use super::{CELL_EDGE, PoseTerm, TermDefinition};
 use crate::exact::center;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
+use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// Definition of the term.
@@ -63,8 +63,8 @@ const MIN_RADIUS: f64 = 3.0;
 /// only repel. The pose descends by at most 2 Å on a like energy of a quarter of that stiffness. Its score is minus the weight times
 /// the energy of the relaxed pose.
 pub struct Relaxation {
-    /// Atoms of the receptor; the kind of each is its index in `sites`.
-    receptor: Cells,
+    /// Atoms of the receptor, each with its index in `sites`.
+    receptor: CellList<usize>,
     receptor_center: Vector3<f64>,
     sites: Vec<Site>,
     ligand: Vec<(Vector3<f64>, Site)>,
@@ -131,9 +131,12 @@ impl Relaxation {
             radii.fold(0.0, f64::max)
         };
         let atoms = receptor.iter().enumerate();
-        let atoms = atoms.map(|(kind, &(position, _))| Atom { position, kind });
+        let atoms = atoms.map(|(item, &(position, _))| Member {
+            position: position.into(),
+            item,
+        });
         Self {
-            receptor: Cells::new(atoms.collect()),
+            receptor: CellList::new(atoms.collect(), CELL_EDGE),
             receptor_center,
             reach: REACH.max(widest(&receptor) + widest(&ligand)),
             sites: receptor.iter().map(|(_, site)| *site).collect(),
@@ -157,11 +160,12 @@ impl Relaxation {
         for (position, site) in &self.ligand {
             let mut sum = 0.0;
             let near = matrix * position + place;
-            self.receptor.near(near, self.reach, |atom, square| {
-                let other = &self.sites[atom.kind];
-                let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
-                sum += energy;
-            });
+            self.receptor
+                .visit_within(near.into(), self.reach, |&atom, square| {
+                    let other = &self.sites[atom];
+                    let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
+                    sum += energy;
+                });
             total += sum;
         }
         total
@@ -225,9 +229,9 @@ impl Relaxation {
             let position = matrix * position + place;
             let mut nearest = f64::INFINITY;
             self.receptor
-                .near(position, self.reach + SLACK, |atom, square| {
+                .visit_within(position.into(), self.reach + SLACK, |&atom, square| {
                     nearest = nearest.min(square);
-                    neighbours.push(self.sites[atom.kind]);
+                    neighbours.push(self.sites[atom]);
                 });
             if nearest < f64::INFINITY {
                 let end = neighbours.len();

@@ -1,6 +1,6 @@
-//! The best voxels of one rotation, kept apart from one another.
+//! Peak picking: the best voxels of one rotation's correlation, at a distance from one another.
 
-use knotdock_scoring::transform::Real;
+use crate::transform::Real;
 
 /// A grid pose: rotation and voxel, with the fast path's score.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +24,14 @@ impl Peak {
     }
 }
 
-/// Voxels around a peak that may hold no further one, on each axis and side.
-pub(crate) const NEIGHBOURS: usize = 2;
+/// Voxels next to a peak, on each axis and side, that hold no further peak.
+pub const NEIGHBOURS: usize = 2;
 
-/// Appends the `count` best voxels of a periodic grid (nx, ny, nz), each at least `NEIGHBOURS` + 1 voxels from the others along some
-/// axis, to `found`. `row_best` holds each row's largest value; grid and row bests are overwritten around peaks.
+/// Appends the `count` best voxels of a periodic grid to `found`, best first.
+///
+/// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis. Ties go to the lower voxel. Fewer are found
+/// where the neighbourhoods of those found leave nothing. `grid` is (nx, ny, nz) row-major, `row_best` holds the largest
+/// value of each row (x, y); both are overwritten with minus infinity around peaks. Values must not be NaN.
 pub fn find_peaks<T: Real>(
     size: [usize; 3],
     grid: &mut [T],
@@ -89,10 +92,11 @@ fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
 
 #[cfg(test)]
 mod tests {
-    use crate::search::peaks::*;
+    use super::*;
+    use crate::test_support::Numbers;
 
     #[test]
-    fn peaks_are_the_best_and_apart_across_the_periodic_edge() {
+    fn peaks_are_the_best_and_spaced_across_the_periodic_edge() {
         let size = [8, 8, 8];
         let mut grid = vec![0.0f32; 512];
         let at = |x: usize, y: usize, z: usize| (x * 8 + y) * 8 + z;
@@ -114,8 +118,48 @@ mod tests {
         assert!(found.iter().all(|p| p.rotation == 5));
     }
 
+    /// Against the definition: of all voxels that no earlier peak excludes, the best, the lowest of equals.
     #[test]
-    fn a_tiny_grid_gives_what_it_has() {
+    fn agrees_with_brute_force() {
+        let mut numbers = Numbers(7);
+        for size in [[5, 6, 7], [4, 9, 3], [1, 2, 8], [12, 5, 10]] {
+            let [nx, ny, nz] = size;
+            // Few distinct values, so that ties are common.
+            let mut grid: Vec<f64> = (0..nx * ny * nz)
+                .map(|_| (40.0 * numbers.next()).floor() - 20.0)
+                .collect();
+            let mut expected: Vec<(usize, f64)> = Vec::new();
+            let near = |a: usize, b: usize| {
+                let index = |v: usize| [v / (ny * nz), v / nz % ny, v % nz];
+                let (a, b) = (index(a), index(b));
+                (0..3).all(|axis| {
+                    let direct = a[axis].abs_diff(b[axis]);
+                    // On an axis of fewer than five voxels as many as fit around one without overlap.
+                    let side = NEIGHBOURS.min((size[axis] - 1) / 2);
+                    direct.min(size[axis] - direct) <= side
+                })
+            };
+            while expected.len() < 30 {
+                let free = (0..grid.len()).filter(|&v| expected.iter().all(|&(p, _)| !near(v, p)));
+                let Some(best) = free.reduce(|a, b| if grid[b] > grid[a] { b } else { a }) else {
+                    break;
+                };
+                expected.push((best, grid[best]));
+            }
+            let mut rows: Vec<f64> = grid
+                .chunks(nz)
+                .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+                .collect();
+            let mut found = Vec::new();
+            find_peaks(size, &mut grid, &mut rows, 0, 30, &mut found);
+            let found: Vec<(usize, f64)> =
+                found.iter().map(|p| (p.voxel as usize, p.score)).collect();
+            assert_eq!(found, expected, "{size:?}");
+        }
+    }
+
+    #[test]
+    fn a_tiny_grid_gives_all_its_voxels() {
         let mut grid = vec![1.0f32, 2.0];
         let mut rows = vec![2.0f32];
         let mut found = Vec::new();
