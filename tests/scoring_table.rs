@@ -17,9 +17,8 @@ use knotdock::progress::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::Rescored;
-use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues, Workspace};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
 /// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other processors round
@@ -35,23 +34,8 @@ const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
 /// The helices once more, at the same poses, with residues of both sides blocked.
 const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 15] = [
-    "score",
-    "shape",
-    "electrostatics",
-    "contact",
-    "slice_0",
-    "slice_r0",
-    "slice_2r0",
-    "unfiltered",
-    "fine_contact",
-    "atom_pair",
-    "relaxed",
-    "restraint",
-    "attraction",
-    "missing",
-    "chain_ends",
-];
+/// Columns of `scores.csv` between the effects and the pose terms.
+const SLICES: [&str; 4] = ["slice_0", "slice_r0", "slice_2r0", "unfiltered"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table")
@@ -101,11 +85,11 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
     cases
 }
 
-/// Which effects were on, the exact score of each pose, and what rescoring adds.
+/// Which effects were on, and the exact score and pose terms of each pose.
 fn scored(
     case: &str,
     poses: &[(u32, Pose)],
-) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<Rescored>) {
+) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<TermValues>) {
     let options = options(case);
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
@@ -247,9 +231,11 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
 }
 
 fn table_columns() -> Vec<&'static str> {
-    ["case", "pose", "rank"]
+    ["case", "pose", "rank", "score"]
         .into_iter()
-        .chain(COLUMNS)
+        .chain(Effect::ALL.map(Effect::name))
+        .chain(SLICES)
+        .chain(POSE_TERMS.iter().map(|term| term.id))
         .collect()
 }
 
@@ -268,18 +254,11 @@ fn scores_terms_slices_and_ranks_of_poses() {
         {
             let better = ranked.iter().filter(|other| *other > by);
             let term = |effect: Effect| on[effect as usize].then_some(exact.terms[effect as usize]);
-            let mut values = vec![
-                Some(1.0 + better.count() as f64),
-                Some(exact.score),
-                term(Effect::Shape),
-                term(Effect::Electrostatics),
-                term(Effect::Contact),
-            ];
+            let mut values = vec![Some(1.0 + better.count() as f64), Some(exact.score)];
+            values.extend(Effect::ALL.map(term));
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
-            values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
-            values.extend([term(Effect::Restraint), rescored.attraction]);
-            values.extend([rescored.missing, rescored.chain_ends]);
+            values.extend(rescored.iter().map(|(_, value)| value));
             found.insert((case.clone(), *number), values);
         }
     }

@@ -37,7 +37,6 @@
 
 pub mod affinity;
 mod correlator;
-pub mod effect;
 pub mod engine;
 pub mod exact;
 pub mod kernel;
@@ -45,10 +44,10 @@ pub mod lifted_axis;
 pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;
-pub mod rescoring;
 pub mod se3;
 pub mod so3;
 pub mod symmetry;
+pub mod terms;
 #[cfg(test)]
 mod test_support;
 pub mod transform;
@@ -58,3 +57,4 @@ mod vectorized;
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.
 pub use engine::EngineOptions as Options;
+pub use terms::{effect, pose as rescoring};

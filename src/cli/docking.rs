@@ -25,7 +25,9 @@ use crate::cli::arguments::native::{NativeFiles, announce, measure};
 use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{assumed, error_warning, few_rotations_warning, loose_told, told};
+use crate::cli::messages::dock::{
+    assumed, error_warning, few_rotations_warning, regions_text, told,
+};
 use crate::cli::messages::failure::Failure;
 
 /// A run that is ready to go.
@@ -83,7 +85,7 @@ impl Docking {
                 ));
             }
         }
-        for text in loose_told(sides, &plan.loose) {
+        for text in regions_text(sides, &plan.regions) {
             console.say(text);
         }
         for (side, labels) in sides.iter().zip(&plan.labels) {

@@ -1,17 +1,17 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
-use crate::dock::loose::Loose;
+use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
 use crate::options::effect_choice::EffectChoice;
 use crate::options::{AntibodySurface, DockOptions};
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::Restraints;
-use crate::rank::rescoring::Asked;
+use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::engine::Plan;
-use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::symmetry::RingAxis;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
@@ -63,10 +63,10 @@ pub struct Scene {
     pub decisions: Vec<Decision>,
     /// What was assumed in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// What poses should touch.
-    pub attracted: ActiveResidues,
-    /// Residues that are missing, and those near ends of chains; none where they cost nothing.
-    pub loose: Loose,
+    /// Residues that should be in contact.
+    pub active: ActiveResidues,
+    /// Unresolved segments and residues near termini; empty where they cost nothing.
+    pub regions: FlexibleRegions,
     /// The axis of the ring that the molecule is, where two such rings are asked for.
     pub ring_axis: Option<RingAxis>,
 }
@@ -192,7 +192,7 @@ impl Scene {
         }
         let named = ActiveResidues::named(restraints.attracted, options);
         // What is known takes the place of what is assumed.
-        let attracted = if !named.sets.is_empty() || !on(Effect::Contact) {
+        let active = if !named.sets.is_empty() || !on(Effect::Contact) {
             named
         } else {
             let [own, other] = &restraints.marks;
@@ -215,8 +215,8 @@ impl Scene {
             terms,
             decisions,
             labels: [receptor_report, ligand_report],
-            attracted,
-            loose: Loose::of(molecules, options),
+            active,
+            regions: FlexibleRegions::of(molecules, options),
             ring_axis,
         })
     }
@@ -255,8 +255,8 @@ impl Scene {
             terms: Vec::new(),
             decisions: decisions.collect::<Result<_, _>>()?,
             labels: [LabelReport::default(), LabelReport::default()],
-            attracted: Default::default(),
-            loose: Default::default(),
+            active: Default::default(),
+            regions: Default::default(),
             ring_axis: None,
         })
     }
@@ -275,14 +275,13 @@ impl Scene {
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
     pub fn active_site(&self) -> Option<&AssumedSite> {
-        self.attracted.assumed.as_ref()
+        self.active.assumed.as_ref()
     }
 
-    /// What poses are rescored with; `None` where there is nothing to ask.
+    /// The pose terms prepared for rescoring; `None` if no term acts.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
-        let asked = Asked::of(&self.decisions, &self.attracted, &self.loose, options);
         let bodies = [&self.receptor, &self.ligand];
-        asked.rescorer(bodies, &self.attracted, &self.loose, options)
+        Rescoring::new(bodies, &self.active, &self.regions, options).rescorer()
     }
 }
 
@@ -348,7 +347,7 @@ fn lacking(
 mod tests {
     use super::*;
     use crate::priors::restraints::tests::peptide;
-    use knotdock_scoring::rescoring;
+    use knotdock_scoring::terms::pose;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 
     /// However many residues are named, all of their contacts together draw as much.
@@ -374,6 +373,6 @@ mod tests {
     #[test]
     fn the_types_of_molecules_are_those_of_the_potential() {
         assert_eq!(CONTACT_TYPES, contact::TYPES);
-        assert_eq!(atom_kinds(), rescoring::atom_kinds());
+        assert_eq!(atom_kinds(), pose::atom_kinds());
     }
 }

@@ -22,13 +22,13 @@ pub struct TermOptions {
     /// Weight of the contact potential: score per RT.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
     pub contact_weight: f64,
-    /// Contact potential to use in place of the program's own, as scripts/contact_potential.py writes it.
+    /// Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
     pub contact_potential: Option<Potential>,
     /// Weight of the fine contact potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
     pub fine_contact_weight: f64,
-    /// Fine contact potential to use in place of the program's own, as scripts/contact_potential.py --fine writes it.
+    /// Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py --fine writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::fine_contact, value_hint = ValueHint::FilePath)]
     pub fine_contact_potential: Option<DistanceBinnedPotential>,
     /// Weight of the atom pair potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
@@ -38,7 +38,7 @@ pub struct TermOptions {
     /// poses are rescored where the contact effect is on; 0 for none.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 3.0)]
     pub relaxed_weight: f64,
-    /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
+    /// Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
     pub atom_pair_potential: Option<AtomPairPotential>,
     /// What an atom costs that lies where residues missing from the other side's file are, in gaps of a chain or past its ends, times
@@ -51,4 +51,18 @@ pub struct TermOptions {
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = number(0.0..=14.0), default_value_t = 7.0)]
     pub ph: f64,
+}
+
+impl TermOptions {
+    /// Weight of the pose term with an id.
+    pub(crate) fn weight(&self, id: &str) -> f64 {
+        match id {
+            "fine_contact" => self.fine_contact_weight,
+            "atom_pair" => self.atom_pair_weight,
+            "relaxed" => self.relaxed_weight,
+            "unresolved" => self.unresolved_weight,
+            "termini" => self.termini_weight,
+            _ => unreachable!("no weight of '{id}'"),
+        }
+    }
 }

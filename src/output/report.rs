@@ -98,6 +98,7 @@ pub fn align(lines: &[Vec<String>]) -> String {
 mod tests {
     use super::*;
     use knotdock_scoring::se3::Pose;
+    use knotdock_scoring::terms::pose::TermValues;
 
     fn pose(score: f64, cluster: Option<usize>) -> RankedPose {
         RankedPose {
@@ -112,12 +113,7 @@ mod tests {
             score_unfiltered: score,
             terms: [Some(score), None, None, None],
             slices: [0.0; 3],
-            fine_contact: None,
-            atom_pair: None,
-            relaxed: None,
-            attraction: None,
-            missing: None,
-            chain_ends: None,
+            pose_terms: TermValues::default(),
             other_copies: None,
             pose_score: score,
             z_score: None,

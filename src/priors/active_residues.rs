@@ -3,7 +3,7 @@
 use crate::options::DockOptions;
 use crate::priors::{ActiveSite, Antibody};
 use knotdock_scoring::effect::restraint::ResidueRole;
-use knotdock_scoring::rescoring::Residues;
+use knotdock_scoring::terms::pose::Residues;
 use knotdock_structures::molecule::{Molecule, Partner};
 use serde::Serialize;
 
@@ -56,11 +56,6 @@ impl ActiveResidues {
             weight,
             assumed,
         }
-    }
-
-    /// Whether poses have anything to earn.
-    pub(crate) fn any(&self) -> bool {
-        !self.sets.is_empty() && self.weight > 0.0
     }
 }
 
@@ -117,7 +112,7 @@ mod tests {
         let (trypsin, inhibitor) = (example("receptor_unbound"), example("ligand_unbound"));
         let of = |molecules: [&Molecule; 2], options: &DockOptions| {
             let [receptor, ligand] = molecules;
-            Scene::new(receptor, ligand, options).unwrap().attracted
+            Scene::new(receptor, ligand, options).unwrap().active
         };
         let with = |change: fn(&mut DockOptions)| {
             let mut options = DockOptions::default();
@@ -153,7 +148,7 @@ mod tests {
         assert_eq!(turned.sets, [[Vec::new(), receptor.clone()]]);
 
         let two = of([&trypsin, &trypsin], &DockOptions::default());
-        assert!(!two.any() && two.assumed.is_none());
+        assert!(two.sets.is_empty() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
             |options| options.restraints.peptidase_weight = 0.0,
             |options| options.kernel.effects = "shape,electrostatics".parse().unwrap(),
@@ -167,10 +162,9 @@ mod tests {
         for change in changes {
             assert_eq!(with(change).assumed, None);
         }
-        assert!(
-            with(|options| options.restraints.block_receptor = Some("A:20-30".parse().unwrap()))
-                .any()
-        );
+        let elsewhere =
+            with(|options| options.restraints.block_receptor = Some("A:20-30".parse().unwrap()));
+        assert_eq!(elsewhere.sets, default.sets);
     }
 
     /// The heavy chain of trastuzumab, as alpha carbons; it is none the less an antibody where all of it may touch.
@@ -205,7 +199,7 @@ mod tests {
             let scene = Scene::new(&trypsin, &antibody, &options).unwrap();
             let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
             assert!(scene.decisions.iter().any(contact));
-            assert!(!scene.attracted.any());
+            assert!(scene.active.sets.is_empty());
         }
     }
 }

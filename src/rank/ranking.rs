@@ -21,8 +21,8 @@ use crate::progress::Progress;
 use crate::rank::candidates::Candidate;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::rescoring::{Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
 /// What rows of the table are scored by.
@@ -198,23 +198,18 @@ impl Candidate {
         } else {
             (self.start, at_start(), others(&self.start), false)
         };
-        let rescored = match rescorer {
+        let pose_terms = match rescorer {
             // An undone climb leaves another pose than was rescored.
             Some(rescorer) if refined != self.refined => {
                 rescorer.score(&pose, &mut Workspace::default())
             }
-            _ => self.rescored,
+            _ => self.pose_terms,
         };
         RankedPose {
             pose,
-            fine_contact: rescored.fine_contact,
-            atom_pair: rescored.atom_pair,
-            relaxed: rescored.relaxed,
-            attraction: rescored.attraction,
-            missing: rescored.missing,
-            chain_ends: rescored.chain_ends,
+            pose_terms,
             other_copies: others,
-            pose_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
+            pose_score: terms.score + pose_terms.sum() + others.unwrap_or(0.0),
             z_score: None,
             score: terms.score,
             cluster: None,

@@ -9,7 +9,7 @@ use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
 use crate::search::deadline::Deadline;
 use knotdock_scoring::peaks::Peak;
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
 /// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.

@@ -1,7 +1,7 @@
 //! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are timed.
 
 use knotdock_scoring::effect::{Effect, contact, electrostatics};
-use knotdock_scoring::rescoring;
+use knotdock_scoring::terms::pose;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 
@@ -151,8 +151,8 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         terms,
         decisions: decisions.to_vec(),
         labels: [LabelReport::default(), LabelReport::default()],
-        attracted: Default::default(),
-        loose: Default::default(),
+        active: Default::default(),
+        regions: Default::default(),
         ring_axis: None,
     })
 }
@@ -175,7 +175,7 @@ fn body(radius: f64) -> Result<Knots, KnotsError> {
     let radii = (0..count).map(|index| RADII[index % RADII.len()]);
     let charges = (0..count).map(|index| if index % 2 == 0 { 0.3 } else { -0.3 });
     let types = (0..count).map(|index| Some((index % contact::TYPES.len()) as u8));
-    let kinds = (0..count).map(|index| Some((index % rescoring::atom_kinds().len()) as u8));
+    let kinds = (0..count).map(|index| Some((index % pose::atom_kinds().len()) as u8));
     Knots::new(centers, radii.collect())?
         .with_labels(charges.collect(), types.collect())?
         .with_atom_kinds(kinds.collect())

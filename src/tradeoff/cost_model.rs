@@ -58,8 +58,6 @@ const CROWDING: f64 = 0.7;
 const TOUCHING: f64 = 15.0;
 /// Share of the poses that are scored for each unit of the tolerance, likewise.
 const DOUBTFUL: f64 = 5.0;
-/// Time that rescoring a pose takes where it is not relaxed, as a share of the time where it is: as timed on the example pair.
-const UNRELAXED: f64 = 0.25;
 /// A rotation, or preparing, in double precision against single. As measured on the example pair.
 pub const DOUBLE: f64 = 2.1;
 /// A finer rotation in rotations: it shares the ligand's transform with no other. As measured on the example pair.
@@ -177,7 +175,7 @@ pub struct Workload {
     pub per_rotation: f64,
     /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is listed.
     pub doubtful: f64,
-    /// Poses rescored, one that is not relaxed counted in part.
+    /// Poses rescored, each times the share of the pose terms' time that the acting terms take.
     pub rescored: f64,
     /// Poses refined.
     pub refined: f64,
@@ -205,7 +203,6 @@ impl Workload {
         }
         let on = |effect: Effect| f64::from(u8::from(plan.is_on(effect)));
         let poses = options.search.poses as f64;
-        let asked = plan.asked();
         Self {
             grid: points * points.log2(),
             rank: expected_rank(plan),
@@ -228,13 +225,7 @@ impl Workload {
             } else {
                 DOUBTFUL * options.kernel.tolerance
             },
-            rescored: if asked.relaxes() {
-                poses
-            } else if asked.any() {
-                UNRELAXED * poses
-            } else {
-                0.0
-            },
+            rescored: plan.rescoring().time_share() * poses,
             refined: (plan.refined() as f64).min(poses),
         }
     }

@@ -68,13 +68,13 @@ fn named_residues_are_kept_free_or_touched() {
     let rescorer = scene.rescorer(&attracting).unwrap();
     let met = |row: &Value| {
         let rescored = rescorer.score(&pose(row), &mut Workspace::default());
-        rescored.attraction.unwrap()
+        rescored.get("active_residues").unwrap()
     };
     for row in &drawn {
-        assert!((4000.0 * met(row) - number(&row["attraction"])).abs() < 1e-9);
+        assert!((4000.0 * met(row) - number(&row["active_residues"])).abs() < 1e-9);
         assert!(number(&row["restraint"]) > 0.0);
     }
-    assert!(free.iter().all(|row| row["attraction"].is_null()));
+    assert!(free.iter().all(|row| row["active_residues"].is_null()));
     let mean = |rows: &[Value]| rows.iter().map(&met).sum::<f64>() / rows.len() as f64;
     let (before, after) = (mean(&free), mean(&drawn));
     assert!(after > 0.6 && after > before + 0.1, "{before} {after}");
@@ -158,14 +158,14 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
         places
     };
     assert_eq!(sorted(&plain), sorted(&ranked));
-    assert!(plain.iter().all(|row| row["attraction"].is_empty()));
+    assert!(plain.iter().all(|row| row["active_residues"].is_empty()));
     let mut seen = std::collections::BTreeSet::new();
     for row in &ranked {
         let own = plain.iter().find(|other| place(other) == place(row));
         let before = number(&own.unwrap()["pose_score"]);
-        let earned = number(&row["attraction"]);
+        let earned = number(&row["active_residues"]);
         assert!((number(&row["pose_score"]) - before - earned).abs() < 1e-9 * before.abs());
-        seen.insert(row["attraction"].clone());
+        seen.insert(row["active_residues"].clone());
     }
     // None, one or both of the two residues touch.
     let shares = ["0", "500", "1000"].map(str::to_owned);

@@ -1,26 +1,44 @@
-//! The sum over contacts by distance range.
+//! Pose term `fine_contact`: a contact potential in three ranges of distance.
 
 use super::bodies::Bodies;
-use super::potential::{DistanceBinnedPotential, ENDS, step_down};
-use crate::effect::contact::TYPES;
+use super::distance_binned_potential::{DistanceBinnedPotential, ENDS, step_down};
+use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
+use crate::terms::effect::contact::TYPES;
 use knotdock_structures::Knots;
+
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "fine_contact",
+    label: "fine contacts",
+    weight_option: "fine-contact-weight",
+    weight_help: "Weight of the fine contact potential, which scores poses where the contact effect is on",
+    unit: "score per RT",
+    default_weight: 2.0,
+    time_share: UNRELAXED,
+    applies: |inputs| inputs.has_contact_types(),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let potential = inputs.fine_contact_potential.cloned().unwrap_or_default();
+        Box::new(FineContacts::new(receptor, ligand, &potential, weight))
+    },
+};
 
 /// Distance in Å from which nothing counts.
 const REACH: f64 = ENDS[2][1];
 
-/// Two bodies prepared for the sum of minus the weighted potential over their contacts.
+/// Two bodies prepared for summing minus the weighted potential over their contacts.
 ///
-/// A pair of typed atoms at distance d scores `-weight sum_b E_b[a][c] (s_b(d) - s_{b-1}(d))` over the ranges b, s_b the step that ends
-/// range b and s_{-1} = 0. Atoms without a type take no part.
+/// Two atoms of types a and c at distance d score `-weight sum_b E_b[a][c] (s_b(d) - s_{b-1}(d))` over the ranges b.
+/// s_b is the step that ends range b, and s_{-1} = 0. Atoms without a type do not count.
 pub struct FineContacts {
     bodies: Bodies,
-    /// What each step s_b is worth, `[receptor type][ligand type][range]`: -weight (E_b - E_{b+1}).
+    /// Factor of each step s_b, -weight (E_b - E_{b+1}): `[receptor type][ligand type][range]`.
     steps: Vec<[[f64; 3]; TYPES.len()]>,
 }
 
 impl FineContacts {
-    /// Prepares two sets of knots with contact types; `weight` is score per RT.
+    /// Prepares two sets of knots with contact types. `weight` is in score per RT.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -46,23 +64,29 @@ impl FineContacts {
         }
     }
 
-    /// The weighted sum at a pose of the ligand; higher is better.
+    /// Weighted sum at a pose of the ligand; higher is better.
     pub fn score(&self, pose: &Pose) -> f64 {
         self.bodies.sum(pose, REACH, |a, b, distance| {
             let steps = self.steps[a][b].iter().zip(ENDS);
             steps
-                .map(|(worth, ends)| worth * step_down(distance, ends))
+                .map(|(factor, ends)| factor * step_down(distance, ends))
                 .sum()
         })
+    }
+}
+
+impl PoseTerm for FineContacts {
+    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
+        self.score(pose)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rescoring::RANGES;
+    use crate::terms::pose::RANGES;
 
-    /// Two atoms at the middle of each range have that range's energy, those between two ranges a part of both; beyond the reach there is none.
+    /// Two atoms in the middle of a range have its energy, and between two ranges a part of both. Beyond the reach there is none.
     #[test]
     fn one_pair_has_the_energy_of_its_range() {
         let potential = DistanceBinnedPotential::default();

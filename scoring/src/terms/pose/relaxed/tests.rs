@@ -2,7 +2,7 @@
 
 use super::descent::FARTHEST;
 use super::*;
-use crate::rescoring::AtomPairs;
+use crate::terms::pose::AtomPairs;
 use crate::test_support::Numbers;
 
 /// Atoms of all kinds on a jittered lattice within a ball, each at least 2.4 Å from the next.

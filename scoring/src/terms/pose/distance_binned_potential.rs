@@ -1,21 +1,23 @@
-//! The potential by distance range: names, ends, and the table that a script derives.
+//! The fine contact potential: a table of energies for each range of distance, as a script writes it.
 
-use crate::effect::contact::{Potential, PotentialError, end, header, table_lines};
+use crate::terms::effect::contact::{Potential, header};
+use crate::terms::potential_table::{PotentialError, built_in, end, table_lines};
 use serde::{Deserialize, Serialize};
 
-/// Names of the ranges as they stand in the table, from near to far.
+/// Names of the ranges in the table, from near to far.
 pub const RANGES: [&str; 3] = ["near", "middle", "far"];
 
-/// Where each range begins to give way to the next (the last: to nothing) and where it has, Å.
+/// Distances in Å between which each range passes into the next, and the last into nothing.
 pub(super) const ENDS: [[f64; 2]; 3] = [[3.5, 4.5], [5.0, 6.0], [7.0, 8.0]];
 
-/// The potential as its script wrote it: lines of `#`, a header, and a row for each range and type.
+/// The built-in table: lines of `#`, a header, and a row for each range and type.
 const TABLE: &str = include_str!("fine_contact_potential.csv");
 
 /// Energies of contacts by distance range and types, in units of RT; lower is better.
 ///
-/// Ours, derived by `scripts/contact_potential.py --fine`: in each range minus the logarithm of the contacts in known complexes over those
-/// in docked poses, the reference state of DARS (Chuang, Kozakov, Brenke, Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227), mean removed.
+/// `scripts/contact_potential.py --fine` derives the built-in one. In each range an energy is minus the logarithm of the contacts in
+/// known complexes over those in docked poses, less the mean. This is the reference state of DARS (Chuang, Kozakov, Brenke, Comeau &
+/// Vajda, Biophys. J. 95 (2008) 4217-4227).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct DistanceBinnedPotential {
@@ -24,20 +26,17 @@ pub struct DistanceBinnedPotential {
 }
 
 impl Default for DistanceBinnedPotential {
-    /// The potential that this crate carries.
+    /// The built-in potential.
     fn default() -> Self {
-        // A test holds the table to its form.
-        Self::parse(TABLE).unwrap_or_else(|_| Self {
-            ranges: std::array::from_fn(|_| Potential::zero()),
-        })
+        built_in("fine_contact_potential.csv", Self::parse(TABLE))
     }
 }
 
 impl DistanceBinnedPotential {
-    /// Reads a table: lines of `#`, a header `range,type,` and the names of the types, then for each range a row for each type, in order.
+    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then for each range a row for each type.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that is not so, or when the energies of a range are not finite and symmetric.
+    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and symmetric.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let mut lines = table_lines(text);
         header(&mut lines, "range,")?;
@@ -49,7 +48,7 @@ impl DistanceBinnedPotential {
     }
 }
 
-/// 1 up to `start`, 0 from `stop` on, and in between the polynomial of degree 5 whose first two derivatives vanish at both.
+/// Step of degree 5: 1 up to `start` and 0 from `stop` on, with two continuous derivatives.
 pub(super) fn step_down(distance: f64, [start, stop]: [f64; 2]) -> f64 {
     let u = ((distance - start) / (stop - start)).clamp(0.0, 1.0);
     1.0 - u * u * u * (10.0 + u * (6.0 * u - 15.0))
@@ -58,7 +57,7 @@ pub(super) fn step_down(distance: f64, [start, stop]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::contact::TYPES;
+    use crate::terms::effect::contact::TYPES;
 
     #[test]
     fn the_table_is_whole_and_says_what_chemistry_does() {
@@ -66,7 +65,7 @@ mod tests {
         assert_eq!(DistanceBinnedPotential::default().ranges, ranges);
         let index = |name: &str| TYPES.iter().position(|kind| *kind == name).unwrap();
         let near = |a: &str, b: &str| ranges[0].energy(index(a), index(b));
-        // Opposite charges attract and like ones repel where they meet, fat sticks to fat.
+        // Opposite charges attract, like charges repel, and hydrophobic atoms attract each other.
         assert!(near("KNZ", "DOD") < near("KNZ", "KNZ"));
         assert!(near("LCD", "LCD") < near("LCD", "DOD"));
     }

@@ -1,16 +1,16 @@
-//! The atom pair potential: its distances, and the table that a script derives.
+//! The atom pair potential: a table of energies by kinds of atoms and distance, as a script writes it.
 
-use crate::effect::contact::{PotentialError, table_lines};
+use crate::terms::potential_table::{PotentialError, built_in, table_lines};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Distances in Å at which the table has energies, [`STEP`] apart.
+/// Distances in Å at which the table holds energies, [`STEP`] apart.
 pub const DISTANCES: [f64; 6] = [3.25, 3.75, 4.25, 4.75, 5.25, 5.75];
 /// Distance in Å between them.
 pub const STEP: f64 = 0.5;
 
-/// The potential as its script wrote it: lines of `#`, a header, and a row for each pair of kinds.
+/// The built-in table: lines of `#`, a header, and a row for each pair of kinds.
 const TABLE: &str = include_str!("atom_pair_potential.csv");
 
 static KINDS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
@@ -22,18 +22,20 @@ static KINDS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     kinds
 });
 
-/// Names of the kinds of atoms, residue and atom as in `ARG_CZ`, in the order of their numbers: that of the table that this crate carries.
+/// Names of the kinds of atoms, residue and atom as in `ARG_CZ`, in the order of the built-in table.
 pub fn atom_kinds() -> &'static [&'static str] {
     &KINDS
 }
 
 /// Energies of pairs of atoms by their kinds ([`atom_kinds`]) and distance, in units of RT; lower is better.
 ///
-/// Ours, derived by `scripts/atom_pair_potential.py` from the insides of proteins: minus the logarithm of how often two kinds are found so far apart,
-/// over how often they would be by chance, by distance as in Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916. Chance strews kinds by shares halfway, in
-/// logarithms, between those among all atoms (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and those among
-/// all partners (the quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644), which leaves half of what kinds gain by being
-/// buried at all.
+/// `scripts/atom_pair_potential.py` derives the built-in one from the insides of proteins. An energy is minus the logarithm of the
+/// observed over the expected frequency of two kinds at a distance (Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916).
+///
+/// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all atoms (the mole
+/// fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and that among all partners (the
+/// quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644). So energies contain half of what a kind
+/// gains by being buried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Energies>", into = "Vec<Energies>")]
 pub struct AtomPairPotential(Vec<Energies>);
@@ -42,10 +44,9 @@ pub struct AtomPairPotential(Vec<Energies>);
 type Energies = [f32; DISTANCES.len()];
 
 impl Default for AtomPairPotential {
-    /// The potential that this crate carries.
+    /// The built-in potential.
     fn default() -> Self {
-        // A test holds the table to its form.
-        Self::parse(TABLE).unwrap_or_else(|_| Self(vec![[0.0; DISTANCES.len()]; pairs()]))
+        built_in("atom_pair_potential.csv", Self::parse(TABLE))
     }
 }
 
@@ -78,17 +79,17 @@ fn pairs() -> usize {
     atom_kinds().len() * (atom_kinds().len() + 1) / 2
 }
 
-/// Place of a pair among all: (0, 0), (1, 0), (1, 1), (2, 0), ...
+/// Index of a pair in the order (0, 0), (1, 0), (1, 1), (2, 0), ...
 fn place(a: usize, b: usize) -> usize {
     let (low, high) = (a.min(b), a.max(b));
     high * (high + 1) / 2 + low
 }
 
 impl AtomPairPotential {
-    /// Reads a table: lines of `#`, a header `kind,kind,` and [`DISTANCES`], then a row for each pair of kinds, in any order.
+    /// Reads a table: lines of `#`, a header `kind,kind,` with [`DISTANCES`], then a row for each pair of kinds, in any order.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that is not so, or the last line where pairs are missing.
+    /// [`PotentialError`] with the line that has another form, or with the last line if pairs are missing.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let wrong = |line: usize, message: String| PotentialError { line, message };
         let mut lines = table_lines(text);
@@ -141,7 +142,7 @@ impl AtomPairPotential {
         Ok(Self(rows.into_iter().flatten().collect()))
     }
 
-    /// Energies of two kinds at [`DISTANCES`], RT.
+    /// Energies of two kinds at [`DISTANCES`] in RT.
     pub fn energies(&self, a: usize, b: usize) -> &Energies {
         &self.0[place(a, b)]
     }
@@ -157,7 +158,7 @@ mod tests {
         assert_eq!(AtomPairPotential::default(), potential);
         let index = |name: &str| atom_kinds().iter().position(|kind| *kind == name).unwrap();
         let energy = |a: &str, b: &str| potential.energies(index(a), index(b));
-        // A salt bridge, against two like charges; fat beside fat, against fat beside a charge; a disulphide's neighbours.
+        // A salt bridge against two like charges; two hydrophobic atoms against one and a charge; a disulphide.
         assert!(energy("LYS_NZ", "ASP_OD1")[0] < energy("LYS_NZ", "LYS_NZ")[0]);
         assert!(energy("LEU_CD1", "ILE_CD1")[1] < energy("LEU_CD1", "LYS_NZ")[1]);
         assert!(energy("CYS_SG", "CYS_SG")[0] < 0.0);
@@ -208,7 +209,7 @@ mod tests {
         assert!(AtomPairPotential::try_from(vec![[0.0; DISTANCES.len()]; 3]).is_err());
     }
 
-    /// What `run.json` keeps of a table gives the table back.
+    /// A table survives its record in `run.json`.
     #[test]
     fn a_table_survives_its_record() {
         let potential = AtomPairPotential::default();

@@ -1,15 +1,33 @@
-//! The sum of the atom pair potential over two bodies.
+//! Pose term `atom_pair`: a potential over pairs of atoms by kind and distance.
 
+use super::atom_pair_potential::AtomPairPotential;
 use super::bodies::Bodies;
 use super::energy_table::{EnergyTable, REACH};
-use super::pair_potential::AtomPairPotential;
+use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 
-/// Two bodies prepared for the sum of minus the weighted atom pair potential.
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "atom_pair",
+    label: "atom pairs",
+    weight_option: "atom-pair-weight",
+    weight_help: "Weight of the atom pair potential, which scores poses where the contact effect is on",
+    unit: "score per RT",
+    default_weight: 1.0,
+    time_share: UNRELAXED,
+    applies: |inputs| inputs.has_atom_kinds(),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
+        Box::new(AtomPairs::new(receptor, ligand, &potential, weight))
+    },
+};
+
+/// Two bodies prepared for summing minus the weighted atom pair potential.
 ///
-/// A pair of atoms of kinds a and b at distance d scores `-weight E_ab(d)`: the table's energies joined by straight lines, before the first the first, and
-/// from the last one falling to 0 over one step. Atoms without a kind take no part.
+/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight lines. It is
+/// constant below the first distance and falls to 0 over one step after the last. Atoms without a kind do not count.
 pub struct AtomPairs {
     bodies: Bodies,
     energies: EnergyTable,
@@ -17,7 +35,7 @@ pub struct AtomPairs {
 }
 
 impl AtomPairs {
-    /// Prepares two sets of knots with kinds of atoms; `weight` is score per RT.
+    /// Prepares two sets of knots with atom kinds. `weight` is in score per RT.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -37,7 +55,7 @@ impl AtomPairs {
         }
     }
 
-    /// The weighted sum at a pose of the ligand; higher is better.
+    /// Weighted sum at a pose of the ligand; higher is better.
     pub fn score(&self, pose: &Pose) -> f64 {
         let sum = self.bodies.sum(pose, REACH, |a, b, distance| {
             self.energies.at(a, b, distance).0
@@ -46,13 +64,18 @@ impl AtomPairs {
     }
 }
 
+impl PoseTerm for AtomPairs {
+    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
+        self.score(pose)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rescoring::{DISTANCES, STEP, atom_kinds};
+    use crate::terms::pose::{DISTANCES, STEP, atom_kinds};
 
-    /// Every pair of kinds has the table's energy for it, whichever body has which: one atom of each kind, far from one another, meets
-    /// one of each.
+    /// Every pair of kinds has the table's energy, whichever body carries which kind.
     #[test]
     fn every_pair_of_kinds_has_its_own_energies() {
         let potential = AtomPairPotential::default();
@@ -76,7 +99,7 @@ mod tests {
         }
     }
 
-    /// Two atoms at each of the table's distances have its energy, nearer ones the first; beyond the reach there is none.
+    /// Two atoms at each of the table's distances have its energy, and nearer ones the first. Beyond the reach there is none.
     #[test]
     fn one_pair_has_the_energy_of_its_distance() {
         let potential = AtomPairPotential::default();

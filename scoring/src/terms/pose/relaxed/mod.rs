@@ -1,18 +1,18 @@
-//! What a pose is worth once its two bodies may give way to each other: the energy of atoms that must not overlap, where small rigid moves bring it down.
+//! Pose term `relaxed`: energy of atom pairs with a penalty on overlap, after a small rigid move that lowers it.
 //!
-//! Unbound surfaces laid on each other at the places of a grid overlap here and miss each other there, natively or not, so an energy that
-//! asks atoms to keep apart says little of a pose as it stands. Half an Ångström to the side it may. [`Relaxation`] looks for that place, as rigid-body
-//! minimisation does before poses are ranked by force fields (Li, Chen & Weng, Proteins 53 (2003) 693-707), by steepest descent with a step that
-//! grows while it helps.
+//! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy that penalises
+//! overlap says little about a pose as it stands, and more about one half an Ångström beside it. [`Relaxation`] finds that pose by
+//! steepest descent, as rigid-body minimisation does before poses are ranked by force fields (Li, Chen & Weng, Proteins 53 (2003)
+//! 693-707).
 
 mod descent;
 #[cfg(test)]
 mod tests;
 
 use self::descent::{FARTHEST, Slope, descend};
-use super::CELL_EDGE;
+use super::atom_pair_potential::AtomPairPotential;
 use super::energy_table::{EnergyTable, REACH};
-use super::pair_potential::AtomPairPotential;
+use super::{CELL_EDGE, PoseTerm, TermDefinition};
 use crate::exact::center;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
@@ -20,30 +20,50 @@ use knotdock_structures::Knots;
 use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// What atoms may come closer than their radii add up to, in Å.
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "relaxed",
+    label: "atom pairs once relaxed",
+    weight_option: "relaxed-weight",
+    weight_help: "Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores poses where \
+                  the contact effect is on",
+    unit: "score per RT",
+    default_weight: 3.0,
+    time_share: 1.0,
+    applies: |inputs| inputs.has_atom_kinds(),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
+        Box::new(Relaxation::new(receptor, ligand, &potential, weight))
+    },
+};
+
+/// Depth in Å by which two atoms may overlap at no cost.
 const OVERLAP: f64 = 0.1;
-/// What overlapping further costs, RT per Å²: a cushion, not a wall, for atoms of unbound surfaces stand where the other body's will be.
+/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces stand where the other body's will be.
 const STIFFNESS: f64 = 0.8;
-/// The same while the pose gives way: softer, so that single overlaps do not hold back what the whole interface gains.
+/// Stiffness during the descent. It is softer still, so that single overlaps do not hold back the whole interface.
 const SOFT_CORE_STIFFNESS: f64 = 0.2;
-/// Radius in Å up to which an atom is a hydrogen, which reaches into what it is bonded to by: where hydrogens are kept they take no part.
+/// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a file keeps them.
 const HYDROGEN: f64 = 1.15;
 
-/// Pairs that may come within reach are listed once, a little farther out than the interface is moved. A descent may miss some that a long arm brings near; the
-/// energy told of where it ends is the whole sum.
+/// Distance in Å beyond the reach up to which pairs are listed: the interface moves by at most [`FARTHEST`].
+///
+/// A descent may miss pairs that a long arm brings within reach. The final energy is the whole sum.
 const SLACK: f64 = FARTHEST + 0.6;
-/// Listed atoms that are sorted by distance at a time.
+/// Number of listed atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
-/// Least radius in Å about which an interface turns.
+/// Least radius in Å about which an interface rotates.
 const MIN_RADIUS: f64 = 3.0;
 
 /// Two bodies prepared for relaxing poses.
 ///
-/// The energy of a pose, in RT, is the sum over pairs of atoms of the atom pair potential (as [`super::AtomPairs`] reads it) and of 0.8 RT/Å² times the square
-/// of what they lack of touching, the sum of their radii less 0.1 Å. Atoms without a kind only push. The pose descends by at most 2 Å on a like energy with a quarter of that
-/// stiffness, and scores minus the weight times its energy where it comes to rest.
+/// The energy of a pose in RT is a sum over pairs of atoms: the atom pair potential (as [`super::AtomPairs`] reads it), and 0.8 RT/Å²
+/// times the square of their overlap. The overlap is the sum of their radii less 0.1 Å and less their distance. Atoms without a kind
+/// only repel. The pose descends by at most 2 Å on a like energy of a quarter of that stiffness. Its score is minus the weight times
+/// the energy of the relaxed pose.
 pub struct Relaxation {
-    /// Atoms of the receptor, each by its number in `sites`.
+    /// Atoms of the receptor, each with its index in `sites`.
     receptor: CellList<usize>,
     receptor_center: Vector3<f64>,
     sites: Vec<Site>,
@@ -54,7 +74,7 @@ pub struct Relaxation {
     weight: f64,
 }
 
-/// An atom as the sums need it: its place relative to the receptor's middle (of a ligand's atom unused), radius and kind.
+/// Position relative to the receptor's centre (unused for ligand atoms), radius and kind of an atom.
 #[derive(Clone, Copy)]
 struct Site {
     position: Vector3<f64>,
@@ -64,31 +84,37 @@ struct Site {
 
 /// A ligand atom with receptor atoms in its neighbourhood.
 struct Mobile {
-    /// Relative to the middle of the interface, Å.
+    /// Position relative to the centre of the interface, Å.
     arm: Vector3<f64>,
     site: Site,
-    /// The last of its neighbours in the list, which begin where those of the atom before end.
+    /// End of its neighbours in the list; they begin where those of the previous atom end.
     end: usize,
 }
 
-/// Buffers of a relaxation, which keep their size from one pose to the next.
+/// Scratch space for scoring poses by any term. Buffers keep their size from one pose to the next.
 #[derive(Default)]
 pub struct Workspace {
     mobile: Vec<Mobile>,
     neighbours: Vec<Site>,
 }
 
-/// A pose that gave way.
+/// A relaxed pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relaxed {
-    /// Where it came to rest, or where it stood if that is no worse.
+    /// The pose after the descent, or the original one if that is no worse.
     pub pose: Pose,
-    /// Energy there in RT; lower is better.
+    /// Its energy in RT; lower is better.
     pub energy: f64,
 }
 
+impl PoseTerm for Relaxation {
+    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
+        self.score(pose, workspace)
+    }
+}
+
 impl Relaxation {
-    /// Prepares two sets of knots with kinds of atoms; `weight` is score per RT.
+    /// Prepares two sets of knots with atom kinds. `weight` is in score per RT.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -121,12 +147,12 @@ impl Relaxation {
         }
     }
 
-    /// What a pose of the ligand is worth once relaxed; higher is better.
+    /// Minus the weight times the energy of the relaxed pose; higher is better.
     pub fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
         -self.weight * self.relax(pose, workspace).energy
     }
 
-    /// Energy of a pose as it stands, in RT: the double sum, in double precision.
+    /// Energy of a pose as it stands in RT: the double sum over atoms.
     pub fn energy(&self, pose: &Pose) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
@@ -145,7 +171,7 @@ impl Relaxation {
         total
     }
 
-    /// Where a pose comes to rest, and its energy there: never above that of the pose itself.
+    /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
         let Some((middle, radius)) = self.list(pose, workspace) else {
             return Relaxed {
@@ -166,7 +192,7 @@ impl Relaxation {
                 },
             )
         };
-        // Where nothing has moved the list has all that is within reach.
+        // Before any move the list contains every pair within reach.
         let start = Relaxed {
             pose: *pose,
             energy: slope(&UnitQuaternion::identity(), &Vector3::zeros(), STIFFNESS).energy,
@@ -174,7 +200,7 @@ impl Relaxation {
         let (turn, shift) = descend(radius, |turn, shift| {
             slope(turn, shift, SOFT_CORE_STIFFNESS)
         });
-        // About the interface's middle, in the receptor's file frame.
+        // Centre of the interface in the receptor's file frame.
         let about = middle + self.receptor_center;
         let pose = Pose {
             rotation: turn * pose.rotation,
@@ -188,8 +214,10 @@ impl Relaxation {
         }
     }
 
-    /// Lists what may come within reach at a pose. Middle and root mean square radius of the ligand's interface, relative to the receptor's middle; `None` where
-    /// nothing is within reach.
+    /// Lists the pairs that may come within reach at a pose.
+    ///
+    /// Returns the centre of the ligand's interface, relative to the receptor's centre, and its root mean square radius; `None` if no
+    /// pair is within reach.
     fn list(&self, pose: &Pose, workspace: &mut Workspace) -> Option<(Vector3<f64>, f64)> {
         let Workspace { mobile, neighbours } = workspace;
         mobile.clear();
@@ -227,7 +255,7 @@ impl Relaxation {
         Some((middle, spread.sqrt().max(MIN_RADIUS)))
     }
 
-    /// Energy and gradient over the listed pairs, the arms turned and laid at a place.
+    /// Energy and gradient over the listed pairs, with the arms rotated by `turn` about `place`.
     #[inline(always)]
     fn slope(
         &self,
@@ -249,7 +277,7 @@ impl Relaxation {
             let position = arm + place;
             let (mut energy, mut force) = (0.0, Vector3::zeros());
             for listed in workspace.neighbours[from..atom.end].chunks(CHUNK) {
-                // Without a branch: a third of the pairs is within reach, in no order that could be foreseen.
+                // Without a branch: a third of the pairs is within reach, in an unpredictable order.
                 let mut within = [(0, 0.0); CHUNK];
                 let mut count = 0;
                 for (index, other) in listed.iter().enumerate() {
@@ -272,7 +300,7 @@ impl Relaxation {
         slope
     }
 
-    /// Energy of two atoms in RT and its derivative by their distance in Å, with a stiffness.
+    /// Energy of two atoms in RT and its derivative by their distance in RT/Å, at a stiffness.
     #[inline(always)]
     fn pair(&self, receptor: &Site, ligand: &Site, distance: f64, stiffness: f64) -> (f64, f64) {
         let (energy, rise) = self.energies.at(receptor.kind, ligand.kind, distance);
@@ -284,7 +312,7 @@ impl Relaxation {
     }
 }
 
-/// The atoms of a set of knots that take part, relative to its middle; `unknown` is the kind of those without one.
+/// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a kind.
 fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f64>, Site)> {
     let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
     let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);

@@ -1,13 +1,13 @@
-//! What is not sure to be where a file shows it, or not shown: missing residues and ends of chains cost poses that meet them.
+//! Flexible regions: clashes with unresolved segments and contacts of termini cost score.
 
 use super::*;
 use knotdock_structures::Conformers;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 
-/// Atoms that lie where chains may go on cost their weight times the share of courses that pass them, of whatever effects; scores stay as they were. The
-/// program asks cells of 1 Å; distances to all residues of all courses tell between what that must be.
+/// An atom near unresolved residues costs the weight times the share of conformers within reach, whatever effects are on; search
+/// scores stay unchanged. The program looks conformers up in cells of 1 Å; distances to all their residues bound the result.
 #[test]
-fn what_lies_where_residues_are_missing_costs() {
+fn clashes_with_unresolved_residues_cost() {
     const WEIGHT: f64 = 12.5;
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
@@ -15,19 +15,19 @@ fn what_lies_where_residues_are_missing_costs() {
         let options = "--rotations 24 --effects shape --no-cluster --refine 0 --termini-weight 0 --unresolved-weight";
         let options: Vec<&str> = options.split(' ').chain([weight]).collect();
         let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
-        let missing = object["run"]["plan"]["missing_residues"].clone();
+        let unresolved = object["run"]["plan"]["unresolved_residues"].clone();
         let mut reader = csv::Reader::from_reader(table.as_bytes());
         let rows = reader.deserialize().map(|row| row.unwrap());
         let rows: Vec<std::collections::BTreeMap<String, String>> = rows.collect();
-        (rows, missing)
+        (rows, unresolved)
     };
-    let (rows, told) = table(&WEIGHT.to_string());
+    let (rows, found) = table(&WEIGHT.to_string());
     // One end of trypsin is buried.
-    let counts = |side: usize| [&told[side]["ends"], &told[side]["conformers"]];
+    let counts = |side: usize| [&found[side]["ends"], &found[side]["conformers"]];
     assert_eq!([counts(0), counts(1)], [[2, 64], [2, 128]]);
-    let (plain, told) = table("0");
-    assert_eq!(told[0]["conformers"], 0);
-    assert!(plain.iter().all(|row| row["missing"].is_empty()));
+    let (plain, found) = table("0");
+    assert_eq!(found[0]["conformers"], 0);
+    assert!(plain.iter().all(|row| row["unresolved"].is_empty()));
 
     let sides = [&receptor, &ligand].map(|file| {
         let molecule = read(&InputSpec::whole(file), &ReadOptions::default()).unwrap();
@@ -39,8 +39,8 @@ fn what_lies_where_residues_are_missing_costs() {
     let mut met = 0;
     for row in rows.iter().step_by(5) {
         let number = |name: &str| -> f64 { row[name].parse().unwrap() };
-        let missing = number("missing");
-        assert_eq!(number("pose_score"), number("score") + missing);
+        let value = number("unresolved");
+        assert_eq!(number("pose_score"), number("score") + value);
         let quaternion = ["qw", "qx", "qy", "qz"].map(number);
         let pose = Pose::from_parts(quaternion, ["tx", "ty", "tz"].map(number));
         let back = pose.inverse();
@@ -51,12 +51,12 @@ fn what_lies_where_residues_are_missing_costs() {
         };
         let (least, most) = (expected(5.0 - half_cell), expected(5.0 + half_cell));
         assert!(
-            -missing >= least - 1e-3 && -missing <= most + 1e-3,
-            "{least} {missing} {most}"
+            -value >= least - 1e-3 && -value <= most + 1e-3,
+            "{least} {value} {most}"
         );
         met += usize::from(least > 0.0);
     }
-    assert!(met > 0, "no pose meets missing residues");
+    assert!(met > 0, "no pose meets unresolved residues");
     let scores = |rows: &[std::collections::BTreeMap<String, String>]| {
         let mut scores: Vec<String> = rows.iter().map(|row| row["score"].clone()).collect();
         scores.sort();
@@ -65,40 +65,40 @@ fn what_lies_where_residues_are_missing_costs() {
     assert_eq!(scores(&rows), scores(&plain));
 }
 
-/// How many atoms lie within reach of residues that are missing, each by the share of courses that do.
-fn inside(atoms: &[[f64; 3]], stretches: &[Conformers], reach: f64) -> f64 {
+/// Sum over atoms and segments of the share of conformers within reach.
+fn inside(atoms: &[[f64; 3]], segments: &[Conformers], reach: f64) -> f64 {
     let mut sum = 0.0;
-    for stretch in stretches {
-        let courses = stretch.courses.len() as f64;
+    for segment in segments {
+        let conformers = segment.courses.len() as f64;
         for atom in atoms {
-            let at = stretch.local(*atom);
+            let at = segment.local(*atom);
             let near = |alpha: &[f64; 3]| {
                 let squares = (0..3).map(|axis| (alpha[axis] - at[axis]).powi(2));
                 squares.sum::<f64>() < reach * reach
             };
-            let passing = stretch
+            let passing = segment
                 .courses
                 .iter()
-                .filter(|course| course.iter().any(near));
-            sum += passing.count() as f64 / courses;
+                .filter(|conformer| conformer.iter().any(near));
+            sum += passing.count() as f64 / conformers;
         }
     }
     sum
 }
 
-/// Atoms of the first and last residues of a chain that touch the other side cost their weight each: as many as all pairs of atoms tell.
+/// Atoms of the first and last residues of a chain in contact with the other side cost their weight each, counted by all pairs.
 #[test]
-fn contacts_of_ends_of_chains_cost() {
+fn contacts_of_termini_cost() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let options = "--rotations 24 --effects shape --no-cluster --refine 0 --unresolved-weight 0 --termini-weight 3";
     let options: Vec<&str> = options.split(' ').collect();
     let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
     let plan = &object["run"]["plan"];
-    assert_eq!(plan["chain_end_residues"][0]["residues"], 16);
-    assert_eq!(plan["chain_end_residues"][1]["residues"], 2);
-    assert_eq!(plan["missing_residues"][0]["ends"], 0);
-    // Of 223 residues eight are near each end, of 29 one; no number of these two files comes twice.
+    assert_eq!(plan["terminus_residues"][0]["residues"], 16);
+    assert_eq!(plan["terminus_residues"][1]["residues"], 2);
+    assert_eq!(plan["unresolved_residues"][0]["ends"], 0);
+    // Of 223 residues eight are near each terminus, of 29 one. No residue number of these two files occurs twice.
     let atoms = |file: &str, near: usize| -> Vec<([f64; 3], bool)> {
         let text = std::fs::read_to_string(file).unwrap();
         let lines: Vec<&str> = text
@@ -139,9 +139,9 @@ fn contacts_of_ends_of_chains_cost() {
                 .count()
         };
         let atoms = touching(&fixed, &placed) + touching(&placed, &fixed);
-        assert_eq!(number("chain_ends"), -3.0 * atoms as f64);
-        assert_eq!(number("pose_score"), number("score") + number("chain_ends"));
+        assert_eq!(number("termini"), -3.0 * atoms as f64);
+        assert_eq!(number("pose_score"), number("score") + number("termini"));
         met += usize::from(atoms > 0);
     }
-    assert!(met > 0, "no pose touches an end");
+    assert!(met > 0, "no pose touches a terminus");
 }

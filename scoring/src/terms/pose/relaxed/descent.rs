@@ -2,23 +2,23 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Farthest that the ligand is moved, Å: how far its interface shifts, and the arc by which it turns at the interface's root mean square radius.
+/// Largest move of the ligand in Å: the shift of its interface plus the arc of its rotation at the interface's root mean square radius.
 pub(super) const FARTHEST: f64 = 2.0;
-/// Evaluations of energy and gradient at most.
+/// Largest number of evaluations of energy and gradient.
 const EVALUATIONS: usize = 40;
 /// First, longest and shortest step in Å.
 const STEPS: [f64; 3] = [0.3, 0.6, 0.005];
-/// What a step is multiplied by after one that helped, one that did not, and one that would leave the bounds.
+/// Factors of the step after one that lowered the energy, one that did not, and one that would leave the bounds.
 const GROWTH: [f64; 3] = [1.25, 0.45, 0.4];
 
-/// Energy of a move, RT, and its gradient: per Å, and per radian about the interface's middle, which moves along.
+/// Energy of a move in RT, and its gradient: per Å, and per radian about the interface's centre, which moves along.
 pub(super) struct Slope {
     pub energy: f64,
     pub force: Vector3<f64>,
     pub torque: Vector3<f64>,
 }
 
-/// The turn and shift at which an energy came to rest, by steepest descent from none: turns count by the arc at `radius`.
+/// Rotation and translation at the end of a steepest descent from the identity. Rotations are measured by their arc at `radius` (Å).
 pub(super) fn descend(
     radius: f64,
     mut slope: impl FnMut(&UnitQuaternion<f64>, &Vector3<f64>) -> Slope,

@@ -1,20 +1,23 @@
-//! The atom pair potential as sums read it: energies of every pair of kinds side by side, joined by straight lines.
+//! The atom pair potential in the layout that sums read: the energies of each pair of kinds lie side by side.
 
-use super::pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+use super::atom_pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 
-/// Distance in Å from which nothing counts: a step beyond the last that the potential has.
+/// Distance in Å from which energies are 0: one step beyond the last distance of the potential.
 pub(super) const REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
-/// Energies of a pair of kinds in memory, one half of a cache line: those of the potential, then zeros.
+/// Energies stored for a pair of kinds: those of the potential, then zeros. They fill half a cache line.
 const NODES: usize = 8;
 
-/// Energies by the kinds of two atoms and their distance: before the first of the potential's distances the first, and from the last one falling to 0 over one step.
+/// Energies by the kinds of two atoms and their distance, joined by straight lines.
+///
+/// They are constant below the potential's first distance and fall to 0 over one step after the last.
 pub(super) struct EnergyTable {
-    /// `[receptor kind][ligand kind]`, and last in both those of atoms without a kind, which are 0.
+    /// `[receptor kind][ligand kind]`. The last kind in both is that of atoms without a kind, with energies of 0.
     energies: Vec<[f32; NODES]>,
     kinds: usize,
 }
 
 impl EnergyTable {
+    /// Table of a potential.
     pub fn new(potential: &AtomPairPotential) -> Self {
         let kinds = atom_kinds().len() + 1;
         let mut energies = vec![[0.0; NODES]; kinds * kinds];
@@ -27,12 +30,12 @@ impl EnergyTable {
         Self { energies, kinds }
     }
 
-    /// The kind of atoms without one.
+    /// Index of the kind of atoms without a kind.
     pub fn unknown(&self) -> usize {
         self.kinds - 1
     }
 
-    /// Energy of a receptor's and a ligand's atom by their kinds and distance in Å, in RT, and its derivative by the distance.
+    /// Energy of a receptor atom and a ligand atom in RT, and its derivative by their distance in RT/Å.
     #[inline(always)]
     pub fn at(&self, receptor: usize, ligand: usize, distance: f64) -> (f64, f64) {
         let nodes = &self.energies[receptor * self.kinds + ligand];

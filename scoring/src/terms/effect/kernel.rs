@@ -68,8 +68,8 @@ fn transform(radial: &RadialFunction, w: f64, steps: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{contact, electrostatics};
     use super::*;
-    use crate::effect::{contact, electrostatics};
 
     #[test]
     fn the_quadrature_has_converged() {

@@ -1,12 +1,14 @@
-//! Contact: a potential over pairs of atom types within about 6 Å.
+//! Effect `contact`: a potential over pairs of atom types within about 6 Å.
 //!
-//! The 18 types are those of atomic contact energies, Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726, which
-//! the field's contact potentials for docking use. The potential is ours: `scripts/contact_potential.py` derives it from complexes of a
-//! benchmark folder and writes the table of this folder; its first lines say from what, how and when. k is 1 up to 5 Å and falls
-//! C-infinity to 0 at 7 Å.
+//! The 18 types are those of atomic contact energies (Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726), which
+//! contact potentials for docking use. `scripts/contact_potential.py` derives the potential from the complexes of a benchmark. It
+//! writes the table beside this file, and the table's first lines name its sources. The radial function k is 1 up to 5 Å and falls
+//! to 0 at 7 Å with all derivatives continuous.
 
 use super::{Effect, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
+pub use crate::terms::potential_table::PotentialError;
+use crate::terms::potential_table::{built_in, end, table_lines};
 use knotdock_structures::Knots;
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +18,10 @@ pub const TYPES: [&str; 18] = [
     "YCZ", "FCZ", "LCD", "CSG",
 ];
 
-/// Where k begins to fall and where it ends, Å.
+/// Distances in Å at which k begins to fall and ends.
 const TAPER: [f64; 2] = [5.0, 7.0];
 
-/// Counts a contact.
+/// Radial function: 1 for a contact.
 pub const RADIAL: RadialFunction = RadialFunction {
     value: count,
     support: TAPER[1],
@@ -29,18 +31,8 @@ fn count(distance: f64) -> f64 {
     smooth_step_down(distance, TAPER[0], TAPER[1])
 }
 
-/// The potential as its script wrote it: lines of `#`, a header, and a row for each type.
+/// The built-in table: lines of `#`, a header, and a row for each type.
 const TABLE: &str = include_str!("contact_potential.csv");
-
-/// Why a table is no contact potential.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct PotentialError {
-    /// 1-based line.
-    pub line: usize,
-    /// What is wrong with it.
-    pub message: String,
-}
 
 /// Energy of a contact, `[type][type]`, symmetric, in units of RT; lower is better.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,10 +40,9 @@ pub struct PotentialError {
 pub struct Potential(Vec<Vec<f64>>);
 
 impl Default for Potential {
-    /// The potential that this crate carries.
+    /// The built-in potential.
     fn default() -> Self {
-        // A test holds the table to its form.
-        Self::parse(TABLE).unwrap_or_else(|_| Self::zero())
+        built_in("contact_potential.csv", Self::parse(TABLE))
     }
 }
 
@@ -92,10 +83,10 @@ impl TryFrom<Vec<Vec<f64>>> for Potential {
 }
 
 impl Potential {
-    /// Reads a table: lines of `#`, a header `type,` and the names of [`TYPES`], and a row for each type in that order.
+    /// Reads a table: lines of `#`, a header `type,` with the names of [`TYPES`], and a row for each type in that order.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that is not so, or when the energies are not finite and symmetric.
+    /// [`PotentialError`] with the line that has another form, or if the energies are not finite and symmetric.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let mut lines = table_lines(text);
         header(&mut lines, "")?;
@@ -104,7 +95,7 @@ impl Potential {
         Ok(potential)
     }
 
-    /// Reads the rows of a table, one for each type in order, each with `prefix` before the type's name.
+    /// Reads the rows of a table, one for each type in order. `prefix` precedes the type's name.
     pub(crate) fn parse_rows<'a>(
         lines: &mut impl Iterator<Item = (usize, &'a str)>,
         prefix: &str,
@@ -126,25 +117,18 @@ impl Potential {
         rows.try_into().map_err(|message| wrong(last, message))
     }
 
-    /// No energy at all.
+    /// Potential whose energies are all 0.
     pub fn zero() -> Self {
         Self(vec![vec![0.0; TYPES.len()]; TYPES.len()])
     }
 
-    /// Energy of a contact of types a and b, in RT.
+    /// Energy of a contact of types a and b in RT.
     pub fn energy(&self, a: usize, b: usize) -> f64 {
         self.0[a][b]
     }
 }
 
-/// Lines of a table with their 1-based numbers, without comments and empty lines.
-pub(crate) fn table_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    (1..)
-        .zip(text.lines())
-        .filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty())
-}
-
-/// Takes the header of a table: `prefix`, then `type,` and the names of the types.
+/// Reads the header of a table: `prefix`, then `type,` with the names of the types.
 pub(crate) fn header<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
     prefix: &str,
@@ -163,19 +147,7 @@ pub(crate) fn header<'a>(
     }
 }
 
-/// Refuses what follows the last row of a table.
-pub(crate) fn end<'a>(
-    lines: &mut impl Iterator<Item = (usize, &'a str)>,
-) -> Result<(), PotentialError> {
-    lines.next().map_or(Ok(()), |(line, _)| {
-        Err(PotentialError {
-            line,
-            message: "the table has ended before this line".to_owned(),
-        })
-    })
-}
-
-/// The term for two sets of knots with contact types: `weight` times minus the potential's sum.
+/// Term of two sets of knots with contact types: minus `weight` (score per RT) times the potential.
 pub fn term(receptor: &Knots, ligand: &Knots, weight: f64, potential: &Potential) -> Term {
     let labels = |knots: &Knots| {
         (0..knots.len())
@@ -206,13 +178,14 @@ mod tests {
     fn the_table_is_whole_and_says_what_chemistry_does() {
         let Potential(potential) = Potential::parse(TABLE).unwrap();
         assert!(potential.iter().flatten().any(|value| *value != 0.0));
-        // Opposite charges attract, like ones repel, fat sticks to fat.
+        // Opposite charges attract, like charges repel, and hydrophobic atoms attract each other.
         let of = |a: &str, b: &str| {
             let index = |name: &str| TYPES.iter().position(|kind| *kind == name).unwrap();
             potential[index(a)][index(b)]
         };
         assert!(of("KNZ", "DOD") < of("KNZ", "KNZ") && of("LCD", "LCD") < of("LCD", "DOD"));
     }
+
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
         let line_of = |text: &str| Potential::parse(text).unwrap_err().line;

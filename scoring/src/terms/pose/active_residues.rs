@@ -1,30 +1,49 @@
-//! Attraction: how many of the residues that should be in contact are, those that a user names or those of an enzyme's active site, of which a
-//! molecule may have several.
+//! Pose term `active_residues`: the share of the active residues that are in contact.
 //!
-//! The search draws poses to residues that are named by all contacts of their atoms ([`crate::effect::restraint`]), since a correlation can count
-//! nothing else; buried deep, one residue would earn what several should. So what it keeps is asked how many touch at all.
+//! Active residues are named by the user, or they are the catalytic residues of an enzyme, which may have several active sites.
+//!
+//! The search draws poses to named residues by the contacts of their atoms ([`crate::terms::effect::restraint`]), because a correlation
+//! can count nothing else. One buried residue with many contacts then earns as much as several should. So this term counts residues.
 
 use super::side::Side;
+use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 
-/// Residues of receptor and ligand, each as the places of its knots.
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "active_residues",
+    label: "active residues",
+    weight_option: "active-weight",
+    weight_help: "Score of a pose in which all active residues are in contact; other poses get their share of it",
+    unit: "score",
+    default_weight: 2000.0,
+    time_share: UNRELAXED,
+    applies: |inputs| !inputs.active_residues.is_empty(),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let sets = inputs.active_residues;
+        Box::new(ActiveResidues::new(receptor, ligand, sets, weight))
+    },
+};
+
+/// Active residues of receptor and ligand, each as the indices of its knots.
 pub type Residues = [Vec<Vec<usize>>; 2];
 
-/// Residues of both sides that should be in contact.
-pub struct Attraction {
-    /// Sets of residues of receptor and ligand, each as the positions of its atoms (Å); those of one set should touch.
+/// Two bodies prepared for counting the active residues in contact.
+pub struct ActiveResidues {
+    /// Sets of residues of receptor and ligand, each residue as the positions of its atoms (Å).
     sets: Vec<[Vec<Positions>; 2]>,
     receptor: Side,
     ligand: Side,
     weight: f64,
 }
 
-/// Where the atoms of a residue stand (Å).
+/// Positions of the atoms of a residue (Å).
 type Positions = Vec<[f64; 3]>;
 
-impl Attraction {
-    /// Sets of residues, any one of which should be in contact; `weight` is what a pose earns in which all residues of a set touch.
+impl ActiveResidues {
+    /// Prepares two sets of knots. `weight` is the score of a pose in which all residues of one set are in contact.
     pub fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
         let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Positions> {
             let centers = |residue: &Vec<usize>| {
@@ -44,20 +63,26 @@ impl Attraction {
         }
     }
 
-    /// The weight times the share of a set's residues that touch the other side in a pose, of the set of which most do.
+    /// Weight times the share of a set's residues that are in contact at a pose, of the set with the largest share.
     pub fn score(&self, pose: &Pose) -> f64 {
         let inverse = pose.inverse();
         let shares = self.sets.iter().map(|[receptor, ligand]| {
-            let own = touched(&self.ligand, receptor, &inverse);
-            let other = touched(&self.receptor, ligand, pose);
+            let own = in_contact(&self.ligand, receptor, &inverse);
+            let other = in_contact(&self.receptor, ligand, pose);
             (own + other) as f64 / (receptor.len() + ligand.len()).max(1) as f64
         });
         self.weight * shares.fold(0.0, f64::max)
     }
 }
 
-/// How many of the other side's residues, carried by `pose` into this one's frame, have an atom that touches it.
-fn touched(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
+impl PoseTerm for ActiveResidues {
+    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
+        self.score(pose)
+    }
+}
+
+/// Number of residues of the other side with an atom in contact with `side`; `pose` carries them into its frame.
+fn in_contact(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
     let touches = |atom: &[f64; 3]| side.touches(pose, *atom);
     let residues = residues.iter();
     residues.filter(|atoms| atoms.iter().any(touches)).count()
@@ -67,16 +92,15 @@ fn touched(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
 mod tests {
     use super::*;
 
-    /// Atoms at 10, 20, 30 and 40 Å on both sides. Residues count once, however many atoms touch; turned about, the same ones touch.
+    /// Atoms at 10, 20, 30 and 40 Å on both sides. A residue counts once, however many of its atoms are in contact.
     #[test]
-    fn residues_that_touch_are_counted() {
+    fn residues_in_contact_are_counted() {
         let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
         let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
         let residues = [vec![vec![0], vec![2, 3]], vec![vec![1]]];
-        let attraction = Attraction::new(&knots, &knots, &[residues], 300.0);
-        let at = |quaternion, x: f64, y: f64| {
-            attraction.score(&Pose::from_parts(quaternion, [x, y, 0.0]))
-        };
+        let term = ActiveResidues::new(&knots, &knots, &[residues], 300.0);
+        let at =
+            |quaternion, x: f64, y: f64| term.score(&Pose::from_parts(quaternion, [x, y, 0.0]));
         let straight = [1.0, 0.0, 0.0, 0.0];
         assert_eq!(at(straight, 0.0, 4.9), 300.0);
         assert_eq!(at(straight, 0.0, 5.1), 0.0);
@@ -88,7 +112,7 @@ mod tests {
         assert_eq!(at([0.0, 0.0, 0.0, 1.0], 20.0, 3.0), 100.0);
     }
 
-    /// Of copies of a site the one counts that is touched more, and nothing is earned by touching one with some residues and the other with the rest.
+    /// Of several sites the one with the largest share counts; shares of different sites do not add up.
     #[test]
     fn one_set_of_several_is_enough() {
         let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
@@ -96,8 +120,8 @@ mod tests {
         let ligand = Knots::new(vec![[0.0; 3], [10.0, 0.0, 0.0]], vec![1.9; 2]).unwrap();
         let set = |first: usize, second: usize| [vec![vec![first], vec![second]], Vec::new()];
         let sets = [set(0, 1), set(2, 3)];
-        let attraction = Attraction::new(&knots, &ligand, &sets, 300.0);
-        let at = |x: f64| attraction.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]));
+        let term = ActiveResidues::new(&knots, &ligand, &sets, 300.0);
+        let at = |x: f64| term.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]));
         assert_eq!(at(10.0), 300.0);
         assert_eq!(at(30.0), 300.0);
         assert_eq!(at(20.0), 150.0);
