@@ -154,7 +154,7 @@ impl Docking {
         // The record says where the search stopped, so that it can be repeated.
         request.options.stopped = outcome.stopped;
 
-        let mut table = PoseTable::new(&outcome.poses);
+        let mut table = PoseTable::new(&outcome.poses, request.options.output.diagnostics);
         let quality = match &evaluator {
             Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
             None => Vec::new(),

@@ -23,6 +23,7 @@ pub mod input_record;
 pub mod manifest;
 pub mod molecule_file;
 pub mod pair_table;
+mod pose_columns;
 pub mod poses;
 pub mod poses_reader;
 pub mod program;

@@ -126,6 +126,7 @@ pub(crate) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
+                score: if every_pose { row.pose_score } else { score },
                 z_score: background.z_score(row.pose_score),
                 ..row
             })
@@ -211,7 +212,8 @@ impl Candidate {
             other_copies: others,
             pose_score: terms.score + pose_terms.sum() + others.unwrap_or(0.0),
             z_score: None,
-            score: terms.score,
+            score: 0.0,
+            search_score: terms.score,
             cluster: None,
             cluster_size: None,
             cluster_score: None,
@@ -319,7 +321,7 @@ mod tests {
         };
         let undone = climbed(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
-        assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
+        assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
         let stands = climbed(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
