@@ -59,7 +59,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
     assert!(!best.is_empty() && best.len() <= 10);
     assert_eq!(best[0]["rank"], 1);
     assert!(best[0]["score"].is_number() && best[0]["irmsd"].is_number());
-    assert!(best[0]["refined"].is_boolean() && best[0]["capri"].is_string());
+    assert!(best[0]["cluster_size"].is_number() && best[0]["capri"].is_string());
     let complexes = object["complexes"].as_array().unwrap();
     assert_eq!(complexes.len(), 2);
     for path in complexes {
@@ -97,7 +97,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
     );
     let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
     assert!(columns.lines().next().unwrap().ends_with(
-        "cluster_score,pose_score,z_score,restraint,other_copies,fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,irmsd,lrmsd,fnat,dockq,capri"
+        "unresolved,termini,other_copies,z_score,qw,qx,qy,qz,tx,ty,tz,irmsd,lrmsd,fnat,dockq,capri"
     ));
 }
 

@@ -31,7 +31,7 @@ fn a_ring_that_is_known_to_fit_is_found_first() {
     let rows = rows(&folder.path().join("run"));
     // The first pose of the ring is the one with the fewest contacts of termini.
     assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.5);
-    assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
+    assert!(number(&rows[0], "search_score") > 1.2 * number(&rows[1], "search_score"));
 }
 
 /// Docks a small protein into rings of shape alone; the run's object and rows.
@@ -82,7 +82,7 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         told["exact"].as_f64().unwrap()
     };
     for name in ["C2", "C3", "C4", "C5"] {
-        let (told, rows) = small(folder.path(), name, &["--no-cluster"]);
+        let (told, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
         assert_eq!(told["run"]["options"]["symmetry"], name);
         assert_eq!(told["run"]["options"]["rotations"], 40);
         assert!(rows.len() > 20);
@@ -112,7 +112,7 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         for row in &rows[..3] {
             let pose = pose(row);
             let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b.abs().max(1.0);
-            let own = number(row, "score");
+            let own = number(row, "search_score");
             assert!(close(score(&pose), own));
             let others = match name {
                 "C4" => 0.5 * score(&pose.after(&pose)),
