@@ -29,6 +29,7 @@ use crate::cli::messages::dock::{
     assumed, chance_told, error_warning, few_rotations_warning, loose_told, told,
 };
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::timings::timings_text;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -200,6 +201,7 @@ impl Docking {
         staging.commit()?;
 
         console.say(format!("\n{}", told(&plan, &outcome)));
+        console.detail(format!("\n{}", timings_text(&outcome)));
         if let Some(warning) = error_warning(&plan, &outcome) {
             console.warn(warning);
         }
