@@ -58,7 +58,7 @@ fn hold_to_cpu(folder: &Path, arguments: &str) {
     println!("{shared} of {} and {} rows", cpu.len(), gpu.len());
     assert!(!cpu.is_empty() && 50 * shared >= 49 * cpu.len().max(gpu.len()));
     let record = record(&folder.join("gpu"));
-    assert_eq!(record["options"]["engine"], "gpu");
+    assert_eq!(record["options"]["search"]["engine"], "gpu");
     assert!(record["machine"]["adapter"]["name"].is_string());
 }
 

@@ -92,7 +92,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
         ]
     );
     assert!(
-        recorded["options"].get("threads").is_none(),
+        recorded["options"].get("machine").is_none(),
         "threads are the machine's"
     );
     let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
@@ -310,13 +310,13 @@ fn reading_options_are_recorded_and_followed() {
         ("hydrogens", "drop".into()),
         ("altloc", "A".into()),
     ] {
-        assert_eq!(first["options"][name], value, "{name}");
+        assert_eq!(first["options"]["input"][name], value, "{name}");
     }
     run(folder.path(), "dock --rerun run/run.json -o again --quiet");
     let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
     assert_eq!(recorded("again")["options"], first["options"]);
-    run(folder.path(), "complex run --rank 1 -o out --quiet");
+    run(folder.path(), "export run --rank 1 -o out --quiet");
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let placed = String::from_utf8(bytes("out/rank_0001.pdb")).unwrap();
     assert!(

@@ -83,8 +83,8 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
     };
     for name in ["C2", "C3", "C4", "C5"] {
         let (told, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
-        assert_eq!(told["run"]["options"]["symmetry"], name);
-        assert_eq!(told["run"]["options"]["rotations"], 40);
+        assert_eq!(told["run"]["options"]["search"]["symmetry"], name);
+        assert_eq!(told["run"]["options"]["search"]["rotations"], 40);
         assert!(rows.len() > 20);
         for row in &rows {
             assert!(symmetry(name).ring(&pose(row)).is_some(), "{name}");
@@ -191,7 +191,7 @@ fn all_copies_are_written_and_runs_repeat() {
 fn residues_are_named_for_all_copies() {
     let folder = tempfile::tempdir().unwrap();
     let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
-    assert!(told["run"]["options"]["active_ligand"].is_null());
+    assert!(told["run"]["options"]["restraints"]["active_ligand"].is_null());
     assert!(rows.iter().all(|row| row["active_residues"].is_empty()));
     let molecule = example("ligand_unbound");
     let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
@@ -203,7 +203,7 @@ fn residues_are_named_for_all_copies() {
         ("active_receptor", "active_ligand"),
         ("block_receptor", "block_ligand"),
     ] {
-        let options = &told["run"]["options"];
+        let options = &told["run"]["options"]["restraints"];
         assert!(!options[side].is_null());
         assert_eq!(options[side], options[other]);
     }
@@ -250,12 +250,12 @@ fn what_no_ring_can_have_is_refused() {
         ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
         ("a.pdb --symmetry T", "no symmetry"),
         ("a.pdb --symmetry C1", "no symmetry"),
-        ("a.pdb --symmetry C3 --angle 12", "cannot be used with"),
+        ("a.pdb --symmetry C3 --rotations 12deg", "axes"),
         ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
         (
             "a.pdb --symmetry C3 --active-ligand B:5",
-            "cannot be used with",
+            "active-ligand is B:5; it must be the receptor's",
         ),
         ("a.pdb --symmetry C3 --refine 5", "refine is 5"),
         (
