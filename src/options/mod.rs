@@ -35,7 +35,8 @@ pub struct DockOptions {
     pub lambda: f64,
     /// Skin offset r0.
     pub offset: f64,
-    /// Exponent alpha of the bump function.
+    /// Exponent alpha of the bump function; infinity is the sharp ball.
+    #[serde(with = "knotdock_scoring::kernel::exponent")]
     pub alpha: f64,
     /// Weight in shape of atoms that no water reaches, against 1 for the others.
     pub core_weight: f64,

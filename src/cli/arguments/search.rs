@@ -8,6 +8,7 @@ use knotdock::options::{AXES, AXES_ACROSS, EngineChoice, PASS_RATIO, Precision, 
 use knotdock::options::{DockOptions, EffectChoice};
 use knotdock::priors::restraints::AntibodySurface;
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::kernel::exponent;
 use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_scoring::symmetry::Symmetry;
 
@@ -87,8 +88,8 @@ pub struct KernelArguments {
     lambda: f64,
     #[arg(long, value_name = "A", value_parser = not_negative, help = offset_help(), help_heading = SCORE)]
     offset: Option<f64>,
-    /// Exponent of the bump kernel (dimensionless); large values harden the balls.
-    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = DockOptions::default().alpha, help_heading = SCORE)]
+    /// Exponent of the bump kernel (dimensionless): large values harden the balls, `inf` makes them sharp.
+    #[arg(long, value_name = "X", value_parser = exponent::parse, default_value_t = DockOptions::default().alpha, help_heading = SCORE)]
     alpha: f64,
     /// Weight in shape of atoms that no water reaches, against 1 for the others.
     #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = DockOptions::default().core_weight, help_heading = SCORE)]
