@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn files_are_looked_for_from_the_file_s_folder() {
         let folder = tempfile::tempdir().unwrap();
-        let table = include_str!("../../scoring/src/effect/contact_potential.csv");
+        let table = include_str!("../../scoring/src/terms/effect/contact_potential.csv");
         std::fs::write(folder.path().join("own.csv"), table).unwrap();
         let text = "[terms]\ncontact_potential = \"own.csv\"\n";
         let path = folder.path().join("run.toml");
