@@ -52,10 +52,10 @@ fn a_near_native_pose_is_among_the_first_ten() {
         terms,
         ..
     } = Scene::new(&receptor, &ligand, &options).unwrap();
-    let engine = options.engine();
+    let engine = options.kernel.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
-        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
+        ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
     let path = run.join("poses.csv");
     let table = PoseTable::read(&path).unwrap();
     let mut scores = csv::Reader::from_path(&path).unwrap();

@@ -122,8 +122,21 @@ fn evaluate_gives_every_pose_and_the_match() {
     let poses = told["poses"].as_array().unwrap();
     assert_eq!(
         keys(&poses[0]),
-        ["capri", "dockq", "fnat", "irmsd", "lrmsd", "rank"]
+        [
+            "acceptable",
+            "capri",
+            "dockq",
+            "fnat",
+            "irmsd",
+            "lrmsd",
+            "near_native",
+            "rank"
+        ]
     );
+    assert_eq!(poses[0]["acceptable"], true);
+    assert_eq!(poses[0]["near_native"], true);
+    assert_eq!(poses[1]["acceptable"], false);
+    assert_eq!(poses[1]["near_native"], false);
     assert!(poses[0]["irmsd"].as_f64().unwrap() < 1e-3);
     assert_eq!(poses[0]["fnat"], 1.0);
     assert_eq!(poses[0]["capri"], "high");

@@ -6,7 +6,7 @@
 //!
 //! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
-//! The cases are made by `scripts/scoring_cases.py`.
+//! The cases are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -44,11 +44,10 @@ fn folder() -> PathBuf {
 /// The options that a case is scored and searched with: the defaults but for what is blocked.
 fn options(case: &str) -> DockOptions {
     let blocked = |residues: &str| (case == BLOCKED).then(|| residues.parse().unwrap());
-    DockOptions {
-        block_receptor: blocked("A:1-8"),
-        block_ligand: blocked("A:6"),
-        ..DockOptions::default()
-    }
+    DockOptions::default().changed(|options| {
+        options.restraints.block_receptor = blocked("A:1-8");
+        options.restraints.block_ligand = blocked("A:6");
+    })
 }
 
 fn molecules(case: &str) -> [Molecule; 2] {
@@ -110,10 +109,10 @@ fn scored(
         decisions,
         ..
     } = scene;
-    let engine = options.engine();
+    let engine = options.kernel.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
-        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
+        ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
     let on = Effect::ALL.map(|effect| decisions.iter().any(|d| d.effect == effect && d.on));
     let scores = poses.iter().map(|(_, pose)| scorer.score(pose)).collect();
     (on, scores, rescored)
@@ -282,12 +281,11 @@ fn first_poses_of_small_searches() {
     let mut found = Table::new();
     for case in SEARCHES {
         let [receptor, ligand] = molecules(case);
-        let options = DockOptions {
-            rotations: ROTATIONS,
-            every_pose: true,
-            threads: 1,
-            ..options(case)
-        };
+        let options = options(case).changed(|options| {
+            options.search.rotations = ROTATIONS;
+            options.ranking.no_cluster = true;
+            options.machine.threads = 1.into();
+        });
         let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
         let points = knotdock::dock::run::molecule_points(&ligand);
         let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
@@ -322,7 +320,7 @@ fn two_atoms_score_the_closed_form() {
         if x >= 1.0 {
             0.0
         } else {
-            (1.0 / (1.0 - x.powf(-options.alpha))).exp()
+            (1.0 / (1.0 - x.powf(-options.kernel.alpha))).exp()
         }
     };
     let (_, poses) = poses()
@@ -335,8 +333,8 @@ fn two_atoms_score_the_closed_form() {
         // Both atoms stand at the origin of their files, and an aliphatic carbon has 1.88 Å (Tsai et al. 1999).
         let distance = pose.translation.norm();
         let [zero, skin, twice] =
-            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.offset)));
-        let lambda = options.lambda;
+            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.kernel.offset)));
+        let lambda = options.kernel.lambda;
         let expected = -lambda * lambda * zero + 2.0 * lambda * skin - twice;
         assert!(
             (exact.unfiltered - expected).abs() <= 1e-9 * lambda * lambda,
@@ -352,7 +350,11 @@ fn two_atoms_score_the_closed_form() {
 /// attract; and what is blocked only costs, other terms left as they are.
 #[test]
 fn what_every_row_must_satisfy() {
-    let weights = DockOptions::default().engine().kernel.slice_weights();
+    let weights = DockOptions::default()
+        .kernel
+        .engine()
+        .kernel
+        .slice_weights();
     for (case, poses) in poses() {
         let (on, scores, _) = scored(&case, &poses);
         for ((number, pose), exact) in poses.iter().zip(&scores) {

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::error::SearchError;
+use knotdock::options::values::at_least_one;
 use knotdock::output::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
@@ -11,9 +12,7 @@ use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::memory;
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::search::KernelArguments;
-use crate::cli::arguments::values::at_least_one;
+use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{regions_text, site_told};
@@ -42,9 +41,7 @@ pub struct Score {
     #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
     order: Order,
     #[command(flatten)]
-    reading: ReadingArguments,
-    #[command(flatten)]
-    kernel: KernelArguments,
+    options: OptionArguments<OfScore>,
 }
 
 /// [`ModeOrder`] by its name.
@@ -63,9 +60,9 @@ impl Score {
     /// Scores.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
-        let dock = self.kernel.options()?;
+        let dock = self.options.given()?.options;
         let options = ScoreOptions {
-            engine: dock.engine(),
+            engine: dock.kernel.engine(),
             modes: self.modes,
             order: match self.order {
                 Order::LowFrequency => ModeOrder::LowFrequency,
@@ -73,7 +70,7 @@ impl Score {
             },
             memory: memory::default_limit(),
         };
-        let reading = self.reading.options();
+        let reading = dock.input.reading();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
         let [receptor, ligand] = inputs.map(|input| input.molecule);

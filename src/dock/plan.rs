@@ -100,29 +100,29 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     options.check()?;
     let engine = scene.engine_plan(options)?;
     let memory = MemoryPlan::new(&scene, &engine, options)?;
-    let space = PoseSpace::new(options.symmetry, scene.ring_axis);
+    let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
     let limits = (memory.in_flight, memory.graphics);
     let search = SearchPlan::new(Arc::new(engine), space, options, limits);
     let engine = &search.engine;
-    let radii = match &engine.basis {
+    let radii = match engine.basis() {
         RadiusBasis::Classes { receptor, ligand } => [receptor.len(), ligand.len()],
-        _ => engine.basis.sizes(&engine.axis).into(),
+        _ => engine.basis().sizes(engine.axis()).into(),
     };
     Ok(DockPlan {
         unit: scene.unit,
         angstrom: scene.angstrom,
-        rotations: options.rotations,
+        rotations: options.search.rotations,
         rotation_set: search.rotations.name,
         covering_radius_degrees: search.rotations.covering_radius.to_degrees(),
         grid: engine.size(),
-        spacing: engine.spacing,
-        fine_grid: engine.fine,
-        spreading_width: engine.width,
-        modes: engine.modes.count,
-        lifted_modes: engine.axis.modes(),
-        kernel_reach: engine.kernel.reach(),
-        pass_frequency: 1.0 / engine.options.kernel.pass_length,
-        stop_frequency: engine.kernel.stop(),
+        spacing: engine.spacing(),
+        fine_grid: engine.fine(),
+        spreading_width: engine.width(),
+        modes: engine.modes().count,
+        lifted_modes: engine.axis().modes(),
+        kernel_reach: engine.kernel().reach(),
+        pass_frequency: 1.0 / engine.options().kernel.pass_length,
+        stop_frequency: engine.kernel().stop(),
         radii,
         fixed_bytes: memory.fixed,
         bytes_in_flight: memory.per_rotation,
@@ -159,23 +159,24 @@ impl DockPlan {
     /// [`SearchError::Knots`] on knots that cannot be summed.
     pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
         Ok(ExactScorer::with_effects(
-            &self.search.engine.kernel,
+            self.search.engine.kernel(),
             &self.receptor,
             &self.ligand,
-            &self.search.engine.effects,
+            self.search.engine.effects(),
         )?)
     }
 
     /// Number of poses to refine: all where none lies on the grid, as of rings.
     pub fn refined(&self) -> usize {
         if !self.search.space.is_on_grid() {
-            return self.options.poses;
+            return self.options.search.poses;
         }
         let alone = self
             .decisions
             .iter()
             .all(|decision| decision.effect == Effect::Shape || !decision.on);
         self.options
+            .search
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }

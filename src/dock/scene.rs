@@ -3,10 +3,10 @@
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
-use crate::options::DockOptions;
 use crate::options::effect_choice::EffectChoice;
+use crate::options::{AntibodySurface, DockOptions};
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
-use crate::priors::restraints::{AntibodySurface, Restraints};
+use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::engine::Plan;
@@ -88,14 +88,14 @@ impl Scene {
         ligand: &Molecule,
         options: &DockOptions,
     ) -> Result<Self, SearchError> {
-        options.check_effects()?;
+        options.check_ranges()?;
         let ring_axis = ring_axis(receptor, options)?;
         let molecules = [receptor, ligand];
-        let labels = molecules.map(|molecule| molecule.labels(options.ph));
+        let labels = molecules.map(|molecule| molecule.labels(options.terms.ph));
         let restraints = Restraints::new(molecules, options)?;
         let why_not = |effect: Effect| {
             if effect == Effect::Restraint {
-                let none = match options.antibody {
+                let none = match options.restraints.antibody {
                     AntibodySurface::Cdrs => {
                         "neither is an antibody, and no residue is blocked or attracted"
                     }
@@ -115,16 +115,16 @@ impl Scene {
         };
         let mut decisions = Vec::new();
         for effect in Effect::ALL {
-            let asked = match &options.effects {
+            let asked = match &options.kernel.effects {
                 EffectChoice::Auto => None,
                 EffectChoice::Only(effects) => Some(effects.contains(&effect)),
             };
             let (on, reason) = match (effect, asked, why_not(effect)) {
                 (Effect::Shape, ..) => (true, "always on".to_owned()),
-                (Effect::Restraint, Some(false), _) if options.names_residues() => {
+                (Effect::Restraint, Some(false), _) if options.restraints.names_residues() => {
                     return Err(SearchError::Option {
                         name: "effects",
-                        value: options.effects.clone().into(),
+                        value: options.kernel.effects.clone().into(),
                         bound:
                             "auto or name restraint too, since residues are blocked or attracted"
                                 .to_owned(),
@@ -147,7 +147,7 @@ impl Scene {
             };
             decisions.push(Decision { effect, on, reason });
         }
-        let cores = molecules.map(|molecule| core_weights(molecule, options.core_weight));
+        let cores = molecules.map(|molecule| core_weights(molecule, options.terms.core_weight));
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
         // A label that no effect reads is left off.
@@ -169,15 +169,15 @@ impl Scene {
         let (ligand, ligand_report) = label(ligand.knots()?, ligand_labels)?;
         let mut terms = Vec::new();
         if on(Effect::Electrostatics) {
-            let weight = options.electrostatics_weight;
+            let weight = options.terms.electrostatics_weight;
             terms.push(electrostatics::term(&receptor, &ligand, weight));
         }
         if on(Effect::Contact) {
-            let potential = options.contact_potential.clone().unwrap_or_default();
+            let potential = options.terms.contact_potential.clone().unwrap_or_default();
             terms.push(contact::term(
                 &receptor,
                 &ligand,
-                options.contact_weight,
+                options.terms.contact_weight,
                 &potential,
             ));
         }
@@ -185,8 +185,9 @@ impl Scene {
             let [own, other] = &restraints.marks;
             let residues: usize = restraints.attracted.iter().map(Vec::len).sum();
             let weights = restraint::Weights {
-                blocked: options.restraint_weight,
-                attracted: PULL * options.active_weight / residues.max(1) as f64,
+                blocked: options.restraints.restraint_weight,
+                attracted: PULL * options.terms.weights.get("active_residues")
+                    / residues.max(1) as f64,
             };
             terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
@@ -233,8 +234,8 @@ impl Scene {
                 Effect::Contact => "meshes have no atom types",
                 Effect::Restraint => "meshes have no residues",
             };
-            let asked = (effect == Effect::Restraint && options.names_residues())
-                || matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
+            let asked = (effect == Effect::Restraint && options.restraints.names_residues())
+                || matches!(&options.kernel.effects, EffectChoice::Only(effects) if effects.contains(&effect));
             if asked && effect != Effect::Shape {
                 let reason = reason.to_owned();
                 return Err(SearchError::Effect { effect, reason });
@@ -267,8 +268,8 @@ impl Scene {
     /// [`SearchError`] on knots or options that no engine can correlate.
     pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
         let terms = self.terms.clone();
-        let engine = options.engine();
-        let tolerance = options.tolerance;
+        let engine = options.kernel.engine();
+        let tolerance = options.kernel.tolerance;
         let plan = Plan::with_effects(&self.receptor, &self.ligand, engine, tolerance, terms)?;
         Ok(plan)
     }
@@ -287,7 +288,11 @@ impl Scene {
 
 /// The axis of a molecule that is a ring, where two such rings are asked for.
 fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, SearchError> {
-    let Some((symmetry, folds)) = options.symmetry.and_then(|of| Some((of, of.folds()?))) else {
+    let Some((symmetry, folds)) = options
+        .search
+        .symmetry
+        .and_then(|of| Some((of, of.folds()?)))
+    else {
         return Ok(None);
     };
     let no_ring = |reason: String| SearchError::Ring { symmetry, reason };
@@ -351,11 +356,10 @@ mod tests {
     fn attracted_residues_share_their_pull() {
         let molecule = peptide(4.0);
         let pull = |residues: &str| {
-            let options = DockOptions {
-                active_weight: 1000.0,
-                active_ligand: Some(residues.parse().unwrap()),
-                ..DockOptions::default()
-            };
+            let options = DockOptions::default().changed(|options| {
+                options.terms.weights.set("active_residues", 1000.0);
+                options.restraints.active_ligand = Some(residues.parse().unwrap());
+            });
             let scene = Scene::new(&molecule, &molecule, &options).unwrap();
             let is_restraint = |term: &&Term| term.effect == Effect::Restraint;
             let term = scene.terms.iter().find(is_restraint).unwrap();

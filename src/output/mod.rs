@@ -29,7 +29,6 @@ pub mod program;
 pub mod quality;
 pub mod recorded_run;
 pub mod report;
-pub mod run_options;
 pub mod sample_picture;
 pub mod staging;
 pub mod tradeoff;

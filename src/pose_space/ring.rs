@@ -79,7 +79,7 @@ mod tests {
     use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra, choose_rank};
-    use knotdock_scoring::lifted_axis::Quantity;
+    use knotdock_scoring::quantity::Quantity;
     use knotdock_structures::Knots;
     use knotdock_structures::molecule::{Format, Molecule};
     use nalgebra::{Unit, UnitQuaternion};
@@ -96,11 +96,11 @@ mod tests {
             [0.8, -2.5, 2.0],
         ];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
-        let engine = DockOptions::default().engine();
+        let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &folded, &knots);
-        let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
+        let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
         };
@@ -115,7 +115,7 @@ mod tests {
         assert!(other_copies(symmetry, &scorer, &start).unwrap().abs() > 1.0);
         assert_eq!(other_copies("C3".parse().unwrap(), &scorer, &start), None);
 
-        let center = plan.ligand_center;
+        let center = plan.ligand_center();
         let (_, gradient) = whole(symmetry, &field, center, &start);
         let step = 1e-3;
         let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
@@ -174,12 +174,11 @@ mod tests {
         let ring = Molecule::new(atoms, Format::Pdb);
         // Off the file's origin.
         let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
-        let options = DockOptions {
-            symmetry: Some("D2".parse().unwrap()),
-            rotations: 12,
-            threads: 1,
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.search.symmetry = Some("D2".parse().unwrap());
+            options.search.rotations = 12;
+            options.machine.threads = 1.into();
+        });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
         let folded = ReceptorSpectra::<f32>::new(
@@ -201,12 +200,12 @@ mod tests {
             .unwrap()
             .peaks;
         assert_eq!(peaks.len(), 20);
-        let center = search.engine.ligand_center;
+        let center = search.engine.ligand_center();
         let starts: Vec<Pose> = peaks
             .iter()
             .map(|peak| {
                 let place =
-                    search.engine.receptor_center + engine.cpu.position(peak.voxel as usize);
+                    search.engine.receptor_center() + engine.cpu.position(peak.voxel as usize);
                 Pose::about(
                     search.rotations.rotation(peak.rotation as usize).0,
                     center,

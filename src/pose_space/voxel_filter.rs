@@ -40,9 +40,9 @@ impl VoxelFilter {
         };
         Self {
             places: [along(0, nx, ny * nz), along(1, ny, nz), along(2, nz, 1)],
-            receptor_center: plan.receptor_center,
-            ligand_center: plan.ligand_center,
-            spacing: plan.spacing,
+            receptor_center: plan.receptor_center(),
+            ligand_center: plan.ligand_center(),
+            spacing: plan.spacing(),
             across,
         }
     }
@@ -112,7 +112,7 @@ mod tests {
     use crate::options::DockOptions;
     use crate::pose_space::axes::axis_set;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
-    use knotdock_scoring::lifted_axis::Quantity;
+    use knotdock_scoring::quantity::Quantity;
     use knotdock_scoring::se3::Pose;
     use knotdock_scoring::symmetry::Symmetry;
     use knotdock_structures::Knots;
@@ -124,7 +124,8 @@ mod tests {
     fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
         let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
+        let plan =
+            Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let voxels = VoxelFilter::new(&engine, None);
@@ -139,10 +140,10 @@ mod tests {
             let mut kept = 0;
             for (voxel, &left) in grid.iter().enumerate() {
                 let slide = |corner: [f64; 3]| {
-                    let place = plan.receptor_center
+                    let place = plan.receptor_center()
                         + engine.position(voxel)
-                        + 0.5 * plan.spacing * Vector3::from(corner);
-                    let pose = Pose::about(rotation, plan.ligand_center, place);
+                        + 0.5 * plan.spacing() * Vector3::from(corner);
+                    let pose = Pose::about(rotation, plan.ligand_center(), place);
                     axis.dot(&pose.translation)
                 };
                 let signs = [-1.0, 1.0];
@@ -176,7 +177,8 @@ mod tests {
         });
         let axis = RingAxis::of(&copies).unwrap();
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
+        let plan =
+            Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let [nx, ny, nz] = plan.size();
@@ -193,10 +195,10 @@ mod tests {
             let mut heights = Vec::new();
             for voxel in (0..line.len()).filter(|&voxel| line[voxel]) {
                 assert!(layer[voxel]);
-                let place = plan.receptor_center + engine.position(voxel);
-                let pose = Pose::about(rotation, plan.ligand_center, place);
+                let place = plan.receptor_center() + engine.position(voxel);
+                let pose = Pose::about(rotation, plan.ligand_center(), place);
                 let off = axis.nearest(&pose).translation - pose.translation;
-                assert!(off.norm() < 1.8 * plan.spacing, "{off}");
+                assert!(off.norm() < 1.8 * plan.spacing(), "{off}");
                 heights.push(pose.translation.z);
             }
             // The ring's axis is that of z, along which the voxels go from end to end.
@@ -205,7 +207,7 @@ mod tests {
             assert!(
                 heights
                     .windows(2)
-                    .all(|pair| pair[1] - pair[0] < 1.5 * plan.spacing)
+                    .all(|pair| pair[1] - pair[0] < 1.5 * plan.spacing())
             );
         }
     }

@@ -1,9 +1,10 @@
 //! What a pose should touch: residues that the user names, or else the active site of a peptidase.
 
 use crate::options::DockOptions;
+use crate::priors::{ActiveSite, Antibody};
 use knotdock_scoring::effect::restraint::ResidueRole;
 use knotdock_scoring::terms::pose::Residues;
-use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
+use knotdock_structures::molecule::{Molecule, Partner};
 use serde::Serialize;
 
 /// Sets of residues, of which poses should touch all of one, and what those earn.
@@ -32,7 +33,7 @@ impl ActiveResidues {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.active_weight,
+            weight: options.terms.weights.get("active_residues"),
             assumed: None,
         }
     }
@@ -43,7 +44,7 @@ impl ActiveResidues {
         marks: [&[ResidueRole]; 2],
         options: &DockOptions,
     ) -> Self {
-        let weight = options.peptidase_weight;
+        let weight = options.restraints.peptidase_weight;
         let assumed = (weight > 0.0).then(|| AssumedSite::of(molecules, marks));
         let assumed = assumed.flatten();
         let sets = assumed.as_ref().map_or(Vec::new(), |assumed| {
@@ -62,7 +63,7 @@ impl AssumedSite {
     /// Where one of the two is a peptidase and the other is none, sites left out that are to stay free of contact. What an antibody was raised against is as
     /// likely to be anywhere.
     fn of(molecules: [&Molecule; 2], marks: [&[ResidueRole]; 2]) -> Option<Self> {
-        let (partner, mut sites, marks) = match molecules.map(Molecule::active_sites) {
+        let (partner, mut sites, marks) = match molecules.map(ActiveSite::all) {
             [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
             [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
             _ => return None,
@@ -71,7 +72,7 @@ impl AssumedSite {
             let mut atoms = site.atoms.iter().flatten();
             !atoms.any(|&atom| marks.get(atom) == Some(&ResidueRole::Excluded))
         });
-        let none = sites.is_empty() || molecules.iter().any(|m| m.antibody().is_some());
+        let none = sites.is_empty() || molecules.iter().any(|m| Antibody::of(m).is_some());
         (!none).then_some(Self { partner, sites })
     }
 
@@ -86,29 +87,16 @@ impl AssumedSite {
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (partner, sites) = (self.partner, sites_told(&self.sites));
+        let (partner, sites) = (self.partner, ActiveSite::all_in_words(&self.sites));
         write!(f, "the {partner} is a peptidase, {sites}")
     }
-}
-
-/// Active sites in words.
-pub fn sites_told(sites: &[ActiveSite]) -> String {
-    let told = |site: &ActiveSite| {
-        format!(
-            "of family {} like {} (catalytic {})",
-            site.family,
-            site.known_by,
-            site.residues.join(", ")
-        )
-    };
-    sites.iter().map(told).collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dock::scene::{Decision, Scene};
-    use crate::priors::restraints::AntibodySurface;
+    use crate::options::AntibodySurface;
     use knotdock_scoring::effect::Effect;
     use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};
 
@@ -132,7 +120,10 @@ mod tests {
             of([&trypsin, &inhibitor], &options)
         };
         let default = with(|_| {});
-        assert_eq!(default.weight, DockOptions::default().peptidase_weight);
+        assert_eq!(
+            default.weight,
+            DockOptions::default().restraints.peptidase_weight
+        );
         let site = default.assumed.clone().unwrap();
         assert_eq!(
             site.to_string(),
@@ -159,19 +150,20 @@ mod tests {
         let two = of([&trypsin, &trypsin], &DockOptions::default());
         assert!(two.sets.is_empty() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
-            |options| options.peptidase_weight = 0.0,
-            |options| options.effects = "shape,electrostatics".parse().unwrap(),
-            |options| options.block_receptor = Some("A:195".parse().unwrap()),
-            |options| options.active_ligand = Some("B:5".parse().unwrap()),
+            |options| options.restraints.peptidase_weight = 0.0,
+            |options| options.kernel.effects = "shape,electrostatics".parse().unwrap(),
+            |options| options.restraints.block_receptor = Some("A:195".parse().unwrap()),
+            |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
-                options.active_receptor = Some("A:20".parse().unwrap());
-                options.active_weight = 0.0;
+                options.restraints.active_receptor = Some("A:20".parse().unwrap());
+                options.terms.weights.set("active_residues", 0.0);
             },
         ];
         for change in changes {
             assert_eq!(with(change).assumed, None);
         }
-        let elsewhere = with(|options| options.block_receptor = Some("A:20-30".parse().unwrap()));
+        let elsewhere =
+            with(|options| options.restraints.block_receptor = Some("A:20-30".parse().unwrap()));
         assert_eq!(elsewhere.sets, default.sets);
     }
 
@@ -202,10 +194,8 @@ mod tests {
         let antibody = Molecule::new(atoms, Format::Pdb);
         let trypsin = example("receptor_unbound");
         for surface in [AntibodySurface::Cdrs, AntibodySurface::Whole] {
-            let options = DockOptions {
-                antibody: surface,
-                ..DockOptions::default()
-            };
+            let options =
+                DockOptions::default().changed(|options| options.restraints.antibody = surface);
             let scene = Scene::new(&trypsin, &antibody, &options).unwrap();
             let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
             assert!(scene.decisions.iter().any(contact));

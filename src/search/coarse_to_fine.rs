@@ -83,7 +83,7 @@ pub(crate) fn search_finer<T: Real>(
         peaks.extend(spaced(
             group,
             plan.per_rotation,
-            plan.engine.spacing,
+            plan.engine.spacing(),
             position,
         ));
     }

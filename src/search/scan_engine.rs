@@ -43,8 +43,8 @@ impl<T: Real> ScanEngine<T> {
     pub fn grid_pose(&self, plan: &SearchPlan, peak: &Peak) -> Pose {
         let (rotation, half_turn) = plan.rotations.rotation(peak.rotation as usize);
         let position = self.cpu.position_after(half_turn, peak.voxel as usize);
-        let place = plan.engine.receptor_center + position;
-        Pose::about(rotation, plan.engine.ligand_center, place)
+        let place = plan.engine.receptor_center() + position;
+        Pose::about(rotation, plan.engine.ligand_center(), place)
     }
 }
 

@@ -32,26 +32,18 @@ const RADII: [f64; 7] = [1.4, 1.5, 1.6, 1.65, 1.7, 1.8, 1.9];
 /// # Errors
 /// [`SearchError`], which would be a fault of this program.
 pub fn calibrate(threads: usize, progress: &dyn Progress) -> Result<CostModel, SearchError> {
-    let base = DockOptions {
-        rotations: 480,
-        poses: 400,
-        threads,
-        ..DockOptions::default()
-    };
+    let base = DockOptions::default().changed(|options| {
+        options.search.rotations = 480;
+        options.search.poses = 400;
+        options.machine.threads = threads.into();
+    });
     let settings = [
-        DockOptions {
-            refine: Some(100),
-            ..base.clone()
-        },
-        DockOptions {
-            tolerance: 0.1,
-            ..base.clone()
-        },
-        DockOptions {
-            spacing: Some(1.6),
-            rotations: 240,
-            ..base
-        },
+        base.changed(|options| options.search.refine = Some(100)),
+        base.changed(|options| options.kernel.tolerance = 0.1),
+        base.changed(|options| {
+            options.kernel.spacing = Some(1.6);
+            options.search.rotations = 240;
+        }),
     ];
     // Memory is touched and the processor awake after one run.
     run(&settings[1], progress)?;
@@ -138,11 +130,11 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     let [receptor, ligand] = BODIES.map(body);
     let (receptor, ligand) = (receptor?, ligand?);
     let terms = vec![
-        electrostatics::term(&receptor, &ligand, options.electrostatics_weight),
+        electrostatics::term(&receptor, &ligand, options.terms.electrostatics_weight),
         contact::term(
             &receptor,
             &ligand,
-            options.contact_weight,
+            options.terms.contact_weight,
             &contact::Potential::default(),
         ),
     ];
@@ -285,10 +277,8 @@ mod tests {
     #[test]
     fn no_rung_costs_more_than_a_finer_one() {
         let seconds = LADDER.map(|rung| {
-            let mut options = DockOptions {
-                rotations: 4,
-                ..DockOptions::default()
-            };
+            let mut options =
+                DockOptions::default().changed(|options| options.search.rotations = 4);
             rung.apply(&mut options);
             let plan = plan_scene(scene(&options).unwrap(), &options).unwrap();
             CostModel::BUILT_IN.seconds(&Workload::of(&plan), 3600, 1)

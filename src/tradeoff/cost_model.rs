@@ -202,27 +202,28 @@ impl Workload {
             probed += 1;
         }
         let on = |effect: Effect| f64::from(u8::from(plan.is_on(effect)));
-        let poses = options.poses as f64;
+        let poses = options.search.poses as f64;
         Self {
             grid: points * points.log2(),
             rank: expected_rank(plan),
-            precision: match options.precision {
+            precision: match options.search.precision {
                 Precision::Single => 1.0,
                 Precision::Double => DOUBLE,
             },
             fine: options
+                .search
                 .fine_rotations
-                .map_or(0.0, |finer| options.fine_share * finer as f64),
+                .map_or(0.0, |finer| options.search.fine_share * finer as f64),
             modes: plan.modes as f64,
             effects: Effect::ALL.into_iter().map(on).sum(),
             pairs: TOUCHING * (ligand.len() as f64).sqrt() * near as f64 / probed.max(1) as f64,
             ligand: ligand.len() as f64,
             poses,
-            per_rotation: options.per_rotation as f64,
-            doubtful: if options.every_pose {
+            per_rotation: options.search.per_rotation as f64,
+            doubtful: if options.ranking.no_cluster {
                 1.0
             } else {
-                DOUBTFUL * options.tolerance
+                DOUBTFUL * options.kernel.tolerance
             },
             rescored: plan.rescoring().time_share() * poses,
             refined: (plan.refined() as f64).min(poses),
@@ -242,7 +243,7 @@ impl Workload {
 /// Fields that a tolerance needs: two of shape, two of electrostatics, three of the contact potential at 1e-2, fewer where more error is
 /// allowed, and where all balls are alike one.
 fn expected_rank(plan: &DockPlan) -> f64 {
-    let tolerance = plan.options.tolerance;
+    let tolerance = plan.options.kernel.tolerance;
     let share = match tolerance {
         tolerance if tolerance >= 0.1 => 0.6,
         tolerance if tolerance >= 0.03 => 0.85,
@@ -315,10 +316,10 @@ impl Rung {
 
     /// Options with this setting.
     pub fn apply(self, options: &mut DockOptions) {
-        options.tolerance = self.tolerance;
-        options.spacing = Some(self.spacing * options.resolution);
+        options.kernel.tolerance = self.tolerance;
+        options.kernel.spacing = Some(self.spacing * options.kernel.resolution);
         if self.precision == Precision::Double {
-            options.precision = Precision::Double;
+            options.search.precision = Precision::Double;
         }
     }
 }
@@ -376,7 +377,7 @@ mod tests {
         let default = DockOptions::default();
         let mut first = default.clone();
         LADDER[0].apply(&mut first);
-        assert_eq!(first.tolerance, default.tolerance);
+        assert_eq!(first.kernel.tolerance, default.kernel.tolerance);
         assert_eq!(Rung::within(1e-9), None);
     }
 }

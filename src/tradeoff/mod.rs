@@ -22,6 +22,6 @@ mod raster;
 pub mod settings;
 pub mod sweep;
 
-pub use measured::{Measured, Refused, Tradeoff};
-pub use settings::{Knob, Setting};
+pub use measured::{Measured, Tradeoff};
+pub use settings::{Parameter, Refused, Setting};
 pub use sweep::{SweepProgress, sweep};

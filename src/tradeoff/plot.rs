@@ -4,7 +4,7 @@ use crate::tradeoff::axis::{Scale, tick_text};
 use crate::tradeoff::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
 use crate::tradeoff::frame::{BLACK, Frame, MARGIN, Side, text};
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
-use crate::tradeoff::settings::Knob;
+use crate::tradeoff::settings::Parameter;
 
 /// Edge lengths of a panel's axes in pixels.
 const AXES: [f64; 2] = [430.0, 380.0];
@@ -14,20 +14,20 @@ const NONE_MISSED: f64 = 0.5;
 const FRONT: Colour = [0x88, 0x88, 0x88];
 
 /// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
-fn colour(knob: Knob) -> Colour {
-    match knob {
-        Knob::Default => [0x00, 0x00, 0x00],
-        Knob::Reference => [0x77, 0x77, 0x77],
-        Knob::Tolerance => [0xd5, 0x5e, 0x00],
-        Knob::Precision => [0x99, 0x99, 0x33],
-        Knob::Spacing => [0xe6, 0x9f, 0x00],
-        Knob::Resolution => [0x00, 0x9e, 0x73],
-        Knob::Rotations => [0x00, 0x72, 0xb2],
-        Knob::CoarseToFine => [0x33, 0x22, 0x88],
-        Knob::PerRotation => [0x56, 0xb4, 0xe9],
-        Knob::Refine => [0xaa, 0x33, 0x77],
-        Knob::SampleGrid => [0x8b, 0x5a, 0x2b],
-        Knob::Combination => [0xcc, 0x33, 0x11],
+fn colour(parameter: Parameter) -> Colour {
+    match parameter {
+        Parameter::Default => [0x00, 0x00, 0x00],
+        Parameter::Reference => [0x77, 0x77, 0x77],
+        Parameter::Option("tolerance") => [0xd5, 0x5e, 0x00],
+        Parameter::Option("spacing") => [0xe6, 0x9f, 0x00],
+        Parameter::Option("resolution") => [0x00, 0x9e, 0x73],
+        Parameter::Option("rotations") => [0x00, 0x72, 0xb2],
+        Parameter::Option("fine_rotations") => [0x33, 0x22, 0x88],
+        Parameter::Option("per_rotation") => [0x56, 0xb4, 0xe9],
+        Parameter::Option("refine") => [0xaa, 0x33, 0x77],
+        Parameter::Option("sample_grid") => [0x8b, 0x5a, 0x2b],
+        Parameter::Option(_) => [0x99, 0x99, 0x33],
+        Parameter::Combination => [0xcc, 0x33, 0x11],
     }
 }
 
@@ -61,7 +61,7 @@ pub fn plot(tradeoff: &Tradeoff) -> Drawing {
         .collect::<Vec<_>>()
     };
     let missed = |run: &Measured| {
-        let counted = run.setting.knob != Knob::Reference;
+        let counted = run.setting.parameter != Parameter::Reference;
         counted.then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
     };
     let mut panels = vec![
@@ -104,17 +104,17 @@ pub fn plot(tradeoff: &Tradeoff) -> Drawing {
     }
 }
 
-/// One colour a knob, and what filled discs mean, on as many lines as it takes; the height below them.
+/// One colour a parameter, and what filled discs mean, on as many lines as it takes; the height below them.
 fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 {
-    let mut knobs: Vec<Knob> = Vec::new();
+    let mut parameters: Vec<Parameter> = Vec::new();
     for run in &tradeoff.measured {
-        if !knobs.contains(&run.setting.knob) {
-            knobs.push(run.setting.knob);
+        if !parameters.contains(&run.setting.parameter) {
+            parameters.push(run.setting.parameter);
         }
     }
-    let entries = knobs
+    let entries = parameters
         .iter()
-        .map(|&knob| (colour(knob), false, knob.name()))
+        .map(|&parameter| (colour(parameter), false, parameter.name()))
         .chain([(FRONT, true, "filled: nothing is better in less time")]);
     let (mut x, mut y) = (MARGIN[0], top + 4.0);
     for (colour, filled, name) in entries {
@@ -182,7 +182,7 @@ impl Panel<'_> {
             marks.push(Mark::Disc {
                 at: place(point),
                 radius: 5.0,
-                colour: colour(point.run.setting.knob),
+                colour: colour(point.run.setting.parameter),
                 filled: point.front,
             });
         }
@@ -199,7 +199,11 @@ impl Panel<'_> {
             .map(|&[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0])
             .collect();
         let important = |point: &Point| {
-            point.front || matches!(point.run.setting.knob, Knob::Default | Knob::Reference)
+            point.front
+                || matches!(
+                    point.run.setting.parameter,
+                    Parameter::Default | Parameter::Reference
+                )
         };
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         order.sort_by_key(|&index| !important(&self.points[index]));
@@ -239,7 +243,7 @@ impl Panel<'_> {
             });
             if let Some((at, anchor, area)) = free {
                 taken.push(area);
-                let colour = colour(point.run.setting.knob);
+                let colour = colour(point.run.setting.parameter);
                 marks.push(text(at, anchor, colour, name));
             }
         }

@@ -16,16 +16,14 @@ fn named_residues_are_kept_free_or_touched() {
     let number = |value: &Value| value.as_f64().unwrap();
     // Trypsin's loops about its active site, where the inhibitor goes: what they cost an interface if it touches them.
     let sites = "A:57,A:95-99,A:189-195,A:214-220";
-    let options = DockOptions {
-        block_receptor: Some(sites.parse().unwrap()),
-        ..DockOptions::default()
-    };
+    let options = DockOptions::default()
+        .changed(|options| options.restraints.block_receptor = Some(sites.parse().unwrap()));
     let [own, other] = [&receptor, &ligand].map(|path| {
         let input = InputSpec::parse(path).unwrap();
         read(&input, &ReadOptions::default()).unwrap()
     });
     let scene = Scene::new(&own, &other, &options).unwrap();
-    let (engine, terms) = (options.engine(), scene.terms.clone());
+    let (engine, terms) = (options.kernel.engine(), scene.terms.clone());
     let plan = Plan::with_effects(
         &scene.receptor,
         &scene.ligand,
@@ -34,9 +32,13 @@ fn named_residues_are_kept_free_or_touched() {
         terms,
     )
     .unwrap();
-    let scorer =
-        ExactScorer::with_effects(&plan.kernel, &scene.receptor, &scene.ligand, &plan.effects)
-            .unwrap();
+    let scorer = ExactScorer::with_effects(
+        plan.kernel(),
+        &scene.receptor,
+        &scene.ligand,
+        plan.effects(),
+    )
+    .unwrap();
     let pose = |row: &Value| {
         let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(&row[part]));
         Pose::from_parts(
@@ -58,11 +60,10 @@ fn named_residues_are_kept_free_or_touched() {
 
     // Fourteen residues attract, which the inhibitor cannot all reach.
     let drawn = rows(&["--active-receptor", sites, "--active-weight", "4000"]);
-    let attracting = DockOptions {
-        active_receptor: options.block_receptor.clone(),
-        active_weight: 1.0,
-        ..DockOptions::default()
-    };
+    let attracting = DockOptions::default().changed(|attracting| {
+        attracting.restraints.active_receptor = options.restraints.block_receptor.clone();
+        attracting.terms.weights.set("active_residues", 1.0);
+    });
     let scene = Scene::new(&own, &other, &attracting).unwrap();
     let rescorer = scene.rescorer(&attracting).unwrap();
     let met = |row: &Value| {

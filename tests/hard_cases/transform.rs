@@ -1,7 +1,7 @@
 //! Hard cases of the transforms: tiny and huge frequencies, bumps from a point to a sharp ball, sharply cut lens volumes, nothing to
 //! transform.
 //!
-//! Numbers of another program are printed by scripts/hard_case_reference.py (mpmath, 34 digits).
+//! Numbers of another program are printed by scripts/reference/hard_case_reference.py (mpmath, 34 digits).
 
 // The reference numbers stand as mpmath prints them.
 #![allow(clippy::excessive_precision, clippy::approx_constant)]
@@ -11,7 +11,7 @@ use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_scoring::kernel::radial_transform::RadialTransform;
 use knotdock_scoring::kernel::{Band, Bump, KernelOptions};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use std::f64::consts::PI;

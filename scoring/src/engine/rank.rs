@@ -31,7 +31,7 @@ pub fn choose_rank<T: Real>(
     ligand: &Knots,
     set: &[UnitQuaternion<f64>],
 ) -> ChosenRank<T> {
-    let factors = spectra.factor(&plan.modes);
+    let factors = spectra.factor(plan.modes());
     // Singular values below rounding carry nothing.
     let rounding = T::epsilon().wide();
     let largest = factors.singular.first().copied().unwrap_or(0.0);
@@ -43,7 +43,7 @@ pub fn choose_rank<T: Real>(
         return chosen;
     }
     let probes = Probes::new(set, &chosen.engine);
-    let limit = plan.options.tolerance / 3.0;
+    let limit = plan.options().tolerance / 3.0;
     // The rank of `chosen` serves, and no rank below `least` does.
     let mut least = 1;
     while least < chosen.engine.rank() {

@@ -21,6 +21,21 @@ pub struct KernelOptions {
     pub trim: Trim,
 }
 
+impl Default for KernelOptions {
+    /// The options that `knotdock dock` uses: lambda, r0 and the resolution were chosen on training pairs
+    /// (docs/defaults.md), alpha is B&I's.
+    fn default() -> Self {
+        Self {
+            lambda: 9.0,
+            offset: 2.2,
+            alpha: 2.0,
+            resolution: 4.5,
+            pass_length: 9.0,
+            trim: Trim::FlatTop,
+        }
+    }
+}
+
 /// Why a kernel cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum KernelError {

@@ -100,11 +100,11 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
 
 /// What is wrong with a run's scores, if its fast path was farther from the exact sum than was asked for.
 pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
-    let (worst, tolerance) = (outcome.error.worst, plan.options.tolerance);
+    let (worst, tolerance) = (outcome.error.worst, plan.options.kernel.tolerance);
     if !worst.is_finite() {
         return Some(format!(
             "the best pose scores nothing, so errors have no scale: nothing fits at a resolution of {} {unit} on a grid of {:.4} {unit}",
-            plan.options.resolution,
+            plan.options.kernel.resolution,
             plan.spacing,
             unit = plan.unit
         ));
@@ -210,7 +210,7 @@ pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<Stri
         parts.push(format!(
             "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} capped{}",
             labels.net_charge,
-            plan.options.ph,
+            plan.options.terms.ph,
             counted(labels.gaps, "gap"),
             metal_bound(labels)
         ));

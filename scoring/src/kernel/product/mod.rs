@@ -38,7 +38,7 @@ use super::low_pass::smooth_step_down;
 use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
 use super::table::Table;
-use crate::lifted_axis::Quantity;
+use crate::quantity::Quantity;
 use knotdock_structures::numeric::Bump;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
