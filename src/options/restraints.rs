@@ -5,6 +5,7 @@ use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 use super::values::number;
+use crate::priors::peptidase;
 
 /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,11 +35,10 @@ pub struct RestraintOptions {
     /// Active residues of the ligand, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub active_ligand: Option<ResidueSelection>,
-    // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
     /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues that does: score.
     /// Peptidases are detected from their sequence, and this counts where the contact effect is on, no residue is active and the
     /// other is neither peptidase nor antibody; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 500.0)]
+    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
     pub peptidase_weight: f64,
 }
 
