@@ -30,6 +30,7 @@ mod ranking;
 mod restraints;
 mod sampling;
 mod search;
+pub mod term_weights;
 mod terms;
 pub mod text;
 pub mod values;
@@ -44,6 +45,7 @@ pub use ranking::RankingOptions;
 pub use restraints::{AntibodySurface, RestraintOptions};
 pub use sampling::{MAX_PER_AXIS, SampleGrid, SampleWeights, SamplingOptions};
 pub use search::{AXES, AXES_ACROSS, EngineChoice, Precision, REFINED_BY_SHAPE, SearchOptions};
+pub use term_weights::TermWeights;
 pub use terms::TermOptions;
 
 use std::sync::OnceLock;

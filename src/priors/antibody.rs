@@ -139,6 +139,7 @@ impl Prior for AntibodyPrior {
             residues: molecule.atoms_by_residue(&antibody.paratope),
             weight: WEIGHT,
             reason: antibody.reason(),
+            record: json!(antibody.domains),
         };
         Antibody::of(molecule).map(site).into_iter().collect()
     }

@@ -36,6 +36,14 @@ pub struct Site {
     pub weight: f64,
     /// What the molecule is and where it binds, in words that follow "the receptor is".
     pub reason: String,
+    /// Entry of `run.json`.
+    pub record: serde_json::Value,
+}
+
+/// The sites of a molecule that all priors find.
+pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
+    let sites = PRIORS.iter().map(|prior| prior.sites(molecule));
+    sites.flatten().collect()
 }
 
 /// What `knotdock inspect` reports of a molecule.

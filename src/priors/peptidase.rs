@@ -21,7 +21,7 @@ use super::{Findings, Prior, Site, SiteRole};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md, "Active
 /// sites").
-const WEIGHT: f64 = 500.0;
+pub const WEIGHT: f64 = 500.0;
 
 /// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
 const TOGETHER: f64 = 12.0;
@@ -94,6 +94,7 @@ impl Prior for PeptidasePrior {
         let site = |site: ActiveSite| Site {
             role: SiteRole::Favoured,
             reason: format!("a peptidase, {}", site.in_words()),
+            record: json!(site),
             residues: site.atoms,
             weight: WEIGHT,
         };

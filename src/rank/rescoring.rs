@@ -3,7 +3,7 @@
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
-use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermDefinition, TermInputs};
+use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;
 
 /// Inputs and weights of the pose terms between two bodies.
@@ -22,10 +22,7 @@ impl<'a> Rescoring<'a> {
         regions: &'a FlexibleRegions,
         options: &'a DockOptions,
     ) -> Self {
-        let weight = |term: &TermDefinition| match term.id {
-            "active_residues" => active.weight,
-            id => options.terms.weight(id),
-        };
+        let weights = &options.terms.weights;
         Self {
             inputs: TermInputs {
                 bodies,
@@ -38,7 +35,7 @@ impl<'a> Rescoring<'a> {
                     .map(|side| side.stretches.as_slice()),
                 termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
             },
-            weights: std::array::from_fn(|index| weight(&POSE_TERMS[index])),
+            weights: *weights.clone().with("active_residues", active.weight).all(),
         }
     }
 
