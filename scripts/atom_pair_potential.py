@@ -4,7 +4,7 @@
     python3 scripts/atom_pair_potential.py DIR [--split fit] [--without-fold K/N] [--exclude ID,...] [-o FILE]
 
 DIR is a folder as `scripts/benchmark.py` reads it; the unbound proteins of the split's pairs, each by itself, give the statistics. Kinds
-are the atoms of each amino acid by themselves, those alike by symmetry as one (structures/src/molecule/contact_types.csv). Counted are pairs of
+are the atoms of each amino acid by themselves, those alike by symmetry as one (structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of
 atoms whose residues stand at least --separation apart in the file, in shells of 0.5 A about the table's distances, the first one down to 0. In
 each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT: n_ab the pairs found, m_ab those of
 a reference state in which kinds are strewn by chance over as many pairs, p_a p_b n, c a pseudocount. Both counts take a pair from both sides.

@@ -37,7 +37,7 @@ import numpy as np
 from whole_file import write
 
 ROOT = Path(__file__).resolve().parent.parent
-TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
+TYPES_FILE = ROOT / "structures/src/molecule/chemistry/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
 TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
 RANGES = {"near": (3.5, 4.5), "middle": (5.0, 6.0), "far": (7.0, 8.0)}  # ends in A, as in scoring/src/rescoring/potential.rs
