@@ -142,6 +142,7 @@ impl Shells {
                 let root = merged.root(place);
                 if root < place {
                     let first = shell_of.get(&labelled.labels[root].0).copied();
+                    debug_assert!(first.is_some(), "the first cell of a body comes first");
                     shell_of.insert(cell, first.unwrap_or_default());
                     continue;
                 }
@@ -163,7 +164,9 @@ impl Shells {
             };
             for (cell, faces_outward) in [(front, false), (behind, true)] {
                 if let Label::Body { inward, both_ways } = label(cell) {
-                    let shell = shell_of.get(&cell).copied().unwrap_or_default();
+                    let shell = shell_of.get(&cell).copied();
+                    debug_assert!(shell.is_some(), "every cell of a body has a shell");
+                    let shell = shell.unwrap_or_default();
                     needs.push((shell, faces_outward != inward));
                     if both_ways {
                         needs.push((shell + 1, faces_outward == inward));

@@ -195,7 +195,12 @@ fn drop_triangles(mesh: &mut Mesh, dropped: &[bool]) {
     }
     mesh.positions = kept;
     for corner in mesh.triangles.iter_mut().flatten() {
-        *corner = names[*corner as usize].unwrap_or_default();
+        let name = names[*corner as usize];
+        debug_assert!(
+            name.is_some(),
+            "every corner of a triangle is a vertex that is kept"
+        );
+        *corner = name.unwrap_or_default();
     }
 }
 

@@ -25,7 +25,11 @@ pub(crate) struct AtomTypes {
 /// Residue, atom, contact type and kind of each row.
 fn rows() -> impl Iterator<Item = [&'static str; 4]> {
     let lines = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines.filter_map(|line| line.split(',').collect::<Vec<_>>().try_into().ok())
+    lines.map(|line| {
+        // The table is part of the program, and tests read it.
+        let fields = line.split(',').collect::<Vec<_>>().try_into();
+        fields.unwrap_or_else(|_| unreachable!("contact_types.csv: not four fields in `{line}`"))
+    })
 }
 
 static KINDS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
@@ -40,16 +44,18 @@ static KINDS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
 
 static TYPES: LazyLock<HashMap<(&'static str, &'static str), AtomTypes>> = LazyLock::new(|| {
     let place = |names: &[&str], name: &str| {
-        let place = names.iter().position(|known| *known == name)?;
-        u8::try_from(place).ok()
+        let place = names.iter().position(|known| *known == name);
+        place
+            .and_then(|place| u8::try_from(place).ok())
+            .unwrap_or_else(|| unreachable!("contact_types.csv: no type or kind `{name}`"))
     };
     rows()
-        .filter_map(|[residue, atom, contact, kind]| {
+        .map(|[residue, atom, contact, kind]| {
             let types = AtomTypes {
-                contact: place(&CONTACT_TYPES, contact)?,
-                kind: place(&KINDS, kind)?,
+                contact: place(&CONTACT_TYPES, contact),
+                kind: place(&KINDS, kind),
             };
-            Some(((residue, atom), types))
+            ((residue, atom), types)
         })
         .collect()
 });

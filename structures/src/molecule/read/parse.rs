@@ -1,10 +1,14 @@
-//! pdbtbx behind its sieve: text in, atoms out, and no panic past this file.
+//! Atoms from filtered text, by pdbtbx.
+//!
+//! Names, record kinds (ATOM or HETATM) and, of PDB files, coordinates, occupancies and temperature factors are taken from
+//! pdbtbx. All else it changes, as the table of the record filter lists, and comes from the [`AtomRecord`] of the same serial number.
+//!
+//! pdbtbx panics on much that files hold. The record filter gives it nothing of that kind, so a panic here is a defect of the
+//! filter: it becomes [`ReadError::Parser`], which asks to report the file. Panic hooks belong to the program and stay as they are.
 
-use std::cell::Cell;
 use std::io::BufReader;
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Once;
 
 use pdbtbx::{ContainsAtomConformer, Context, PDB, PDBError, ReadOptions, StrictnessLevel};
 
@@ -80,24 +84,6 @@ struct Refusal {
     what: String,
 }
 
-thread_local! {
-    /// Whether panics on this thread are being caught and turned into errors.
-    static QUIET: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Keeps the messages of panics that we catch off the user's terminal; all others go to the hook that was there before.
-fn silence_caught_panics() {
-    static INSTALLED: Once = Once::new();
-    INSTALLED.call_once(|| {
-        let previous = take_hook();
-        set_hook(Box::new(move |info| {
-            if !QUIET.try_with(Cell::get).unwrap_or(false) {
-                previous(info);
-            }
-        }));
-    });
-}
-
 fn read_guarded(text: &str, format: Format) -> Result<PDB, Refusal> {
     guarded(|| {
         let mut options = ReadOptions::new();
@@ -116,11 +102,7 @@ fn read_guarded(text: &str, format: Format) -> Result<PDB, Refusal> {
 
 /// Runs what may panic; a panic becomes a refusal.
 fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Refusal> {
-    silence_caught_panics();
-    QUIET.with(|quiet| quiet.set(true));
-    let result = catch_unwind(AssertUnwindSafe(work));
-    QUIET.with(|quiet| quiet.set(false));
-    result.map_err(|payload| {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let said = payload
             .downcast_ref::<&str>()
             .map(|text| (*text).to_string())
@@ -165,13 +147,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_becomes_a_refusal_and_later_panics_are_heard_again() {
+    fn a_panic_becomes_a_refusal() {
         let refusal = guarded(|| panic!("boom {}", 1)).map(|(): ()| ()).err();
         assert_eq!(
             refusal.map(|refusal| refusal.what).as_deref(),
             Some("it broke down (boom 1)")
         );
-        assert!(!QUIET.with(Cell::get));
     }
 
     #[test]

@@ -4,7 +4,6 @@
 //! format; atom and residue names are `label_atom_id` and `label_comp_id`.
 
 use std::collections::HashMap;
-use std::fmt::Write;
 use std::path::Path;
 
 use crate::molecule::chemistry::elements::NameColumn;
@@ -258,7 +257,9 @@ impl<'a> Row<'_, 'a> {
             _ => "ATOM",
         };
 
-        let _ = write!(sieved.text, "{group} {} ", sieved.carried.len());
+        sieved
+            .text
+            .push_str(&format!("{group} {} ", sieved.carried.len()));
         self.quote(&mut sieved.text, "label_atom_id", name)?;
         let shown_alternate = alternate.unwrap_or(NO_ALTERNATE).to_string();
         self.quote(&mut sieved.text, "label_alt_id", &shown_alternate)?;
@@ -267,7 +268,7 @@ impl<'a> Row<'_, 'a> {
         // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What it takes for one residue
         // is of no matter: the number travels past it.
         let shown_number = residue_number.rem_euclid(SHOWN_NUMBERS);
-        let _ = write!(sieved.text, "{shown_number} ");
+        sieved.text.push_str(&format!("{shown_number} "));
         match insertion {
             Some(code) => self.quote(&mut sieved.text, "pdbx_PDB_ins_code", &code.to_string())?,
             None => sieved.text.push_str("? "),
@@ -316,7 +317,10 @@ impl<'a> Row<'_, 'a> {
             return Err(self.error(item, value, "plain ASCII text"));
         }
         let value = if value.is_empty() { "_" } else { value };
-        let _ = write!(text, "{quote}{value}{quote} ");
+        text.push(quote);
+        text.push_str(value);
+        text.push(quote);
+        text.push(' ');
         Ok(())
     }
 }

@@ -3,7 +3,6 @@
 //! Columns in comments are 1-based, as in the format's description.
 
 use std::borrow::Cow;
-use std::fmt::Write;
 use std::path::Path;
 
 use crate::molecule::chemistry::elements::NameColumn;
@@ -259,9 +258,8 @@ fn atom(
         .unwrap_or(0);
     let [x, y, z] = positions;
     // The element travels past pdbtbx; carbon is what it finds fastest.
-    let _ = writeln!(
-        sieved.text,
-        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  ",
+    sieved.text.push_str(&format!(
+        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  \n",
         if record.starts_with("HETATM") {
             "HETATM"
         } else {
@@ -270,7 +268,7 @@ fn atom(
         alternate.unwrap_or(NO_ALTERNATE),
         residue_name,
         "",
-    );
+    ));
     sieved.carried.push(AtomRecord {
         line,
         model,
