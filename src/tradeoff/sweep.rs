@@ -209,7 +209,11 @@ fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, SearchError
 fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
     let poses = outcome.poses.par_iter();
     let qualities: Vec<_> = poses.map(|row| evaluator.evaluate(&row.pose)).collect();
-    let met = |criterion: Criterion| qualities.iter().map(move |quality| criterion.is_met(quality));
+    let met = |criterion: Criterion| {
+        qualities
+            .iter()
+            .map(move |quality| criterion.is_met(quality))
+    };
     let rank = |criterion| met(criterion).position(|met| met).map(|place| place + 1);
     let count = |criterion| met(criterion).take(FIRST).filter(|met| *met).count();
     NativeRanks {
