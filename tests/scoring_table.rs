@@ -3,6 +3,7 @@
 //! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose among its case's;
 //! `search.csv` the first poses of a small search. These are regression tables, our own output of the day they were blessed; what
 //! can be known otherwise is tested as such below: closed forms, signs, sums.
+//! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every pose in Python.
 //!
 //! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.

@@ -30,9 +30,9 @@
 mod alignment;
 mod contacts;
 mod copies;
-mod criterion;
 #[cfg(test)]
 mod copy_tests;
+mod criterion;
 mod dockq;
 mod error;
 mod matching;
