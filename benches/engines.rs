@@ -8,14 +8,14 @@
 mod example;
 
 use knotdock::options::DockOptions;
-use knotdock::search::rotations::rotation_set;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
 };
 use knotdock_scoring::kernel::{Band, ProductScorer};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::so3::rotation_set;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ligand,
         rotations: rotation_set(ROTATIONS),
     };
-    let base = DockOptions::default().engine();
+    let base = DockOptions::default().kernel.engine();
     for band in [Band::Whole, Band::LowPass] {
         println!(
             "product kernel, {}:",
@@ -147,7 +147,7 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
             ..base
         };
         let plan = Arc::new(Plan::product(&pair.receptor, &pair.ligand, options, band)?);
-        let PairKernel::Product(kernel) = &plan.pair else {
+        let PairKernel::Product(kernel) = plan.pair() else {
             continue;
         };
         let scorer = match &mut scorer {
@@ -165,15 +165,15 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
                     measured.time(|| engine.correlate(rotation, &mut work));
                 }
                 let position = |voxel| engine.position(voxel);
-                let centers = (plan.receptor_center, plan.ligand_center);
+                let centers = (plan.receptor_center(), plan.ligand_center());
                 measured.compare(&work.grid, position, rotation, centers, scorer);
             }
             let name = format!(
                 "h = {} Å, {:?}, fine {:?} x {}, rank {rank}",
-                plan.spacing,
+                plan.spacing(),
                 plan.size(),
-                plan.fine,
-                plan.width
+                plan.fine(),
+                plan.width()
             );
             let row = measured.row(name);
             println!(

@@ -8,7 +8,7 @@ mod example;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -20,15 +20,15 @@ const POSES: usize = 201;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let prepared = Instant::now();
-    let scorer = ExactScorer::new(&plan.kernel, &receptor, &ligand)?;
+    let scorer = ExactScorer::new(plan.kernel(), &receptor, &ligand)?;
     println!(
         "{} x {} knots, reach {:.1} Å, prepared in {:.1} ms",
         receptor.len(),
         ligand.len(),
-        plan.kernel.reach(),
+        plan.kernel().reach(),
         1e3 * prepared.elapsed().as_secs_f64()
     );
     let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
@@ -37,13 +37,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let brute = Brute::new(&plan, &receptor, &ligand);
     let mut times: [Vec<f64>; 4] = Default::default();
     let (mut pairs, mut best, mut worst) = (0, f64::MIN_POSITIVE, 0.0f64);
-    for rotation in knotdock::search::rotations::rotation_set(POSES) {
+    for rotation in knotdock_scoring::so3::rotation_set(POSES) {
         engine.correlate(&rotation, &mut work);
         let peak = (0..work.grid.len())
             .max_by(|&a, &b| work.grid[a].total_cmp(&work.grid[b]))
             .unwrap_or(0);
-        let place = plan.receptor_center + engine.position(peak);
-        let pose = Pose::about(rotation, plan.ligand_center, place);
+        let place = plan.receptor_center() + engine.position(peak);
+        let pose = Pose::about(rotation, plan.ligand_center(), place);
         let mut timed = |index: usize, run: &mut dyn FnMut() -> f64| {
             let start = Instant::now();
             let score = run();
@@ -104,13 +104,13 @@ impl Brute {
                 .map(|s| {
                     receptor_radii
                         .iter()
-                        .map(|r| plan.kernel.distance_table(r + s))
+                        .map(|r| plan.kernel().distance_table(r + s))
                         .collect()
                 })
                 .collect(),
             receptor: placed(receptor, receptor_class),
             ligand: placed(ligand, ligand_class),
-            reach: plan.kernel.reach(),
+            reach: plan.kernel().reach(),
         }
     }
 

@@ -5,12 +5,12 @@
 
 mod example;
 
-use knotdock::search::peaks::find_peaks;
-use knotdock::search::rotations::rotation_set;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::peaks::find_peaks;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::so3::rotation_set;
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     };
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     let turns: Vec<Turn> = rotation_set(4 * TURNS)

@@ -8,7 +8,7 @@ mod example;
 
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use num_complex::Complex32;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
@@ -20,14 +20,14 @@ const ROTATIONS: usize = 101;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     for rank in [2, 3] {
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
         let mut work = engine.workspace();
         let mut stages: [Vec<f64>; 6] = Default::default();
-        for rotation in knotdock::search::rotations::rotation_set(ROTATIONS) {
+        for rotation in knotdock_scoring::so3::rotation_set(ROTATIONS) {
             let seconds = engine.stage_seconds(&rotation, &mut work);
             for (times, value) in stages.iter_mut().zip(seconds) {
                 times.push(value);
@@ -37,14 +37,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             stages[5].push((spread + planes + columns) / 4.0 + product + rows);
         }
         let [spread, planes, columns, product, rows, whole] = stages.map(median);
-        let forward = stock(plan.fine);
+        let forward = stock(plan.fine());
         let inverse = stock(plan.size());
         let bare = rank as f64 * forward + inverse;
         println!(
             "rank {rank}: grid {:?}, fine grid {:?}, {} modes",
             plan.size(),
-            plan.fine,
-            plan.modes.count
+            plan.fine(),
+            plan.modes().count
         );
         println!(
             "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: product with inverse x and y {:.3}, \

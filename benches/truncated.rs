@@ -8,7 +8,7 @@ mod example;
 
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, total};
 use knotdock_scoring::truncated::TruncatedCorrelation;
@@ -18,7 +18,7 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let mut options = knotdock::options::DockOptions::default().engine();
+    let mut options = knotdock::options::DockOptions::default().kernel.engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;
     let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);
@@ -26,29 +26,29 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} receptor and {} ligand knots, {} modes in all; medians",
         receptor.len(),
         ligand.len(),
-        total(&plan.modes)
+        total(plan.modes())
     );
     println!(
         "{:>7} {:>24} {:>24} {:>24}",
         "modes", "translation, µs (ns/mode)", "prepare, µs (ns/mode)", "rotation, µs (ns/mode)"
     );
     let mut most = 256;
-    while most <= 65_536 && most <= total(&plan.modes) {
-        let selection = Selection::low_frequency(&plan.modes, most);
+    while most <= 65_536 && most <= total(plan.modes()) {
+        let selection = Selection::low_frequency(plan.modes(), most);
         let few = TruncatedCorrelation::new(&plan, &folded, &ligand, &selection);
         let mut work = few.workspace();
         let rotation = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
         let prepared = few.prepare(&rotation, &mut work);
         let place = |i: usize| {
             let t = i as f64 * 0.01;
-            plan.receptor_center + Vector3::new(20.0 - t, 5.0 + t, 1.0)
+            plan.receptor_center() + Vector3::new(20.0 - t, 5.0 + t, 1.0)
         };
         let pose = |i: usize| {
             let turn = UnitQuaternion::from_euler_angles(0.3 + 0.001 * i as f64, -0.4, 1.2);
-            Pose::about(turn, plan.ligand_center, place(i))
+            Pose::about(turn, plan.ligand_center(), place(i))
         };
         let translation = median(2001, |i| {
-            let t = place(i) - rotation * plan.ligand_center;
+            let t = place(i) - rotation * plan.ligand_center();
             prepared.gradient(&t, &mut work).0
         });
         let prepare = median(41, |i| {

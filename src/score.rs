@@ -6,7 +6,7 @@ use crate::error::SearchError;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{ModeOrder, Selection, Tail, total};
 use knotdock_scoring::truncated::TruncatedCorrelation;
@@ -139,15 +139,15 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         scene.terms.clone(),
     )?);
     let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
-    let needed = bytes_a_mode * plan.modes.count as u64;
+    let needed = bytes_a_mode * plan.modes().count as u64;
     if let Some(allowed) = options.memory.filter(|&allowed| needed > allowed) {
         return Err(SearchError::Modes {
-            modes: plan.modes.count,
+            modes: plan.modes().count,
             needed,
             allowed,
         });
     }
-    let scorer = ExactScorer::with_effects(&plan.kernel, receptor, ligand, &plan.effects)?;
+    let scorer = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())?;
     let exact = scorer.score(pose);
     let folds = [
         Quantity::Score,
@@ -155,7 +155,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         Quantity::SliceByOffset(1),
         Quantity::SliceByOffset(2),
     ];
-    let all = Selection::all(&plan.modes);
+    let all = Selection::all(plan.modes());
     let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = folds
         .into_par_iter()
         .map(|fold| {
@@ -170,22 +170,22 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
     let mut work = first.workspace();
     let magnitudes = first
         .prepare(&pose.rotation, &mut work)
-        .magnitudes(plan.modes.count);
+        .magnitudes(plan.modes().count);
     let scale = scale(&plan, folded, ligand, pose);
     let limit = LADDER_ERROR * exact.score.abs().max(scale);
-    let modes_total = total(&plan.modes);
+    let modes_total = total(plan.modes());
     let last_asked = STATED_MODES.max(options.modes.unwrap_or(0));
     let mut rows = Vec::new();
     for most in rungs(modes_total, options.modes) {
         let selection = match options.order {
-            ModeOrder::LowFrequency => Selection::low_frequency(&plan.modes, most),
-            ModeOrder::Magnitude => Selection::by_magnitude(&plan.modes, &magnitudes, most),
+            ModeOrder::LowFrequency => Selection::low_frequency(plan.modes(), most),
+            ModeOrder::Magnitude => Selection::by_magnitude(plan.modes(), &magnitudes, most),
         };
         let few = TruncatedCorrelation::new(&plan, folded, ligand, &selection);
         let mut work = few.workspace();
         let prepared = few.prepare(&pose.rotation, &mut work);
         let (value, _) = prepared.gradient(&pose.translation, &mut work);
-        let tail = Tail::of(&plan.modes, &selection, &magnitudes);
+        let tail = Tail::of(plan.modes(), &selection, &magnitudes);
         let error = (value - exact.score).abs();
         rows.push(Rung {
             modes: most,
@@ -212,7 +212,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         torque: gradient.torque.into(),
     };
     let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
-    let weights = plan.options.kernel.slice_weights();
+    let weights = plan.options().kernel.slice_weights();
     Ok(PoseScore {
         exact: exact.score,
         terms: scene
@@ -265,7 +265,7 @@ fn scale(plan: &Arc<Plan>, folded: &ReceptorSpectra<f64>, ligand: &Knots, pose: 
     let engine = CpuEngine::new(Arc::clone(plan), folded, ligand, folded.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);
-    error_scale(work.grid.iter().copied(), plan.options.tolerance)
+    error_scale(work.grid.iter().copied(), plan.options().tolerance)
 }
 
 /// d score / d rho and d slices / d rho by central differences of the exact sum: growing the ligand's radii by h moves every
@@ -283,7 +283,7 @@ fn exact_sensitivity(
         for radius in &mut ligand.radii {
             *radius += by;
         }
-        ExactScorer::new(&plan.kernel, receptor, &ligand).map(|scorer| scorer.score(pose))
+        ExactScorer::new(plan.kernel(), receptor, &ligand).map(|scorer| scorer.score(pose))
     };
     let (more, less) = (grown(h)?, grown(-h)?);
     let slope = |a: f64, b: f64| (a - b) / (2.0 * h);

@@ -236,7 +236,7 @@ fn options_out_of_range() {
 #[test]
 fn a_table_of_kinds_that_is_not_whole() {
     let place = Place::new();
-    let whole = include_str!("../scoring/src/rescoring/atom_pair_potential.csv");
+    let whole = include_str!("../scoring/src/terms/pose/atom_pair_potential.csv");
     let lines: Vec<&str> = whole.lines().take(100).collect();
     place.write("short.csv", &lines.join("\n"));
     let error = place.refused(&[

@@ -35,7 +35,9 @@ fn a_near_native_pose_is_among_the_first_three() {
     let best = told["best"].as_array().unwrap();
     assert_eq!(best.len(), 10);
     assert!(
-        best.iter().take(3).any(|row| row["irmsd"].as_f64().unwrap() <= 2.5),
+        best.iter()
+            .take(3)
+            .any(|row| row["irmsd"].as_f64().unwrap() <= 2.5),
         "{best:?}"
     );
 
@@ -52,10 +54,10 @@ fn a_near_native_pose_is_among_the_first_three() {
         terms,
         ..
     } = Scene::new(&receptor, &ligand, &options).unwrap();
-    let engine = options.engine();
+    let engine = options.kernel.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
-        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
+        ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
     let path = run.join("poses.csv");
     let table = PoseTable::read(&path).unwrap();
     let mut scores = csv::Reader::from_path(&path).unwrap();

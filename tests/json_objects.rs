@@ -97,7 +97,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
     );
     let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
     assert!(columns.lines().next().unwrap().ends_with(
-        "cluster_score,fine_contact,pose_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends,irmsd,lrmsd,fnat,dockq,capri"
+        "cluster_score,pose_score,z_score,restraint,other_copies,fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,irmsd,lrmsd,fnat,dockq,capri"
     ));
 }
 

@@ -18,9 +18,8 @@ use knotdock::progress::Progress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::Rescored;
-use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues, Workspace};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
 /// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other processors round
@@ -36,23 +35,8 @@ const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
 /// The helices once more, at the same poses, with residues of both sides blocked.
 const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 15] = [
-    "score",
-    "shape",
-    "electrostatics",
-    "contact",
-    "slice_0",
-    "slice_r0",
-    "slice_2r0",
-    "unfiltered",
-    "fine_contact",
-    "atom_pair",
-    "relaxed",
-    "restraint",
-    "attraction",
-    "missing",
-    "chain_ends",
-];
+/// Columns of `scores.csv` between the effects and the pose terms.
+const SLICES: [&str; 4] = ["slice_0", "slice_r0", "slice_2r0", "unfiltered"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table")
@@ -61,11 +45,10 @@ fn folder() -> PathBuf {
 /// The options that a case is scored and searched with: the defaults but for what is blocked.
 fn options(case: &str) -> DockOptions {
     let blocked = |residues: &str| (case == BLOCKED).then(|| residues.parse().unwrap());
-    DockOptions {
-        block_receptor: blocked("A:1-8"),
-        block_ligand: blocked("A:6"),
-        ..DockOptions::default()
-    }
+    DockOptions::default().changed(|options| {
+        options.restraints.block_receptor = blocked("A:1-8");
+        options.restraints.block_ligand = blocked("A:6");
+    })
 }
 
 fn molecules(case: &str) -> [Molecule; 2] {
@@ -103,11 +86,11 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
     cases
 }
 
-/// Which effects were on, the exact score of each pose, and what rescoring adds.
+/// Which effects were on, and the exact score and pose terms of each pose.
 fn scored(
     case: &str,
     poses: &[(u32, Pose)],
-) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<Rescored>) {
+) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<TermValues>) {
     let options = options(case);
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
@@ -127,10 +110,10 @@ fn scored(
         decisions,
         ..
     } = scene;
-    let engine = options.engine();
+    let engine = options.kernel.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
-        ExactScorer::with_effects(&plan.kernel, &receptor, &ligand, &plan.effects).unwrap();
+        ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
     let on = Effect::ALL.map(|effect| decisions.iter().any(|d| d.effect == effect && d.on));
     let scores = poses.iter().map(|(_, pose)| scorer.score(pose)).collect();
     (on, scores, rescored)
@@ -249,9 +232,11 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
 }
 
 fn table_columns() -> Vec<&'static str> {
-    ["case", "pose", "rank"]
+    ["case", "pose", "rank", "score"]
         .into_iter()
-        .chain(COLUMNS)
+        .chain(Effect::ALL.map(Effect::name))
+        .chain(SLICES)
+        .chain(POSE_TERMS.iter().map(|term| term.id))
         .collect()
 }
 
@@ -270,18 +255,11 @@ fn scores_terms_slices_and_ranks_of_poses() {
         {
             let better = ranked.iter().filter(|other| *other > by);
             let term = |effect: Effect| on[effect as usize].then_some(exact.terms[effect as usize]);
-            let mut values = vec![
-                Some(1.0 + better.count() as f64),
-                Some(exact.score),
-                term(Effect::Shape),
-                term(Effect::Electrostatics),
-                term(Effect::Contact),
-            ];
+            let mut values = vec![Some(1.0 + better.count() as f64), Some(exact.score)];
+            values.extend(Effect::ALL.map(term));
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
-            values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
-            values.extend([term(Effect::Restraint), rescored.attraction]);
-            values.extend([rescored.missing, rescored.chain_ends]);
+            values.extend(rescored.iter().map(|(_, value)| value));
             found.insert((case.clone(), *number), values);
         }
     }
@@ -304,12 +282,11 @@ fn first_poses_of_small_searches() {
     let mut found = Table::new();
     for case in SEARCHES {
         let [receptor, ligand] = molecules(case);
-        let options = DockOptions {
-            rotations: ROTATIONS,
-            every_pose: true,
-            threads: 1,
-            ..options(case)
-        };
+        let options = options(case).changed(|options| {
+            options.search.rotations = ROTATIONS;
+            options.ranking.no_cluster = true;
+            options.machine.threads = 1.into();
+        });
         let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
         let points = knotdock::dock::run::molecule_points(&ligand);
         let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
@@ -344,7 +321,7 @@ fn two_atoms_score_the_closed_form() {
         if x >= 1.0 {
             0.0
         } else {
-            (1.0 / (1.0 - x.powf(-options.alpha))).exp()
+            (1.0 / (1.0 - x.powf(-options.kernel.alpha))).exp()
         }
     };
     let (_, poses) = poses()
@@ -357,8 +334,8 @@ fn two_atoms_score_the_closed_form() {
         // Both atoms stand at the origin of their files, and an aliphatic carbon has 1.88 Å (Tsai et al. 1999).
         let distance = pose.translation.norm();
         let [zero, skin, twice] =
-            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.offset)));
-        let lambda = options.lambda;
+            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.kernel.offset)));
+        let lambda = options.kernel.lambda;
         let expected = -lambda * lambda * zero + 2.0 * lambda * skin - twice;
         assert!(
             (exact.unfiltered - expected).abs() <= 1e-9 * lambda * lambda,
@@ -374,7 +351,11 @@ fn two_atoms_score_the_closed_form() {
 /// attract; and what is blocked only costs, other terms left as they are.
 #[test]
 fn what_every_row_must_satisfy() {
-    let weights = DockOptions::default().engine().kernel.slice_weights();
+    let weights = DockOptions::default()
+        .kernel
+        .engine()
+        .kernel
+        .slice_weights();
     for (case, poses) in poses() {
         let (on, scores, _) = scored(&case, &poses);
         for ((number, pose), exact) in poses.iter().zip(&scores) {

@@ -113,18 +113,11 @@ fn pair(files: &[String; 2], machine: &Machine) -> Result<(), Box<dyn Error>> {
         "error expected",
         "made"
     );
-    let default = DockOptions {
-        threads,
-        ..DockOptions::default()
-    };
-    let few = DockOptions {
-        rotations: 600,
-        ..default.clone()
-    };
-    let counts = [600, 1800, 3600].map(|rotations| DockOptions {
-        rotations,
-        ..default.clone()
-    });
+    let default =
+        DockOptions::default().changed(|options| options.machine.threads = threads.into());
+    let few = default.changed(|options| options.search.rotations = 600);
+    let counts = [600, 1800, 3600]
+        .map(|rotations| default.changed(|options| options.search.rotations = rotations));
     let mut settings: Vec<(DockOptions, Option<f64>)> =
         counts.map(|options| (options, None)).to_vec();
     for rung in LADDER {
@@ -150,11 +143,11 @@ fn pair(files: &[String; 2], machine: &Machine) -> Result<(), Box<dyn Error>> {
         times.sort_by(|a, b| a.even().total_cmp(&b.even()));
         let median = times[(times.len() - 1) / 2];
         let work = Workload::of(&plan);
-        let expected = |model: &CostModel| model.seconds(&work, options.rotations, threads);
+        let expected = |model: &CostModel| model.seconds(&work, options.search.rotations, threads);
         println!(
             "{:5} rotations, {:6} at {:.2} Å, rank {} ({:.0}) {:8.2} {:7.2} {:7.2} {:7.2} {:7.2} {:>16} {:7.1e}",
-            options.rotations,
-            options.tolerance,
+            options.search.rotations,
+            options.kernel.tolerance,
             plan.spacing,
             outcome.rank,
             work.rank,

@@ -1,10 +1,11 @@
-//! The complex double-skin affinity function (B&I eq. 51) as knots.
+//! The complex double-skin affinity function (B&I eq. 51) as lifted knots.
 //!
-//! F_S = i (f_{S+B0} - lambda f_S): the solid grown by r0, less lambda times the solid itself, times i. On lifted knots growth is a
-//! shift along the radius axis, so F_S is again a set of knots, twice as many, with complex weights: (x, r + r0) with i c and
-//! (x, r) with -i lambda c. The product of two such functions (no conjugation: B&I's eq. 52-53 conjugate one factor and so lose
-//! the sign i * i = -1 that their text needs) is the score
-//! G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0).
+//! F_S = i (f_{S+B0} - lambda f_S): the solid grown by r0, less lambda times the solid itself, times i. On lifted knots
+//! growth is a shift along the radius axis. So F_S is again a set of lifted knots, twice as many, with complex weights:
+//! (x, r + r0) with i c and (x, r) with -i lambda c.
+//!
+//! The product of two such functions is the score G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0). No factor is conjugated:
+//! B&I's eq. 52-53 conjugate one and so lose the sign i * i = -1 that their text needs.
 
 use knotdock_structures::Knots;
 use num_complex::Complex64;
@@ -19,12 +20,39 @@ pub struct DoubleSkin {
     pub offset: f64,
 }
 
+/// Lifted knots (x, r) with complex weights.
+///
+/// The arrays have the same length: the skin's knots first, in the solid's order, then the core's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AffinityKnots {
+    centers: Vec<[f64; 3]>,
+    radii: Vec<f64>,
+    weights: Vec<Complex64>,
+}
+
+impl AffinityKnots {
+    /// Centres x, in Å.
+    pub fn centers(&self) -> &[[f64; 3]] {
+        &self.centers
+    }
+
+    /// Places r on the radius axis, in Å.
+    pub fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// Weights (dimensionless).
+    pub fn weights(&self) -> &[Complex64] {
+        &self.weights
+    }
+}
+
 impl DoubleSkin {
-    /// The affinity function as one array of lifted knots with complex weights.
-    pub fn knots(&self, solid: &Knots) -> Knots {
+    /// The affinity function of a solid as one array of lifted knots.
+    pub fn knots(&self, solid: &Knots) -> AffinityKnots {
         let skin = Complex64::new(0.0, 1.0);
         let core = Complex64::new(0.0, -self.lambda);
-        Knots {
+        AffinityKnots {
             centers: [&solid.centers[..], &solid.centers[..]].concat(),
             radii: solid
                 .radii
@@ -38,13 +66,12 @@ impl DoubleSkin {
                 .map(|c| c * skin)
                 .chain(solid.weights.iter().map(|c| c * core))
                 .collect(),
-            // Shape is all that the affinity function knows.
-            ..Knots::default()
         }
     }
 
-    /// The factor by which one affinity function multiplies a lifted mode eta: i (exp(-2 pi i eta r0) - lambda). Its square is
-    /// the weight of the three slices, -lambda^2 + 2 lambda exp(-2 pi i eta r0) - exp(-4 pi i eta r0).
+    /// The factor by which one affinity function multiplies a lifted mode eta: i (exp(-2 pi i eta r0) - lambda).
+    ///
+    /// Its square is the weight of the three slices, -lambda^2 + 2 lambda exp(-2 pi i eta r0) - exp(-4 pi i eta r0).
     pub fn multiplier(&self, eta: f64) -> Complex64 {
         Complex64::i() * (Complex64::cis(-2.0 * PI * eta * self.offset) - self.lambda)
     }
@@ -55,15 +82,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squared_multiplier_is_the_folded_slice_weight() {
+    fn squared_multiplier_is_the_weight_of_the_three_slices() {
         let skin = DoubleSkin {
             lambda: 10.0,
             offset: 2.0,
         };
         for eta in [0.0, 0.1, -0.37] {
-            let turn = Complex64::cis(-2.0 * PI * eta * 2.0);
-            let folded = -100.0 + 20.0 * turn - turn * turn;
-            assert!((skin.multiplier(eta).powi(2) - folded).norm() < 1e-12);
+            let shift = Complex64::cis(-2.0 * PI * eta * 2.0);
+            let slices = -100.0 + 20.0 * shift - shift * shift;
+            assert!((skin.multiplier(eta).powi(2) - slices).norm() < 1e-12);
         }
     }
 }

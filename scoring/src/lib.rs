@@ -1,34 +1,60 @@
-//! Knots to spectra to correlations to scores.
+//! The scoring crate: knots to spectra to correlations to scores.
+//!
+//! # Example
+//!
+//! [`Correlator`] is the entry (`cargo run -p knotdock-scoring --example correlate`):
+//!
+//! ```
+#![doc = include_str!("../examples/correlate.rs")]
+//! ```
 //!
 //! # Conventions
 //!
 //! - Lengths are in Å for molecules (or the mesh's unit), angles in radians, frequencies in cycles per Å.
-//! - A pose is a unit quaternion q and a translation t: a ligand knot at y goes to R(q) y + t; a higher score is better.
+//! - A pose is a unit quaternion q and a translation t: a ligand knot at y goes to R(q) y + t.
+//! - A higher score is better.
 //! - Fourier: f^(w) = sum f(x) exp(-2 pi i w.x); the inverse carries 1 / volume.
-//! - The score is G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), g(rho) the correlation's slice at radius sum r + s + rho
-//!   (Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text, see [`affinity`]).
+//! - The score is G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), where g(rho) is the correlation's slice at radius sum
+//!   r + s + rho (Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text, see [`affinity`]).
 //! - Further effects are weighted terms that add to it, in the same sense and through the same filter.
 //! - Errors are relative: of a score to the best exact score, of a slice to its largest value.
 //!
-//! # The way through
+//! # Modules
 //!
-//! [`kernel`] defines what shape scores and [`effect`] what may come beside it, [`exact`] scores one pose by the plain
-//! pair sum, [`lifted_axis`] and [`transform`] carry kernel and knots to modes, [`engine`] correlates over all translations at a
-//! rotation, [`configuration`] sums chosen modes at one pose, and [`field`] reads the correlation between its grid points. Of the poses that
-//! a search keeps, [`rescoring`] asks what is too dear for the grid. [`symmetry`] has the poses of rings. Fast paths stand beside a slow exact one that tests hold them to.
+//! | module | content |
+//! |---|---|
+//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, the affinity function, score and slices |
+//! | [`effect`] | terms beside shape in the search |
+//! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
+//! | [`transform`] | knots to modes and modes to grids |
+//! | [`lifted_axis`] | the fourth axis: modes along the radius |
+//! | [`engine`] | the correlation over all translations at a rotation: plan, rank, CPU, graphics processor |
+//! | [`truncated`] | the correlation at one pose from chosen modes |
+//! | [`potential_grid`] | score and gradient between the voxels |
+//! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
+//! | [`symmetry`] | poses of cyclic and dihedral rings |
+//! | [`rescoring`] | terms that only kept poses get |
 
 pub mod affinity;
-pub mod effect;
+mod correlator;
 pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
+pub mod peaks;
 pub mod potential_grid;
-pub mod rescoring;
+pub mod quantity;
 pub mod se3;
+pub mod so3;
 pub mod symmetry;
+pub mod terms;
 #[cfg(test)]
 mod test_support;
 pub mod transform;
 pub mod truncated;
 mod vectorized;
+
+pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
+/// The engine's options, under the name that the front door gives them.
+pub use engine::EngineOptions as Options;
+pub use terms::{effect, pose as rescoring};

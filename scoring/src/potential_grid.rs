@@ -54,7 +54,7 @@ impl PotentialGrid {
 
     /// Samples the potentials from the folded spectra.
     pub fn new<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Self {
-        let modes = &plan.modes;
+        let modes = plan.modes();
         let size = fine_size(plan);
         let [mx, my, mz] = size;
         let half = mz / 2 + 1;
@@ -135,7 +135,7 @@ impl PotentialGrid {
             .enumerate()
             .map(|(j, weights)| {
                 let center = Vector3::from(ligand.centers[j]);
-                (center - plan.ligand_center, weights)
+                (center - plan.ligand_center(), weights)
             })
             .collect();
         Self {
@@ -143,12 +143,12 @@ impl PotentialGrid {
             stride,
             cells_per_length,
             center: [0, 1, 2].map(|axis| folded.center()[axis] * cells_per_length[axis]),
-            limit: plan.receptor_extent.map(|extent| extent + plan.reach()),
+            limit: plan.receptor_extent().map(|extent| extent + plan.reach()),
             kernel,
             grids,
             knots,
-            receptor_center: plan.receptor_center,
-            ligand_center: plan.ligand_center,
+            receptor_center: plan.receptor_center(),
+            ligand_center: plan.ligand_center(),
         }
     }
 
@@ -300,7 +300,7 @@ fn bits(weights: &[(usize, f64)]) -> Vec<(usize, u64)> {
 }
 
 fn fine_size(plan: &Plan) -> [usize; 3] {
-    plan.modes
+    plan.modes()
         .size
         .map(|n| fast_size((n as f64 * OVERSAMPLING).ceil() as usize))
 }

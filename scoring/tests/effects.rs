@@ -7,8 +7,8 @@ use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restrai
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, Trim};
-use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::potential_grid::PotentialGrid;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
@@ -97,7 +97,7 @@ fn plan(a: &Knots, b: &Knots, tolerance: f64) -> Arc<Plan> {
 }
 
 fn scorer(plan: &Plan, a: &Knots, b: &Knots) -> ExactScorer {
-    ExactScorer::with_effects(&plan.kernel, a, b, &plan.effects).unwrap()
+    ExactScorer::with_effects(plan.kernel(), a, b, plan.effects()).unwrap()
 }
 
 fn turn() -> UnitQuaternion<f64> {
@@ -123,8 +123,8 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) 
     let sweep = order.iter().copied().step_by(order.len() / 200);
     let (mut error, mut best) = (0.0f64, 0.0f64);
     for voxel in order[..100].iter().copied().chain(sweep) {
-        let place = plan.receptor_center + engine.position(voxel);
-        let exact = scorer.score(&Pose::about(turn(), plan.ligand_center, place));
+        let place = plan.receptor_center() + engine.position(voxel);
+        let exact = scorer.score(&Pose::about(turn(), plan.ligand_center(), place));
         let value = effect.map_or(exact.score, |effect| exact.terms[effect as usize]);
         error = error.max((value - work.grid[voxel].wide()).abs());
         best = best.max(match effect {
@@ -164,7 +164,7 @@ fn the_exact_terms_are_the_plain_double_sum() {
     for shift in [[0.0, 0.0, 0.0], [9.0, -5.0, 6.0], [14.0, 9.0, -8.0]] {
         let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], shift);
         let exact = scorer.score(&pose);
-        for ActiveTerm { term, kernel } in &plan.effects {
+        for ActiveTerm { term, kernel } in plan.effects() {
             let mut plain = 0.0;
             for (y, ligand) in b.centers.iter().zip(&term.ligand) {
                 let y = Vector3::from(pose.apply(*y));

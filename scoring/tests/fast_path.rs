@@ -8,7 +8,7 @@ use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::Trim;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
@@ -44,7 +44,7 @@ fn worst_of<T: Real>(
     half_turn: HalfTurn,
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
-    let scorer = ExactScorer::new(&plan.kernel, a, b).unwrap();
+    let scorer = ExactScorer::new(plan.kernel(), a, b).unwrap();
     let folded = ReceptorSpectra::<T>::new(&plan, a, b, fold);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
     let mut work = engine.workspace();
@@ -57,8 +57,8 @@ fn worst_of<T: Real>(
     let sweep = order.iter().copied().step_by(order.len() / 150);
     let (mut error, mut best) = (0.0f64, 0.0f64);
     for voxel in order[..100].iter().copied().chain(sweep) {
-        let place = plan.receptor_center + engine.position_after(half_turn, voxel);
-        let exact = scorer.score(&Pose::about(rotation, plan.ligand_center, place));
+        let place = plan.receptor_center() + engine.position_after(half_turn, voxel);
+        let exact = scorer.score(&Pose::about(rotation, plan.ligand_center(), place));
         let value = match fold {
             Quantity::Score => exact.score,
             Quantity::Slice(slice) => exact.slices[slice],
@@ -111,12 +111,12 @@ fn a_plan_with_another_spacing_is_the_plan_made_for_it() {
     };
     let made = Plan::new(&a, &b, spaced).unwrap();
     let changed = first.with_spacing(2.7).unwrap();
-    assert_eq!(changed.options, made.options);
-    assert_eq!(changed.spacing, made.spacing);
+    assert_eq!(changed.options(), made.options());
+    assert_eq!(changed.spacing(), made.spacing());
     assert_eq!(changed.size(), made.size());
-    assert_eq!(changed.fine, made.fine);
-    assert_eq!(changed.modes.columns, made.modes.columns);
-    assert_eq!(changed.axis.modes(), made.axis.modes());
+    assert_eq!(changed.fine(), made.fine());
+    assert_eq!(changed.modes().columns, made.modes().columns);
+    assert_eq!(changed.axis().modes(), made.axis().modes());
     assert!(first.with_spacing(f64::NAN).is_err() && first.with_spacing(1e-4).is_err());
 }
 
@@ -206,26 +206,26 @@ fn grid_equals_the_4d_direct_transform() {
         let relative = knots.centers.iter().map(|&x| Vector3::from(x) - center);
         relative.map(|x| x.into()).collect()
     };
-    let x = centred(&a, plan.receptor_center);
-    let y: Vec<[f64; 3]> = centred(&b, plan.ligand_center)
+    let x = centred(&a, plan.receptor_center());
+    let y: Vec<[f64; 3]> = centred(&b, plan.ligand_center())
         .into_iter()
         .map(|y| (rotation * Vector3::from(y)).into())
         .collect();
     // The r-mirrored ligand: radii enter with the other sign.
     let mirrored: Vec<f64> = b.radii.iter().map(|s| -s).collect();
-    let modes = plan.axis.modes() as i64;
+    let modes = plan.axis().modes() as i64;
     let mut spectrum = Vec::new();
-    plan.modes.for_each(|_, w, multiplicity| {
+    plan.modes().for_each(|_, w, multiplicity| {
         let length = w.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut sum = Complex64::new(0.0, 0.0);
         for k in -modes..=modes {
-            let eta = plan.axis.eta(k);
-            sum += plan.axis.coefficient(&plan.kernel, length, k)
-                * plan.axis.fold_factor(&plan.kernel, Quantity::Score, k)
+            let eta = plan.axis().eta(k);
+            sum += plan.axis().coefficient(plan.kernel(), length, k)
+                * plan.axis().fold_factor(plan.kernel(), Quantity::Score, k)
                 * ndft_4d(&x, &a.radii, &a.weights, w, eta)
                 * ndft_4d(&y, &mirrored, &b.weights, w, eta).conj();
         }
-        spectrum.push((w, sum * multiplicity / plan.modes.volume()));
+        spectrum.push((w, sum * multiplicity / plan.modes().volume()));
     });
     let best = work.grid.iter().copied().fold(0.0, f64::max);
     for voxel in (0..work.grid.len()).step_by(work.grid.len() / 60) {
@@ -300,7 +300,7 @@ fn nothing_scores_through_the_periodic_image() {
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
     let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
     let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
-    let scorer = ExactScorer::new(&plan.kernel, &a, &b).unwrap();
+    let scorer = ExactScorer::new(plan.kernel(), &a, &b).unwrap();
     let mut work = engine.workspace();
     let rotation = Pose::identity().rotation;
     engine.correlate(&rotation, &mut work);
@@ -308,9 +308,10 @@ fn nothing_scores_through_the_periodic_image() {
     let mut checked = 0;
     for voxel in 0..work.grid.len() {
         let t = engine.position(voxel);
-        let far = (0..3).any(|axis| 0.5 * plan.modes.lengths[axis] - t[axis].abs() < plan.spacing);
+        let far =
+            (0..3).any(|axis| 0.5 * plan.modes().lengths[axis] - t[axis].abs() < plan.spacing());
         if far && voxel % 7 == 0 {
-            let pose = Pose::about(rotation, plan.ligand_center, plan.receptor_center + t);
+            let pose = Pose::about(rotation, plan.ligand_center(), plan.receptor_center() + t);
             let error = (work.grid[voxel] - scorer.score(&pose).score).abs() / best;
             assert!(error <= 1e-2, "at {t:?}: {error:e}");
             checked += 1;

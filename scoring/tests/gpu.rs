@@ -103,7 +103,7 @@ fn every_radix_of_grid_lengths() {
                 .map(|step| needle(1.0 + 0.25 * f64::from(step)))
                 .find(|receptor| {
                     let plan = Plan::new(receptor, &ligand, options).unwrap();
-                    let lengths = [plan.modes.size[axis], plan.fine[axis]];
+                    let lengths = [plan.modes().size[axis], plan.fine()[axis]];
                     lengths.iter().any(|length| length.is_multiple_of(radix))
                 })
                 .expect("no needle has such a length");

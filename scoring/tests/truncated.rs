@@ -5,7 +5,7 @@ mod scene;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{Selection, Tail, total};
 use knotdock_scoring::truncated::{TruncatedCorrelation, envelope};
@@ -53,15 +53,15 @@ impl Pair {
     }
 
     fn whole(&self) -> TruncatedCorrelation {
-        self.configuration(&Selection::all(&self.plan.modes))
+        self.configuration(&Selection::all(self.plan.modes()))
     }
 
     /// The pose that puts the ligand's centre at `place` relative to the receptor's.
     fn pose(&self, rotation: UnitQuaternion<f64>, place: Vector3<f64>) -> Pose {
         Pose::about(
             rotation,
-            self.plan.ligand_center,
-            self.plan.receptor_center + place,
+            self.plan.ligand_center(),
+            self.plan.receptor_center() + place,
         )
     }
 
@@ -79,7 +79,7 @@ fn turn(seed: f64) -> UnitQuaternion<f64> {
 fn at_voxels_it_is_the_engines_grid() {
     let pair = Pair::clouds(1e-6, Quantity::Score, 1);
     let (engine, whole) = (pair.engine(), pair.whole());
-    assert_eq!(whole.modes(), total(&pair.plan.modes));
+    assert_eq!(whole.modes(), total(pair.plan.modes()));
     let (mut grid, mut work) = (engine.workspace(), whole.workspace());
     let rotation = turn(0.1);
     engine.correlate(&rotation, &mut grid);
@@ -108,7 +108,7 @@ fn every_knot_its_own_radius() {
         Quantity::Score,
     );
     let (whole, engine) = (pair.whole(), pair.engine());
-    let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
+    let scorer = ExactScorer::new(pair.plan.kernel(), &pair.receptor, &pair.ligand).unwrap();
     let mut work = whole.workspace();
     let mut grid = engine.workspace();
     engine.correlate(&turn(0.0), &mut grid);
@@ -133,7 +133,7 @@ fn every_knot_its_own_radius() {
 #[test]
 fn gradients_are_the_slopes_of_the_value() {
     let pair = Pair::clouds(1e-3, Quantity::Score, 11);
-    let modes = &pair.plan.modes;
+    let modes = pair.plan.modes();
     let some = Selection::low_frequency(modes, 700);
     for selection in [Selection::all(modes), some] {
         let configuration = pair.configuration(&selection);
@@ -155,10 +155,10 @@ fn gradients_are_the_slopes_of_the_value() {
             };
             let slope = (at(moved(1.0), &mut work) - at(moved(-1.0), &mut work)) / (2.0 * h);
             assert!((slope - gradient.force[axis]).abs() < 1e-6 * scale);
-            let center = pose.rotation * pair.plan.ligand_center + pose.translation;
+            let center = pose.rotation * pair.plan.ligand_center() + pose.translation;
             let turned = |sign: f64| {
                 let rotation = UnitQuaternion::new(sign * step) * pose.rotation;
-                Pose::about(rotation, pair.plan.ligand_center, center)
+                Pose::about(rotation, pair.plan.ligand_center(), center)
             };
             let slope = (at(turned(1.0), &mut work) - at(turned(-1.0), &mut work)) / (2.0 * h);
             assert!((slope - gradient.torque[axis]).abs() < 1e-6 * scale);
@@ -170,8 +170,8 @@ fn gradients_are_the_slopes_of_the_value() {
 #[test]
 fn ladders_converge_to_the_exact_score_within_their_bounds() {
     let pair = Pair::clouds(1e-4, Quantity::Score, 21);
-    let modes = &pair.plan.modes;
-    let scorer = ExactScorer::new(&pair.plan.kernel, &pair.receptor, &pair.ligand).unwrap();
+    let modes = pair.plan.modes();
+    let scorer = ExactScorer::new(pair.plan.kernel(), &pair.receptor, &pair.ligand).unwrap();
     let whole = pair.whole();
     let mut work = whole.workspace();
     let rotation = turn(-0.3);
@@ -233,7 +233,7 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     let rotation = turn(0.4);
     let magnitudes = whole
         .prepare(&rotation, &mut work)
-        .magnitudes(pair.plan.modes.count);
+        .magnitudes(pair.plan.modes().count);
     let engine = pair.engine();
     let mut full = engine.workspace();
     engine.correlate(&rotation, &mut full);
@@ -242,7 +242,7 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     // From many modes to few, since those left out of the folded spectra do not come back.
     for most in [20_000, 4096, 512, 65] {
         let plan = Arc::clone(&pair.plan);
-        let selection = Selection::low_frequency(&plan.modes, most);
+        let selection = Selection::low_frequency(plan.modes(), most);
         pair.folded.keep(&selection);
         let engine = pair.engine();
         let mut few = engine.workspace();
@@ -250,8 +250,8 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
         let errors = || full.grid.iter().zip(&few.grid).map(|(a, b)| (a - b).abs());
         let rms = (errors().map(|e| e * e).sum::<f64>() / few.grid.len() as f64).sqrt();
         let worst = errors().fold(0.0, f64::max);
-        let tail = Tail::of(&plan.modes, &selection, &magnitudes);
-        let anywhere = Tail::of(&plan.modes, &selection, &over_rotations);
+        let tail = Tail::of(plan.modes(), &selection, &magnitudes);
+        let anywhere = Tail::of(plan.modes(), &selection, &over_rotations);
         println!(
             "{most}: rms {rms:.4e} of {:.4e}, worst {worst:.3e} of {:.3e}",
             tail.rms, tail.bound
@@ -262,15 +262,15 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
 
         // Cut to a ball, transforms and all, it is that ball's own low-frequency selection.
         let cut = Arc::new(plan.truncated(most));
-        assert!(total(&cut.modes) <= most);
+        assert!(total(cut.modes()) <= most);
         let folded =
             ReceptorSpectra::<f64>::new(&cut, &pair.receptor, &pair.ligand, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&cut), &folded, &pair.ligand, folded.full_rank());
         let mut ball = engine.workspace();
         engine.correlate(&rotation, &mut ball);
         let tail = Tail::of(
-            &plan.modes,
-            &Selection::low_frequency(&plan.modes, total(&cut.modes)),
+            plan.modes(),
+            &Selection::low_frequency(plan.modes(), total(cut.modes())),
             &magnitudes,
         );
         let errors = full
@@ -299,7 +299,7 @@ fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let grown = |by: f64| {
         let mut ligand = first.ligand.clone();
         ligand.radii.iter_mut().for_each(|radius| *radius += by);
-        ExactScorer::new(&first.plan.kernel, &first.receptor, &ligand).unwrap()
+        ExactScorer::new(first.plan.kernel(), &first.receptor, &ligand).unwrap()
     };
     let (more, less) = (grown(h), grown(-h));
     let mut worst = [0.0f64; 4];
@@ -336,7 +336,7 @@ fn a_ligand_far_away_scores_nothing() {
     for far in [1.0, 2.0, 1e6] {
         let pose = pair.pose(
             turn(0.0),
-            Vector3::new(far * pair.plan.modes.lengths[0], 0.0, 0.0),
+            Vector3::new(far * pair.plan.modes().lengths[0], 0.0, 0.0),
         );
         assert_eq!(whole.gradient(&pose, &mut work), Default::default());
         assert_eq!(
@@ -353,7 +353,7 @@ proptest! {
     #[test]
     fn tails_bound_errors(seed in 0u64..1000, most in 1usize..3000, q in prop::array::uniform4(0.05..1.0f64)) {
         let pair = Pair::new(cloud(25, 6.0, &RADII, seed), cloud(11, 4.0, &RADII, seed + 7), 1e-2, Quantity::Score);
-        let modes = &pair.plan.modes;
+        let modes = pair.plan.modes();
         let rotation = Pose::from_parts(q, [0.0; 3]).rotation;
         let whole = pair.whole();
         let mut work = whole.workspace();

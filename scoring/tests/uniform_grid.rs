@@ -11,7 +11,8 @@ use knotdock_scoring::engine::{
 use knotdock_scoring::kernel::low_pass::smooth_step_down;
 use knotdock_scoring::kernel::product::{Body, lens_volume};
 use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer};
-use knotdock_scoring::lifted_axis::{Quantity, RadiusBasis};
+use knotdock_scoring::lifted_axis::RadiusBasis;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::{ndft_3d, ndft_4d};
@@ -108,7 +109,7 @@ fn lifted<T: Real>(
     fold: Quantity,
 ) -> f64 {
     let plan = Arc::new(Plan::product(a, b, options, band).unwrap());
-    let PairKernel::Product(kernel) = &plan.pair else {
+    let PairKernel::Product(kernel) = plan.pair() else {
         unreachable!("a product plan has a product kernel");
     };
     let scorer = ProductScorer::new(kernel, a, b).unwrap();
@@ -221,8 +222,8 @@ fn many_radii_go_through_chebyshev_nodes() {
     let (a, b) = (cloud(36, 6.0, &many, 9), cloud(12, 4.0, &many[..4], 10));
     let options = engine_options(None, 1e-3);
     let plan = Plan::product(&a, &b, options, Band::LowPass).unwrap();
-    assert!(matches!(plan.basis, RadiusBasis::Nodes { .. }));
-    println!("{:?}, error {:.1e}", plan.basis, plan.axis_error);
+    assert!(matches!(plan.basis(), RadiusBasis::Nodes { .. }));
+    println!("{:?}, error {:.1e}", plan.basis(), plan.axis_error());
     let error = lifted::<f64>(&a, &b, options, Band::LowPass, Quantity::Score);
     assert!(error <= 1e-3, "{error:e}");
 }
@@ -242,8 +243,8 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
         centers.extend([[-20.0; 3], [20.0; 3]]);
         let mut radii = cloud.radii.clone();
         radii.extend([1.5; 2]);
-        let mut weights = vec![Complex64::new(1.0, 0.0); cloud.len()];
-        weights.extend([Complex64::default(); 2]);
+        let mut weights = vec![1.0; cloud.len()];
+        weights.extend([0.0; 2]);
         Knots::with_weights(centers, radii, weights).unwrap()
     };
     let b = cloud(20, 4.0, &RADII, 12);
@@ -380,11 +381,11 @@ fn modes_equal_the_direct_transforms() {
         assert!((three - four).norm() < 1e-4 * scale);
         // What the sampling aliases into the band at h = 0.5 Å: the most was 9.6e-3.
         assert!((own - three).norm() < 2e-2 * scale);
-        let w = at(plan.modes.lengths);
+        let w = at(plan.modes().lengths);
         let (three, _) = direct(w);
         let own = mode(
             &work.grid,
-            plan.modes.volume(),
+            plan.modes().volume(),
             &|voxel| engine.position(voxel),
             w,
         );
@@ -421,7 +422,7 @@ fn refuses_what_cannot_be_gridded() {
     for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9] {
         assert!(UniformGridPlan::new(&a, &b, grid_options(2.0, Band::Whole, spacing)).is_err());
     }
-    let mut complex = a.clone();
-    complex.weights[2].im = 1.0;
-    assert!(UniformGridPlan::new(&complex, &b, grid_options(2.0, Band::Whole, 1.0)).is_err());
+    let mut infinite = a.clone();
+    infinite.weights[2] = f64::INFINITY;
+    assert!(UniformGridPlan::new(&infinite, &b, grid_options(2.0, Band::Whole, 1.0)).is_err());
 }

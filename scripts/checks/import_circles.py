@@ -15,12 +15,11 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CRATES = {"knotdock": "src", "knotdock_structures": "structures/src", "knotdock_scoring": "scoring/src"}
 USE = re.compile(r"^[ \t]*(pub(?:\([\w: ]+\))? )?use ([^;]+);", re.M)
-INLINE = re.compile(r"\b((?:crate|super|self)(?:::\w+)+)")
 
 
 def without_tests(text):
     """Text less its comments and everything from `#[cfg(test)] mod` to the brace that closes it."""
-    text = re.sub(r"//[^\n]*", "", text)
+    text = re.sub(r"//[^\n]*|\bpub\(in [\w:]+\)", "", text)
     while match := re.search(r"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))? )?(?:mod \w+|use|fn \w+|impl)[^{;]*([{;])", text):
         end = match.end()
         if match[1] == "{":
@@ -108,12 +107,18 @@ class Crate:
                 return path[:length]
         return ()
 
+    def roots(self, module):
+        """First names of paths that lead to modules of the crate: keywords, and the module's own submodules."""
+        children = [path[-1] for path in self.files if len(path) == len(module) + 1 and path[:-1] == module]
+        return ["crate", "super", "self", *children]
+
     def imports(self):
         """Modules by the module that imports them."""
         graph = {}
         for module, text in self.texts.items():
             paths = [leaf for visible, tree in USE.findall(text) if not visible for leaf in leaves(tree)]
-            paths += [tuple(path.split("::")) for path in INLINE.findall(USE.sub("", text))]
+            inline = re.findall(rf"(?<![\w:])((?:{'|'.join(self.roots(module))})(?:::\w+)+)", USE.sub("", text))
+            paths += [tuple(path.split("::")) for path in inline]
             targets = (self.absolute(module, path) for path in paths)
             found = {self.defining(target) for target in targets if target}
             graph[module] = found - {module}

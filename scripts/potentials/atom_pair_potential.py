@@ -37,7 +37,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from contact_potential import TYPES_FILE, neighbours, pair_arguments, selected
 from docked_pairs import ROOT, find_part, read_text, write
 
-DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/rescoring/pair_potential.rs
+DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/terms/pose/atom_pair_potential.rs
 STEP = 0.5  # A
 
 
@@ -86,7 +86,7 @@ def parse_arguments():
         "-o",
         "--output",
         type=Path,
-        default=ROOT / "scoring/src/rescoring/atom_pair_potential.csv",
+        default=ROOT / "scoring/src/terms/pose/atom_pair_potential.csv",
         help="default: the program's own table",
     )
     options = parser.parse_args()

@@ -40,12 +40,12 @@ from docked_pairs import ROOT, check_known, find_part, fold, in_fold, names, rea
 
 TYPES_FILE = ROOT / "structures/src/molecule/contact_types.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
-TAPER = (5.0, 7.0)  # A, as in scoring/src/effect/contact.rs
+TAPER = (5.0, 7.0)  # A, as in scoring/src/terms/effect/contact.rs
 RANGES = {
     "near": (3.5, 4.5),
     "middle": (5.0, 6.0),
     "far": (7.0, 8.0),
-}  # ends in A, as in scoring/src/rescoring/potential.rs
+}  # ends in A, as in scoring/src/terms/pose/distance_binned_potential.rs
 PROBE = 1.4  # A
 RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 
@@ -120,7 +120,7 @@ def parse_arguments():
         options.output = (
             ROOT
             / "scoring/src"
-            / ("rescoring/fine_contact_potential.csv" if options.fine else "effect/contact_potential.csv")
+            / ("terms/pose/fine_contact_potential.csv" if options.fine else "terms/effect/contact_potential.csv")
         )
     return options
 

@@ -176,8 +176,8 @@ impl Batch {
 fn dock_pair(dock: Dock) -> Result<bool, Failure> {
     // A pair's own words would hide the batch's; its run.json has them.
     let silent = Console {
-        json: false,
         quiet: true,
+        ..Console::default()
     };
     let docking = dock.prepare(silent)?;
     if docking.is_done() {

@@ -7,6 +7,7 @@ use clap::Args;
 use knotdock::output::complexes::file_names;
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
+use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::json;
 
 use crate::cli::arguments::output_file::check_replaced;
@@ -49,22 +50,17 @@ impl Export {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let symmetry = run.options.dock.symmetry;
-        if let Some(symmetry) = symmetry
-            && let Some(row) = rows.iter().find(|row| symmetry.ring(&row.pose).is_none())
-        {
-            let rank = row.rank;
+        let arrangement = Arrangement::from(run.options.search.symmetry);
+        let is_no_ring = |row: &&PoseRow| arrangement.images(&row.pose).is_none();
+        if let Some(PoseRow { rank, .. }) = rows.iter().find(is_no_ring) {
+            let suffix = arrangement.suffix();
             return Err(Failure::input(format!(
-                "the pose of rank {rank} makes no ring of {symmetry}"
+                "the pose of rank {rank} forms no ring{suffix}"
             ))
             .at(&table_path)
             .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
         }
-        let bodies = Bodies::recorded(
-            [&run.receptor, &run.ligand],
-            &run_path,
-            &run.options.reading,
-        )?;
+        let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
         let own = self.run.join("top");
         let folder = self.output.unwrap_or_else(|| own.clone());
         // What the run itself wrote there is what would be written again.
@@ -73,7 +69,7 @@ impl Export {
             let read = bodies.records().map(|record| record.path.as_path());
             check_replaced(&folder.join(name), read, force)?;
         }
-        let written = bodies.write(&rows, symmetry, &folder)?;
+        let written = bodies.write(&rows, arrangement, &folder)?;
         let paths: Vec<String> = written
             .names
             .iter()

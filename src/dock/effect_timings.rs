@@ -3,9 +3,9 @@
 use crate::dock::outcome::EffectCost;
 use crate::dock::plan::DockPlan;
 use crate::dock::scene::Decision;
-use crate::search::scan::{Chosen, choose_rank};
+use crate::search::plan::SearchPlan;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
+use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra, choose_rank};
 use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
@@ -16,10 +16,10 @@ const TIMED: usize = 3;
 /// Milliseconds after which no further four are timed.
 const ENOUGH: u128 = 100;
 
-/// Costs by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
+/// Timings by effect: of shape what it takes alone, of every other that is on what leaving it out would save.
 ///
 /// An effect may share fields with others, so the parts need not add up to the whole.
-pub(crate) fn costs<T: Real>(
+pub(super) fn effect_timings<T: Real>(
     plan: &DockPlan,
     folded: &ReceptorSpectra<T>,
     engine: &CpuEngine<T>,
@@ -40,9 +40,9 @@ pub(crate) fn costs<T: Real>(
     let mut parts: Vec<(Effect, CpuEngine<T>)> = others
         .par_iter()
         .map(|&effect| {
-            let Chosen { engine, .. } = match effect {
-                Effect::Shape => choose_rank(plan, &alone),
-                effect => choose_rank(plan, &folded.without(effect)),
+            let ChosenRank { engine, .. } = match effect {
+                Effect::Shape => rank_of(plan, &alone),
+                effect => rank_of(plan, &folded.without(effect)),
             };
             (effect, engine)
         })
@@ -77,19 +77,24 @@ pub(crate) fn costs<T: Real>(
         .collect()
 }
 
+/// The engine of the lowest rank that the plan's tolerance allows.
+pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) -> ChosenRank<T> {
+    let SearchPlan {
+        engine, rotations, ..
+    } = &plan.search;
+    choose_rank(engine, spectra, &plan.ligand, &rotations.coarse)
+}
+
 /// Least milliseconds of a rotation on one thread, over a few.
 fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
-    // Axes of rings do not share a transform of the ligand.
-    let images = match plan.options.symmetry {
-        Some(_) => &HalfTurn::ALL[..1],
-        None => &HalfTurn::ALL[..],
-    };
+    let rotations = &plan.search.rotations;
+    let images = &HalfTurn::ALL[..rotations.images];
     let mut work = engine.workspace();
     let begun = Instant::now();
     let times = (0..TIMED)
         .take_while(|&index| index == 0 || begun.elapsed().as_millis() < ENOUGH)
         .map(|index| {
-            let rotation = &plan.set[(4 * index) % plan.set.len()];
+            let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
             let start = Instant::now();
             engine.turn(rotation, &mut work);
             for half_turn in images {

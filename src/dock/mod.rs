@@ -1,9 +1,11 @@
 //! A docking run: from the scene and the options to ranked poses.
 
 mod effect_timings;
-pub mod loose;
+pub mod flexible_regions;
+mod memory;
 pub mod outcome;
 pub mod pair;
 pub mod plan;
+mod plan_text;
 pub mod run;
 pub mod scene;

@@ -1,25 +1,20 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use crate::dock::loose::Loose;
+use crate::dock::flexible_regions::FlexibleRegions;
+use crate::dock::memory::{MemoryPlan, most_in_flight};
 use crate::dock::scene::{Decision, LengthUnit, Scene};
 use crate::error::SearchError;
-use crate::options::{DockOptions, EngineChoice, Precision, REFINED_BY_SHAPE};
-use crate::pose_space::ring::Rings;
+use crate::options::{DockOptions, REFINED_BY_SHAPE};
+use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
-use crate::rank::rescoring::Asked;
-use crate::search::peaks::Peak;
-use crate::search::rotations::{
-    BYTES_RELAXED, MAX_RELAXED, covering_radius, rotation_set, set_name, spiral_set,
-};
+use crate::rank::rescoring::Rescoring;
+use crate::search::plan::SearchPlan;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::potential_grid::PotentialGrid;
-use knotdock_scoring::rescoring::Rescorer;
-use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::lifted_axis::RadiusBasis;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
-use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -60,48 +55,29 @@ pub struct DockPlan {
     /// What plays the part of an Ångström, in `unit`.
     #[serde(skip)]
     pub(crate) angstrom: f64,
-    /// Rotations in flight at once.
-    #[serde(skip)]
-    pub in_flight: usize,
     /// Bytes that everything but rotations in flight takes.
     pub fixed_bytes: u64,
     /// Bytes that a rotation in flight takes.
     pub bytes_in_flight: u64,
-    /// Bytes of the graphics processor's memory that rotations in flight there may take; 0 on the CPU.
-    #[serde(skip)]
-    pub graphics_bytes: u64,
     /// Which effects are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
-    /// What poses should touch.
+    /// Residues that should be in contact.
     #[serde(skip)]
-    pub(crate) attracted: ActiveResidues,
+    pub(crate) active: ActiveResidues,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// Residues that are missing, and those near ends of chains, of receptor and ligand.
+    /// Unresolved segments and residues near termini, of receptor and ligand.
     #[serde(flatten)]
-    pub loose: Loose,
-    /// The rings that are sought, if any are.
+    pub regions: FlexibleRegions,
+    /// What is searched, and how.
     #[serde(skip)]
-    pub(crate) rings: Option<Rings>,
-    #[serde(skip)]
-    pub(crate) engine: Arc<Plan>,
+    pub(crate) search: SearchPlan,
     #[serde(skip)]
     pub(crate) receptor: Knots,
     #[serde(skip)]
     pub(crate) ligand: Knots,
-    #[serde(skip)]
-    pub(crate) set: Vec<UnitQuaternion<f64>>,
-    /// The finer set; empty without a finer search.
-    #[serde(skip)]
-    pub(crate) fine_set: Vec<UnitQuaternion<f64>>,
 }
-
-/// Most fields that the compressed lifted axis is expected to need, for the memory estimate.
-const EXPECTED_RANK: usize = 8;
-
-/// Most bytes that rotations in flight take of a graphics processor's memory, which may be the computer's own.
-const GRAPHICS_BYTES: u64 = 512 << 20;
 
 /// Plans the docking of two molecules.
 ///
@@ -122,195 +98,43 @@ pub fn plan(
 /// As [`plan`].
 pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
     options.check()?;
-    let Scene {
-        unit,
-        angstrom,
-        receptor,
-        ligand,
-        terms,
-        decisions,
-        labels,
-        attracted,
-        loose,
-        ring_axis,
-    } = scene;
-    let planned = |options: &DockOptions| {
-        Plan::with_effects(
-            &receptor,
-            &ligand,
-            options.engine(),
-            options.tolerance,
-            terms.clone(),
-        )
-    };
-    let engine = planned(options)?;
-    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) = match options.precision
-    {
-        Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
-        Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
-    };
-    let needs = |engine: &Plan| {
-        let functions = engine.functions();
-        let rank = functions.min(EXPECTED_RANK);
-        let per_rotation = workspace_estimate(engine, rank) as u64;
-        // The functions, one in the making, and the compressed ones in either order of modes, packed.
-        let fixed =
-            2 * real_bytes * engine.modes.count as u64 * (functions + 1 + 5 * rank / 2) as u64
-                + PotentialGrid::bytes(engine) as u64
-                + 200 * (receptor.len() + ligand.len()) as u64
-                + 64 * options.rotations as u64
-                + fine_bytes(options)
-                + BYTES_RELAXED * options.rotations.min(MAX_RELAXED) as u64
-                + 400 * options.poses as u64
-                + (16 << 20);
-        (fixed, per_rotation)
-    };
-    let (fixed, per_rotation) = needs(&engine);
-    let in_flight = most_in_flight(options, fixed, per_rotation).min(options.rotations);
-    if let (0, Some(allowed)) = (in_flight, options.memory) {
-        let fits = least_coarse(|step| {
-            let coarser = coarser(options, step, angstrom);
-            let plan = planned(&coarser).ok()?;
-            let spacing = rounded_up(plan.spacing, angstrom);
-            let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
-            (fixed + per_rotation <= allowed).then_some(DockOptions {
-                spacing: Some(spacing),
-                ..coarser
-            })
-        });
-        return Err(SearchError::Memory {
-            needed: fixed + per_rotation,
-            allowed,
-            spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
-            shows_little: fits
-                .as_ref()
-                .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
-            resolution: fits
-                .as_ref()
-                .map(|coarser| coarser.resolution)
-                .filter(|&resolution| resolution > options.resolution),
-            pass_length: fits
-                .and_then(|coarser| coarser.pass_length)
-                .filter(|&length| Some(length) > options.pass_length),
-        });
-    }
-    let graphics_bytes = match options.engine {
-        EngineChoice::Cpu => 0,
-        EngineChoice::Gpu => {
-            let taken = fixed + in_flight as u64 * per_rotation;
-            let left = options.memory.map(|allowed| allowed.saturating_sub(taken));
-            left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
-        }
-    };
-    let rings = options.symmetry.map(|symmetry| Rings {
-        symmetry,
-        axis: ring_axis,
-    });
-    let (set, set_name, covering_radius) = match &rings {
-        Some(rings) => {
-            let (axes, radius) = rings.axes(options.rotations);
-            let rotation = |axis| rings.symmetry.rotation(axis);
-            let name = match rings.axis {
-                Some(_) => "axes across the ring's own",
-                None => "axes over a half sphere",
-            };
-            (axes.iter().map(rotation).collect(), name, radius)
-        }
-        None => {
-            let set = rotation_set(options.rotations);
-            let radius = covering_radius(&set);
-            (set, set_name(options.rotations), radius)
-        }
-    };
-    let fine_set = options.fine_rotations.map_or_else(Vec::new, spiral_set);
-    let (a, b) = match &engine.basis {
-        knotdock_scoring::lifted_axis::RadiusBasis::Classes { receptor, ligand } => {
-            (receptor.len(), ligand.len())
-        }
-        _ => engine.basis.sizes(&engine.axis),
+    let engine = scene.engine_plan(options)?;
+    let memory = MemoryPlan::new(&scene, &engine, options)?;
+    let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
+    let limits = (memory.in_flight, memory.graphics);
+    let search = SearchPlan::new(Arc::new(engine), space, options, limits);
+    let engine = &search.engine;
+    let radii = match engine.basis() {
+        RadiusBasis::Classes { receptor, ligand } => [receptor.len(), ligand.len()],
+        _ => engine.basis().sizes(engine.axis()).into(),
     };
     Ok(DockPlan {
-        unit,
-        angstrom,
-        rotations: options.rotations,
-        rotation_set: set_name,
-        covering_radius_degrees: covering_radius.to_degrees(),
+        unit: scene.unit,
+        angstrom: scene.angstrom,
+        rotations: options.search.rotations,
+        rotation_set: search.rotations.name,
+        covering_radius_degrees: search.rotations.covering_radius.to_degrees(),
         grid: engine.size(),
-        spacing: engine.spacing,
-        fine_grid: engine.fine,
-        spreading_width: engine.width,
-        modes: engine.modes.count,
-        lifted_modes: engine.axis.modes(),
-        kernel_reach: engine.kernel.reach(),
-        pass_frequency: 1.0 / engine.options.kernel.pass_length,
-        stop_frequency: engine.kernel.stop(),
-        radii: [a, b],
-        in_flight,
-        fixed_bytes: fixed,
-        bytes_in_flight: per_rotation,
-        graphics_bytes,
-        decisions,
-        attracted,
-        labels,
-        loose,
-        rings,
-        engine: Arc::new(engine),
+        spacing: engine.spacing(),
+        fine_grid: engine.fine(),
+        spreading_width: engine.width(),
+        modes: engine.modes().count,
+        lifted_modes: engine.axis().modes(),
+        kernel_reach: engine.kernel().reach(),
+        pass_frequency: 1.0 / engine.options().kernel.pass_length,
+        stop_frequency: engine.kernel().stop(),
+        radii,
+        fixed_bytes: memory.fixed,
+        bytes_in_flight: memory.per_rotation,
+        decisions: scene.decisions,
+        active: scene.active,
+        labels: scene.labels,
+        regions: scene.regions,
         options: options.clone(),
-        receptor,
-        ligand,
-        set,
-        fine_set,
+        receptor: scene.receptor,
+        ligand: scene.ligand,
+        search,
     })
-}
-
-/// Bytes of a finer search: its rotations with their cells, and the peaks of those searched, as found and as sorted.
-fn fine_bytes(options: &DockOptions) -> u64 {
-    let finer = options.fine_rotations.unwrap_or(0);
-    let searched = (options.fine_share * finer as f64).ceil() as u64;
-    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
-}
-
-/// What fits at the least of 60 ever coarser steps, found by halving. From the coarse end, where a plan takes least: its time falls with the square of the resolution,
-/// so that all plans together take three times what the finest does.
-fn least_coarse<T>(at: impl Fn(i32) -> Option<T>) -> Option<T> {
-    let (mut least, mut last) = (0, 59);
-    let mut fits = at(last)?;
-    while least < last {
-        let middle = (least + last) / 2;
-        match at(middle) {
-            Some(coarse) => (fits, last) = (coarse, middle),
-            None => least = middle + 1,
-        }
-    }
-    Some(fits)
-}
-
-/// The options with the grid that their resolution calls for and, from the second step on, a resolution coarser by a tenth each: a grid
-/// too coarse for the resolution is small as well, but its scores are wrong.
-fn coarser(options: &DockOptions, step: i32, angstrom: f64) -> DockOptions {
-    let resolution = match step {
-        0 => options.resolution,
-        _ => rounded_up(options.resolution * 1.1f64.powi(step), angstrom),
-    };
-    let scale = resolution / options.resolution;
-    DockOptions {
-        resolution,
-        pass_length: options.pass_length.map(|length| {
-            if step == 0 {
-                length
-            } else {
-                rounded_up(scale * length, angstrom)
-            }
-        }),
-        spacing: None,
-        ..options.clone()
-    }
-}
-
-/// A spacing rounded up to hundredths of an Ångström, or of the power of ten below what plays its part.
-fn rounded_up(spacing: f64, angstrom: f64) -> f64 {
-    let per_unit = 10f64.powi(2 - angstrom.log10().floor() as i32);
-    (spacing * per_unit).ceil() / per_unit
 }
 
 impl DockPlan {
@@ -319,20 +143,14 @@ impl DockPlan {
         [&self.receptor, &self.ligand]
     }
 
-    /// A rotation by its index, those of the finer set after those of the coarse one, and which half-turn of the first of its four it is.
-    pub(crate) fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
-        if self.options.symmetry.is_some() {
-            return (self.set[index], HalfTurn::None);
-        }
-        match index.checked_sub(self.set.len()) {
-            None => (self.set[index], HalfTurn::ALL[index % 4]),
-            Some(fine) => (self.fine_set[fine], HalfTurn::ALL[fine % 4]),
-        }
+    /// Rotations in flight at once.
+    pub fn in_flight(&self) -> usize {
+        self.search.in_flight
     }
 
     /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
     pub fn unresolved(&self) -> [usize; 2] {
-        [&self.receptor, &self.ligand].map(|knots| self.engine.unresolved(knots).len())
+        [&self.receptor, &self.ligand].map(|knots| self.search.engine.unresolved(knots).len())
     }
 
     /// The exact sum of what is ranked.
@@ -341,42 +159,42 @@ impl DockPlan {
     /// [`SearchError::Knots`] on knots that cannot be summed.
     pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
         Ok(ExactScorer::with_effects(
-            &self.engine.kernel,
+            self.search.engine.kernel(),
             &self.receptor,
             &self.ligand,
-            &self.engine.effects,
+            self.search.engine.effects(),
         )?)
     }
 
-    /// Number of poses to refine: of rings all, for none lies on the grid.
+    /// Number of poses to refine: all where none lies on the grid, as of rings.
     pub fn refined(&self) -> usize {
-        if self.options.symmetry.is_some() {
-            return self.options.poses;
+        if !self.search.space.is_on_grid() {
+            return self.options.search.poses;
         }
         let alone = self
             .decisions
             .iter()
             .all(|decision| decision.effect == Effect::Shape || !decision.on);
         self.options
+            .search
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
-    /// What poses are rescored with; `None` where there is nothing to ask.
+    /// The pose terms prepared for rescoring; `None` if no term acts.
     pub(crate) fn rescorer(&self) -> Option<Rescorer> {
-        let bodies = [&self.receptor, &self.ligand];
-        self.asked()
-            .rescorer(bodies, &self.attracted, &self.loose, &self.options)
+        self.rescoring().rescorer()
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
     pub fn active_site(&self) -> Option<&AssumedSite> {
-        self.attracted.assumed.as_ref()
+        self.active.assumed.as_ref()
     }
 
-    /// What poses are asked beside their score.
-    pub(crate) fn asked(&self) -> Asked {
-        Asked::of(&self.decisions, &self.attracted, &self.loose, &self.options)
+    /// Inputs and weights of the pose terms.
+    pub(crate) fn rescoring(&self) -> Rescoring<'_> {
+        let bodies = [&self.receptor, &self.ligand];
+        Rescoring::new(bodies, &self.active, &self.regions, &self.options)
     }
 
     /// Rotations that would be in flight if there were more than enough of them.
@@ -391,89 +209,8 @@ impl DockPlan {
 
     /// Bytes that the run is expected to take at its peak.
     pub fn memory_bytes(&self) -> u64 {
-        self.fixed_bytes + self.in_flight as u64 * self.bytes_in_flight + self.graphics_bytes
-    }
-}
-
-/// Rotations in flight: as many as threads, where memory has room for them.
-fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u64) -> usize {
-    let threads = match options.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
-    };
-    let room = options.memory.map_or(u64::MAX, |allowed| {
-        allowed.saturating_sub(fixed) / per_rotation.max(1)
-    });
-    threads.min(usize::try_from(room).unwrap_or(usize::MAX))
-}
-
-impl std::fmt::Display for DockPlan {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Three significant digits or so, two decimals of an Ångström.
-        let below = -self.angstrom.log10().floor() as i32;
-        let (digits, finer) = ((2 + below).max(0) as usize, (3 - below).max(0) as usize);
-        let rotations = match self.options.symmetry {
-            Some(symmetry) => format!("axes of {symmetry}"),
-            None if self.rotations == 1 => "rotation".to_owned(),
-            None => "rotations".to_owned(),
-        };
-        write!(
-            f,
-            "{} {rotations} ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes below {:.finer$} per {unit}, \
-             window of {} on {} x {} x {}, lifted axis -{K}..{K}; about {:.0} MB with {} in flight",
-            self.rotations,
-            self.covering_radius_degrees,
-            self.grid[0],
-            self.grid[1],
-            self.grid[2],
-            self.spacing,
-            self.modes,
-            self.engine.modes.cut,
-            self.spreading_width,
-            self.fine_grid[0],
-            self.fine_grid[1],
-            self.fine_grid[2],
-            self.memory_bytes() as f64 / 1e6,
-            self.in_flight,
-            K = self.lifted_modes,
-            unit = self.unit,
-            digits = digits,
-            finer = finer,
-        )?;
-        if self.options.precision == Precision::Double {
-            write!(f, "; in double precision")?;
-        }
-        if self.options.engine == EngineChoice::Gpu {
-            write!(f, "; on a graphics processor")?;
-        }
-        if let Some(finer) = self.options.fine_rotations {
-            write!(
-                f,
-                "; then about {:.0}% of {finer} finer rotations, about the best",
-                100.0 * self.options.fine_share
-            )?;
-        }
-        Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::dock::plan::*;
-    use std::cell::Cell;
-
-    /// Each step was planned twice, from the finest on: refusing --resolution 0.1 took half a minute.
-    #[test]
-    fn the_least_coarse_step_that_fits_is_found_with_few_plans() {
-        for first in [0, 1, 17, 59] {
-            let plans = Cell::new(0);
-            let found = least_coarse(|step| {
-                plans.set(plans.get() + 1);
-                (step >= first).then_some(step)
-            });
-            assert_eq!(found, Some(first));
-            assert!(plans.get() <= 7, "{}", plans.get());
-        }
-        assert_eq!(least_coarse(|_| None::<i32>), None);
+        self.fixed_bytes
+            + self.search.in_flight as u64 * self.bytes_in_flight
+            + self.search.graphics_bytes
     }
 }

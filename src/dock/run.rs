@@ -1,28 +1,31 @@
-//! The run: fold the receptor, scan the rotations, refine the best peaks, score exactly, merge, cluster, report.
+//! The run: prepare, scan the rotations, refine the best peaks, check the fast path, rescore, cluster, score exactly.
 
-use crate::dock::effect_timings::costs;
-use crate::dock::outcome::{DockOutcome, MeasuredError, StageTime, error_scale};
+use crate::dock::effect_timings::{effect_timings, rank_of};
+use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, StageTime, error_scale};
 use crate::dock::plan::DockPlan;
 use crate::error::SearchError;
 use crate::options::{Precision, Stopped};
-use crate::pose_space::refine::{ClimbLimits, maximize, rigid_body};
+use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
+use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
-use crate::rank::candidates::{RefinedPose, candidates, clusters_of, listed, merge, printed};
+use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
-use crate::rank::ranking::{PoseScorer, cluster_temperature, report};
+use crate::rank::ranking::{PoseScorer, Ranking, cluster_temperature, report};
 use crate::rank::time_left::poses_in_time;
-use crate::search::coarse_to_fine::search_finer;
-use crate::search::peaks::Peak;
-use crate::search::scan::{Chosen, Quartet, Scanned, choose_rank, scan};
+use crate::search::coarse_to_fine::{FineSearched, search_finer};
+use crate::search::deadline::Deadline;
+use crate::search::scan::{Scanned, scan};
 use crate::search::scan_engine::ScanEngine;
-use crate::search::schedule::{Deadline, schedule};
+use crate::search::schedule::schedule;
 use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
-use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::exact::ExactScore;
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
+use knotdock_scoring::exact::{ExactScore, ExactScorer};
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
@@ -32,9 +35,8 @@ use std::time::Instant;
 const ERROR_POSES: usize = 100;
 /// Refined poses closer than this share of the grid spacing (ligand RMSD) are one.
 const MERGE_SPACINGS: f64 = 0.25;
-
-/// Most climbs that a thread takes at once.
-const CLIMBS_TOGETHER: usize = 4;
+/// Poses that a thread refines at once.
+const REFINED_TOGETHER: usize = 4;
 
 struct Clock {
     stages: Vec<StageTime>,
@@ -63,8 +65,8 @@ impl Clock {
     }
 }
 
-/// Docks as planned. The RMSD of `points` of the ligand, in its own frame, makes clusters: [`molecule_points`] of a molecule, the centres of
-/// the balls of a mesh.
+/// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`] of a
+/// molecule, the centres of the balls of a mesh.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
@@ -91,216 +93,291 @@ pub fn dock_until(
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(plan.in_flight)
+        .num_threads(plan.in_flight())
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| match plan.options.precision {
+    pool.install(|| match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
     })
 }
 
-/// The run with the fast path in a floating-point type.
+/// The run, with the fast path in a floating-point type.
 fn dock_in<T: Real>(
     plan: &DockPlan,
     points: &[[f64; 3]],
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
-    let options = &plan.options;
     let mut clock = Clock::start();
-    progress.stage("prepare", 1);
-    let folded =
-        ReceptorSpectra::<T>::new(&plan.engine, &plan.receptor, &plan.ligand, Quantity::Score);
-    let Chosen {
+    let Prepared {
+        spectra,
         engine,
-        error: rank_error,
-    } = choose_rank(plan, &folded);
-    let effects = costs(plan, &folded, &engine);
-    let engine = ScanEngine::new(plan, engine)?;
-    let scorer = plan.exact_scorer()?;
-    progress.advance(1);
+        scorer,
+        rank_error,
+        effects,
+    } = Prepared::<T>::new(plan, progress)?;
     clock.lap("prepare");
-
-    let quartets = schedule(plan, deadline);
-    let wanted: usize = quartets.iter().map(Quartet::count).sum();
-    progress.stage("search", wanted as u64);
-    let Scanned {
-        mut peaks,
-        rotations: searched,
-    } = scan(plan, &engine, &quartets, options.poses, deadline, progress)?;
-    clock.lap("search");
-    if peaks.is_empty() {
-        return Err(SearchError::NoPose);
-    }
-    let mut fine = None;
-    if !plan.fine_set.is_empty() {
-        let (finer, searched) = search_finer(plan, &engine, peaks, progress)?;
-        (peaks, fine) = (finer, Some(searched));
-        clock.lap("fine");
-    }
-    let mut grid_poses: Vec<Pose> = peaks
-        .iter()
-        .map(|peak| {
-            let (rotation, half_turn) = plan.rotation(peak.rotation as usize);
-            let position = engine.cpu.position_after(half_turn, peak.voxel as usize);
-            let place = plan.engine.receptor_center + position;
-            Pose::about(rotation, plan.engine.ligand_center, place)
-        })
-        .collect();
-
-    let body = match &plan.rings {
-        Some(rings) => RigidBody::new(points).in_ring(rings.axis.as_ref()),
-        None => RigidBody::new(points),
-    };
-    let mut placed = refine(plan, &folded, &peaks, &grid_poses, &body, progress);
-    drop(folded);
+    let found = find(plan, &engine, deadline, (progress, &mut clock))?;
+    let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
+    let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
+    let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
+    let refined = refine(plan, &spectra, (&found.peaks, &grid_poses), &body, progress);
+    drop(spectra);
     clock.lap("refine");
 
     grid_poses.truncate(ERROR_POSES);
-    let checking = Instant::now();
-    let at_grid: Vec<ExactScore> = grid_poses
-        .par_iter()
-        .map(|pose| scorer.score(&printed(pose)))
-        .collect();
-    let checked = checking.elapsed().as_secs_f64() / at_grid.len() as f64;
+    let check = Check::new(&scorer, &grid_poses);
     clock.lap("check");
 
-    let on = Effect::ALL.map(|effect| plan.is_on(effect));
     let rescorer = plan.rescorer();
-    let found = peaks.len();
-    let kept = match (deadline, options.stopped) {
-        (_, Some(stopped)) => stopped.poses.min(found),
-        (Some(deadline), None) => {
-            let poses = (&peaks[..], &placed[..]);
-            poses_in_time(deadline, poses, rescorer.as_ref(), checked, &body, options)
-        }
-        (None, None) => found,
-    };
-    let stopped = (searched < plan.rotations || kept < found).then_some(Stopped {
-        rotations: searched,
-        poses: kept,
-    });
-    peaks.truncate(kept);
-    placed.truncate(kept);
-    if rescorer.is_some() {
-        progress.stage("rescore", 1);
-    }
-    // No ring starts on the grid.
-    let at_start = match options.symmetry {
-        Some(_) => &[][..],
-        None => &at_grid[..],
-    };
-    let mut candidates = candidates(&peaks, &placed, at_start, rescorer.as_ref());
-    if rescorer.is_some() {
-        progress.advance(1);
-    }
+    let poses = (&found.peaks[..], &refined[..]);
+    let kept = kept(plan, deadline, poses, rescorer.as_ref(), (&check, &body));
+    let stopped = found.stopped(plan, kept);
+    let poses = (&found.peaks[..kept], &refined[..kept]);
+    let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
     clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
-    let kept = candidates.len();
-    let clusters = clusters_of(&candidates, &body, options.cluster_radius);
-    // Closer than neighbouring samples of the search are to each other, poses are one place to it.
-    let step = body.step(plan.spacing, ligand_turn(plan));
-    let listed = listed(&candidates, &clusters, &body, step);
+    let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
+    // Poses closer than neighbouring samples of the search are one place to it.
+    let step = body.step(plan.spacing, plan.search.rotation_step());
+    let listed = deduplicated(&candidates, &clusters, &body, step);
     clock.lap("cluster");
 
-    let best_peak = peaks.first().map_or(0.0, |peak| peak.score);
-    let judge = PoseScorer {
+    let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
+    let on = Effect::ALL.map(|effect| plan.is_on(effect));
+    let pose_scorer = PoseScorer {
         scorer: &scorer,
         rescorer: rescorer.as_ref(),
         on,
-        symmetry: options.symmetry,
+        space: &plan.search.space,
         cluster_temperature: cluster_temperature(plan.unit),
     };
     let ranking = report(
-        judge,
+        pose_scorer,
         &candidates,
         (&clusters, &listed),
-        options.every_pose,
-        2.0 * options.tolerance * best_peak.abs(),
+        plan.options.ranking.no_cluster,
+        2.0 * plan.options.kernel.tolerance * best_peak.abs(),
         progress,
     );
-    // Rows stand for clusters by their pose scores; the best score may be another pose's.
-    let at_start = at_start.iter().map(|exact| exact.score);
-    let scores = ranking.poses.iter().map(|row| row.score).chain(at_start);
-    let best = error_scale(scores, 0.0);
-    let error = MeasuredError::over(&peaks, &at_grid, best);
+    let error = check.error(plan, &found.peaks, &ranking);
     clock.lap("score");
 
     Ok(DockOutcome {
         poses: ranking.poses,
-        poses_kept: kept,
+        poses_kept: candidates.len(),
         clusters: ranking.clusters,
-        searched,
+        searched: found.searched,
         stopped,
         error,
         rank_error,
         rank: engine.cpu.rank(),
         effects,
-        fine,
+        fine: found.fine,
         timing: clock.stages,
         adapter: engine.adapter,
     })
 }
 
-/// Angle in radians between neighbouring rotations of the search: the set's covering radius. Of rings that is of axes, and a copy turns by up to twice as much
-/// as its axis.
-fn ligand_turn(plan: &DockPlan) -> f64 {
-    let turns = if plan.options.symmetry.is_some() {
-        2.0
-    } else {
-        1.0
-    };
-    turns * plan.covering_radius_degrees.to_radians()
+/// What a run computes with.
+struct Prepared<T: Real> {
+    spectra: ReceptorSpectra<T>,
+    engine: ScanEngine<T>,
+    scorer: ExactScorer,
+    /// Error of the compressed components at the probe rotations, relative to their best score.
+    rank_error: f64,
+    effects: Vec<EffectCost>,
 }
 
-/// Climbs from the best grid poses, of rings from the ring nearest to each. Poses are given as they are printed, and so scored: a quaternion's digits
-/// survive the table's round trip.
+impl<T: Real> Prepared<T> {
+    /// Transforms the receptor, chooses the rank and times the effects.
+    fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, SearchError> {
+        progress.stage("prepare", 1);
+        let engine = &plan.search.engine;
+        let spectra = ReceptorSpectra::new(engine, &plan.receptor, &plan.ligand, Quantity::Score);
+        let ChosenRank {
+            engine,
+            error: rank_error,
+        } = rank_of(plan, &spectra);
+        let effects = effect_timings(plan, &spectra, &engine);
+        let prepared = Self {
+            engine: ScanEngine::new(&plan.search, engine)?,
+            spectra,
+            scorer: plan.exact_scorer()?,
+            rank_error,
+            effects,
+        };
+        progress.advance(1);
+        Ok(prepared)
+    }
+}
+
+/// What a search found.
+struct Found {
+    /// The best peaks, best first.
+    peaks: Vec<Peak>,
+    /// Rotations of the set that were searched.
+    searched: usize,
+    /// What a finer search covered.
+    fine: Option<FineSearched>,
+}
+
+impl Found {
+    /// Where the run stopped before its end, if it did: `kept` poses are carried on.
+    fn stopped(&self, plan: &DockPlan, kept: usize) -> Option<Stopped> {
+        (self.searched < plan.rotations || kept < self.peaks.len()).then_some(Stopped {
+            rotations: self.searched,
+            poses: kept,
+        })
+    }
+}
+
+/// Searches the rotations, then the finer ones if the plan has any.
+fn find<T: Real>(
+    plan: &DockPlan,
+    engine: &ScanEngine<T>,
+    deadline: Option<&Deadline>,
+    (progress, clock): (&dyn Progress, &mut Clock),
+) -> Result<Found, SearchError> {
+    let search = &plan.search;
+    let groups = schedule(search, deadline.is_some());
+    let wanted: usize = groups.iter().map(RotationGroup::count).sum();
+    progress.stage("search", wanted as u64);
+    let Scanned {
+        mut peaks,
+        rotations: searched,
+    } = scan(search, engine, &groups, search.kept, deadline, progress)?;
+    clock.lap("search");
+    if peaks.is_empty() {
+        return Err(SearchError::NoPose);
+    }
+    let mut fine = None;
+    if !search.rotations.fine.is_empty() {
+        let (finer, searched) = search_finer(search, engine, peaks, progress)?;
+        (peaks, fine) = (finer, Some(searched));
+        clock.lap("fine");
+    }
+    Ok(Found {
+        peaks,
+        searched,
+        fine,
+    })
+}
+
+/// Refines the best grid poses, of rings all. Poses are rounded to their printed digits before they are scored, so that
+/// the table's rows give back the same scores.
 fn refine<T: Real>(
     plan: &DockPlan,
-    folded: &ReceptorSpectra<T>,
-    peaks: &[Peak],
-    grid_poses: &[Pose],
+    spectra: &ReceptorSpectra<T>,
+    (peaks, grid_poses): (&[Peak], &[Pose]),
     body: &RigidBody,
     progress: &dyn Progress,
 ) -> Vec<RefinedPose> {
     let count = plan.refined().min(peaks.len());
     progress.stage("refine", count as u64);
-    let field = (count > 0).then(|| PotentialGrid::new(&plan.engine, folded, &plan.ligand));
-    let limits = ClimbLimits {
+    let engine = &plan.search.engine;
+    let field = (count > 0).then(|| PotentialGrid::new(engine, spectra, &plan.ligand));
+    let limits = AscentLimits {
         evaluations: 40,
         distance: 3.0 * plan.spacing,
-        angle: ligand_turn(plan),
+        angle: plan.search.rotation_step(),
         gyration: body.gyration(),
         angstrom: plan.angstrom,
     };
-    let center = plan.engine.ligand_center;
-    let place = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
+    let refined = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
+        let grid = (pose, peak.score);
         let Some(field) = field.as_ref().filter(|_| index < count) else {
             return RefinedPose::best_of((printed(pose), peak.score), None);
         };
-        let placed = match &plan.rings {
-            Some(rings) => {
-                let (top, score) = rings.maximize(field, center, pose, &limits);
-                RefinedPose {
-                    start: printed(&rings.nearest(pose)),
-                    pose: printed(&top),
-                    score,
-                    refined: true,
-                }
-            }
-            None => {
-                let gradient = |pose: &Pose| field.gradient(pose);
-                let (top, score) = maximize(*pose, center, &limits, gradient, rigid_body(center));
-                RefinedPose::best_of((printed(pose), peak.score), Some((printed(&top), score)))
-            }
-        };
+        let center = engine.ligand_center();
+        let refined = plan.search.space.refined(field, center, grid, &limits);
         progress.advance(1);
-        placed
+        refined
     };
     // Those that are refined come first, so long shares would leave some threads without any.
-    let places = peaks.par_iter().zip(grid_poses).enumerate();
-    places.with_max_len(CLIMBS_TOGETHER).map(place).collect()
+    let poses = peaks.par_iter().zip(grid_poses).enumerate();
+    poses.with_max_len(REFINED_TOGETHER).map(refined).collect()
+}
+
+/// Exact scores of the best grid poses, which the fast path is checked against.
+struct Check {
+    at_grid: Vec<ExactScore>,
+    /// Seconds that one took.
+    seconds: f64,
+}
+
+impl Check {
+    fn new(scorer: &ExactScorer, grid_poses: &[Pose]) -> Self {
+        let begun = Instant::now();
+        let at_grid: Vec<ExactScore> = grid_poses
+            .par_iter()
+            .map(|pose| scorer.score(&printed(pose)))
+            .collect();
+        let seconds = begun.elapsed().as_secs_f64() / at_grid.len() as f64;
+        Self { at_grid, seconds }
+    }
+
+    /// The exact scores of poses that are candidates as they are; of rings none, for none lies on the grid.
+    fn at_start(&self, plan: &DockPlan) -> &[ExactScore] {
+        if plan.search.space.is_on_grid() {
+            &self.at_grid
+        } else {
+            &[]
+        }
+    }
+
+    /// The fast path's error, relative to the best exact score.
+    fn error(&self, plan: &DockPlan, peaks: &[Peak], ranking: &Ranking) -> MeasuredError {
+        // Rows stand for clusters by their pose scores; the best score may be another pose's.
+        let at_start = self.at_start(plan).iter().map(|exact| exact.score);
+        let rows = ranking.poses.iter().map(|row| row.search_score);
+        let best = error_scale(rows.chain(at_start), 0.0);
+        MeasuredError::over(peaks, &self.at_grid, best)
+    }
+}
+
+/// Number of poses that are carried on: all, or as many as there is time for, or as the run had that is repeated.
+fn kept(
+    plan: &DockPlan,
+    deadline: Option<&Deadline>,
+    (peaks, refined): (&[Peak], &[RefinedPose]),
+    rescorer: Option<&Rescorer>,
+    (check, body): (&Check, &RigidBody),
+) -> usize {
+    match (deadline, plan.options.stopped) {
+        (_, Some(stopped)) => stopped.poses.min(peaks.len()),
+        (Some(deadline), None) => {
+            let poses = (peaks, refined);
+            poses_in_time(
+                deadline,
+                poses,
+                rescorer,
+                check.seconds,
+                body,
+                &plan.options,
+            )
+        }
+        (None, None) => peaks.len(),
+    }
+}
+
+/// The poses with their further terms, best first.
+fn rescore(
+    plan: &DockPlan,
+    (peaks, refined): (&[Peak], &[RefinedPose]),
+    check: &Check,
+    rescorer: Option<&Rescorer>,
+    progress: &dyn Progress,
+) -> Vec<Candidate> {
+    if rescorer.is_some() {
+        progress.stage("rescore", 1);
+    }
+    let candidates = candidates(peaks, refined, check.at_start(plan), rescorer);
+    if rescorer.is_some() {
+        progress.advance(1);
+    }
+    candidates
 }
 
 /// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.

@@ -1,16 +1,17 @@
 //! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
 
-use crate::dock::loose::Loose;
+use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
-use crate::options::DockOptions;
 use crate::options::effect_choice::EffectChoice;
+use crate::options::{AntibodySurface, DockOptions};
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
-use crate::priors::restraints::{AntibodySurface, Restraints};
-use crate::rank::rescoring::Asked;
+use crate::priors::restraints::Restraints;
+use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::engine::Plan;
 use knotdock_scoring::symmetry::RingAxis;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
@@ -62,10 +63,10 @@ pub struct Scene {
     pub decisions: Vec<Decision>,
     /// What was assumed in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// What poses should touch.
-    pub attracted: ActiveResidues,
-    /// Residues that are missing, and those near ends of chains; none where they cost nothing.
-    pub loose: Loose,
+    /// Residues that should be in contact.
+    pub active: ActiveResidues,
+    /// Unresolved segments and residues near termini; empty where they cost nothing.
+    pub regions: FlexibleRegions,
     /// The axis of the ring that the molecule is, where two such rings are asked for.
     pub ring_axis: Option<RingAxis>,
 }
@@ -87,14 +88,14 @@ impl Scene {
         ligand: &Molecule,
         options: &DockOptions,
     ) -> Result<Self, SearchError> {
-        options.check_effects()?;
+        options.check_ranges()?;
         let ring_axis = ring_axis(receptor, options)?;
         let molecules = [receptor, ligand];
-        let labels = molecules.map(|molecule| molecule.labels(options.ph));
+        let labels = molecules.map(|molecule| molecule.labels(options.terms.ph));
         let restraints = Restraints::new(molecules, options)?;
         let why_not = |effect: Effect| {
             if effect == Effect::Restraint {
-                let none = match options.antibody {
+                let none = match options.restraints.antibody {
                     AntibodySurface::Cdrs => {
                         "neither is an antibody, and no residue is blocked or attracted"
                     }
@@ -114,16 +115,16 @@ impl Scene {
         };
         let mut decisions = Vec::new();
         for effect in Effect::ALL {
-            let asked = match &options.effects {
+            let asked = match &options.kernel.effects {
                 EffectChoice::Auto => None,
                 EffectChoice::Only(effects) => Some(effects.contains(&effect)),
             };
             let (on, reason) = match (effect, asked, why_not(effect)) {
                 (Effect::Shape, ..) => (true, "always on".to_owned()),
-                (Effect::Restraint, Some(false), _) if options.names_residues() => {
+                (Effect::Restraint, Some(false), _) if options.restraints.names_residues() => {
                     return Err(SearchError::Option {
                         name: "effects",
-                        value: options.effects.clone().into(),
+                        value: options.kernel.effects.clone().into(),
                         bound:
                             "auto or name restraint too, since residues are blocked or attracted"
                                 .to_owned(),
@@ -146,7 +147,7 @@ impl Scene {
             };
             decisions.push(Decision { effect, on, reason });
         }
-        let cores = molecules.map(|molecule| core_weights(molecule, options.core_weight));
+        let cores = molecules.map(|molecule| core_weights(molecule, options.terms.core_weight));
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
         // A label that no effect reads is left off.
@@ -168,15 +169,15 @@ impl Scene {
         let (ligand, ligand_report) = label(ligand.knots()?, ligand_labels)?;
         let mut terms = Vec::new();
         if on(Effect::Electrostatics) {
-            let weight = options.electrostatics_weight;
+            let weight = options.terms.electrostatics_weight;
             terms.push(electrostatics::term(&receptor, &ligand, weight));
         }
         if on(Effect::Contact) {
-            let potential = options.contact_potential.clone().unwrap_or_default();
+            let potential = options.terms.contact_potential.clone().unwrap_or_default();
             terms.push(contact::term(
                 &receptor,
                 &ligand,
-                options.contact_weight,
+                options.terms.contact_weight,
                 &potential,
             ));
         }
@@ -184,14 +185,14 @@ impl Scene {
             let [own, other] = &restraints.marks;
             let residues: usize = restraints.attracted.iter().map(Vec::len).sum();
             let weights = restraint::Weights {
-                blocked: options.restraint_weight,
-                attracted: PULL * options.active_weight / residues.max(1) as f64,
+                blocked: options.restraints.restraint_weight,
+                attracted: PULL * options.restraints.active_weight / residues.max(1) as f64,
             };
             terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
         }
         let named = ActiveResidues::named(restraints.attracted, options);
         // What is known takes the place of what is assumed.
-        let attracted = if !named.sets.is_empty() || !on(Effect::Contact) {
+        let active = if !named.sets.is_empty() || !on(Effect::Contact) {
             named
         } else {
             let [own, other] = &restraints.marks;
@@ -214,8 +215,8 @@ impl Scene {
             terms,
             decisions,
             labels: [receptor_report, ligand_report],
-            attracted,
-            loose: Loose::of(molecules, options),
+            active,
+            regions: FlexibleRegions::of(molecules, options),
             ring_axis,
         })
     }
@@ -232,8 +233,8 @@ impl Scene {
                 Effect::Contact => "meshes have no atom types",
                 Effect::Restraint => "meshes have no residues",
             };
-            let asked = (effect == Effect::Restraint && options.names_residues())
-                || matches!(&options.effects, EffectChoice::Only(effects) if effects.contains(&effect));
+            let asked = (effect == Effect::Restraint && options.restraints.names_residues())
+                || matches!(&options.kernel.effects, EffectChoice::Only(effects) if effects.contains(&effect));
             if asked && effect != Effect::Shape {
                 let reason = reason.to_owned();
                 return Err(SearchError::Effect { effect, reason });
@@ -254,28 +255,43 @@ impl Scene {
             terms: Vec::new(),
             decisions: decisions.collect::<Result<_, _>>()?,
             labels: [LabelReport::default(), LabelReport::default()],
-            attracted: Default::default(),
-            loose: Default::default(),
+            active: Default::default(),
+            regions: Default::default(),
             ring_axis: None,
         })
     }
 
-    /// The active site that the partner of a peptidase is assumed to bind, where one is.
-    pub fn active_site(&self) -> Option<&AssumedSite> {
-        self.attracted.assumed.as_ref()
+    /// The engine's plan for the scene.
+    ///
+    /// # Errors
+    /// [`SearchError`] on knots or options that no engine can correlate.
+    pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
+        let terms = self.terms.clone();
+        let engine = options.kernel.engine();
+        let tolerance = options.kernel.tolerance;
+        let plan = Plan::with_effects(&self.receptor, &self.ligand, engine, tolerance, terms)?;
+        Ok(plan)
     }
 
-    /// What poses are rescored with; `None` where there is nothing to ask.
+    /// The active site that the partner of a peptidase is assumed to bind, where one is.
+    pub fn active_site(&self) -> Option<&AssumedSite> {
+        self.active.assumed.as_ref()
+    }
+
+    /// The pose terms prepared for rescoring; `None` if no term acts.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
-        let asked = Asked::of(&self.decisions, &self.attracted, &self.loose, options);
         let bodies = [&self.receptor, &self.ligand];
-        asked.rescorer(bodies, &self.attracted, &self.loose, options)
+        Rescoring::new(bodies, &self.active, &self.regions, options).rescorer()
     }
 }
 
 /// The axis of a molecule that is a ring, where two such rings are asked for.
 fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, SearchError> {
-    let Some((symmetry, folds)) = options.symmetry.and_then(|of| Some((of, of.folds()?))) else {
+    let Some((symmetry, folds)) = options
+        .search
+        .symmetry
+        .and_then(|of| Some((of, of.folds()?)))
+    else {
         return Ok(None);
     };
     let no_ring = |reason: String| SearchError::Ring { symmetry, reason };
@@ -329,9 +345,9 @@ fn lacking(
 
 #[cfg(test)]
 mod tests {
-    use crate::dock::scene::*;
+    use super::*;
     use crate::priors::restraints::tests::peptide;
-    use knotdock_scoring::rescoring;
+    use knotdock_scoring::terms::pose;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 
     /// However many residues are named, all of their contacts together draw as much.
@@ -339,11 +355,10 @@ mod tests {
     fn attracted_residues_share_their_pull() {
         let molecule = peptide(4.0);
         let pull = |residues: &str| {
-            let options = DockOptions {
-                active_weight: 1000.0,
-                active_ligand: Some(residues.parse().unwrap()),
-                ..DockOptions::default()
-            };
+            let options = DockOptions::default().changed(|options| {
+                options.restraints.active_weight = 1000.0;
+                options.restraints.active_ligand = Some(residues.parse().unwrap());
+            });
             let scene = Scene::new(&molecule, &molecule, &options).unwrap();
             let is_restraint = |term: &&Term| term.effect == Effect::Restraint;
             let term = scene.terms.iter().find(is_restraint).unwrap();
@@ -358,6 +373,6 @@ mod tests {
     #[test]
     fn the_types_of_molecules_are_those_of_the_potential() {
         assert_eq!(CONTACT_TYPES, contact::TYPES);
-        assert_eq!(atom_kinds(), rescoring::atom_kinds());
+        assert_eq!(atom_kinds(), pose::atom_kinds());
     }
 }

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::residues::{Number, Residue};
+use super::residue::{Number, Residue};
 
 const MATCH: f64 = 5.0;
 const MISMATCH: f64 = -2.0;

@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
-use super::residues::{Residue, Residues};
+use super::residue::Residue;
+use super::residues::Residues;
 
 /// Largest distance of a contact, in Å.
 pub(super) const CONTACT_DISTANCE: f64 = 5.0;

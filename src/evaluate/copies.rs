@@ -12,8 +12,9 @@ use nalgebra::{Point3, Vector3};
 
 use super::contacts::contacts_between;
 use super::matching::ChainPair;
-use super::placements::{Placement, WORST_FIT};
+use super::placement::Placement;
 use super::residues::Residues;
+use super::superposition::MAX_FIT_RMSD;
 
 /// Share of what the best combination matches, of either side, that another must match.
 const MIN_OF_BEST: f64 = 0.8;
@@ -156,7 +157,8 @@ fn nearly_complete(
     };
     let best = all.iter().map(share).fold(0.0, f64::max);
     let complete = |one: &Combination| share(one) >= MIN_OF_BEST * best;
-    let fits = |placement: &Placement| placement.rmsd <= WORST_FIT && placement.displaced.is_none();
+    let fits =
+        |placement: &Placement| placement.rmsd <= MAX_FIT_RMSD && placement.displaced.is_none();
     let fit = |one: &Combination| {
         fits(&receptor.placements[one.receptor]) && fits(&ligand.placements[one.ligand])
     };
@@ -230,7 +232,7 @@ fn balls(residues: &Residues) -> Vec<(Point3<f64>, f64)> {
             };
             let sum: Vector3<f64> = members().map(|one| one.center.coords).sum();
             let center = Point3::from(sum / segment.members.len().max(1) as f64);
-            let reach = |one: &super::residues::Residue| {
+            let reach = |one: &super::residue::Residue| {
                 nalgebra::distance(&one.center, &center) + one.radius
             };
             (center, members().map(reach).fold(0.0, f64::max))

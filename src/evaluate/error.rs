@@ -1,6 +1,6 @@
 //! Why poses cannot be judged by the native given.
 
-use super::placements::WORST_FIT;
+use super::superposition::MAX_FIT_RMSD;
 
 /// Why an [`Evaluator`](super::Evaluator) could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum EvaluateError {
     /// A docked side has another shape than the native's.
     #[error(
         "the docked {side} does not fit the native: its backbone lies {rmsd:.1} Å RMSD from the native's; at most \
-         {WORST_FIT:.0} Å mean anything"
+         {MAX_FIT_RMSD:.0} Å mean anything"
     )]
     Superposition {
         /// "receptor" or "ligand".

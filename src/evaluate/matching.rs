@@ -5,7 +5,8 @@
 use std::collections::HashMap;
 
 use super::alignment::{Alignment, align};
-use super::residues::{Number, Residue, Residues};
+use super::residue::{Number, Residue};
+use super::residues::Residues;
 
 /// Residues of one of the user's chains matched with those of one of the native's.
 #[derive(Clone, Debug, PartialEq)]

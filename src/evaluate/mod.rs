@@ -37,9 +37,11 @@ mod dockq;
 mod error;
 mod matching;
 mod native;
+mod placement;
 mod placement_builder;
 mod placements;
 mod report;
+mod residue;
 mod residues;
 mod rmsd;
 mod segments;
@@ -65,9 +67,10 @@ pub use shared_chains::{SharedChains, shared_chains};
 
 use contacts::{AcrossPair, NativeContacts, pairs_across};
 use native::{Groups, Way, check_docked_share};
-use placements::{Placement, WORST_FIT};
+use placement::Placement;
 use residues::Residues;
 use rmsd::{RmsdForms, Side, ligand_is_smaller};
+use superposition::MAX_FIT_RMSD;
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
 const MIN_INTERFACE_SHARE: f64 = 0.5;
@@ -294,7 +297,7 @@ fn check_fit(side: &'static str, placement: &Placement) -> Result<(), EvaluateEr
             distance: displaced.distance,
         });
     }
-    if placement.rmsd > WORST_FIT {
+    if placement.rmsd > MAX_FIT_RMSD {
         return Err(EvaluateError::Superposition {
             side,
             rmsd: placement.rmsd,

@@ -6,7 +6,8 @@ use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
 use super::copies::{Combination, PlacedCopy, Uncombined, combinations};
-use super::placements::{Placement, placements};
+use super::placement::Placement;
+use super::placements::placements;
 use super::report::NativeComplex;
 use super::residues::Residues;
 

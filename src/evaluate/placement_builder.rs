@@ -4,10 +4,10 @@ use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
 use super::matching::{ChainPair, align_members};
-use super::placements::{Displaced, Placement, WORST_FIT};
+use super::placement::{Displaced, Placement};
 use super::residues::Residues;
 use super::rmsd::backbone_pairs;
-use super::superposition::{PointPair, Superposition};
+use super::superposition::{MAX_FIT_RMSD, PointPair, Superposition};
 
 /// Equal residues that a chain has by no chance.
 const DISTINCTIVE: usize = 20;
@@ -241,7 +241,7 @@ impl<'a> Builder<'a> {
             let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
             let points = [self.points.as_slice(), &added].concat();
             let all = Superposition::new(&points);
-            if all.rmsd(&all.best) <= WORST_FIT {
+            if all.rmsd(&all.best) <= MAX_FIT_RMSD {
                 self.take(pair);
             } else if pair.pairs.len() >= DISTINCTIVE {
                 self.displaced.get_or_insert(Displaced {

@@ -9,81 +9,19 @@
 //! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a hinge, a
 //! domain that moved), unless the whole would fit no longer: then the placement is displaced.
 
-use knotdock_scoring::se3::Pose;
-
 use super::matching::{ChainPair, align_all};
+use super::placement::Placement;
 use super::placement_builder::{Builder, Candidate};
 use super::residues::Residues;
 use super::rmsd::backbone_pairs;
 use super::superposition::Superposition;
 
-/// A side whose backbone is farther than this from the native's, in Å RMSD, does not fit it.
-pub(super) const WORST_FIT: f64 = 15.0;
 /// Pairs with less than this share of the largest's residues begin no placement.
 const MIN_SEED: f64 = 0.2;
 /// Most placements that are made: more than a capsid has chains.
 const MAX_PLACEMENTS: usize = 256;
 /// Pairs of fewer residues lie together by chance, where there are longer ones.
 const MIN_PAIRS: usize = 3;
-
-/// One way in which a side lies on the native.
-#[derive(Clone, Debug)]
-pub(super) struct Placement {
-    /// Which residues are which, chain by chain. No residue stands in two.
-    pub chains: Vec<ChainPair>,
-    /// Takes the side from its own frame to the native's.
-    pub motion: Pose,
-    /// Backbone RMSD in Å of all matched residues after `motion`.
-    pub rmsd: f64,
-    /// A chain whose only counterpart stands where the rest of the side does not allow it.
-    pub displaced: Option<Displaced>,
-}
-
-/// A chain of the user's that the native has elsewhere.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Displaced {
-    /// Name of the user's chain.
-    pub chain: String,
-    /// Name of the native's.
-    pub native_chain: String,
-    /// How far the second is from where it should be, RMSD in Å.
-    pub distance: f64,
-}
-
-impl Placement {
-    /// All equal residues: (index of the user's, index of the native's).
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.chains
-            .iter()
-            .flat_map(|chain| chain.pairs.iter().copied())
-    }
-
-    /// Number of equal residues.
-    pub fn matched(&self) -> usize {
-        self.chains.iter().map(|chain| chain.pairs.len()).sum()
-    }
-
-    /// Indices of the native's segments that have part in it, rising.
-    pub fn native_segments(&self) -> Vec<usize> {
-        let mut segments: Vec<usize> = self.chains.iter().map(|chain| chain.native).collect();
-        segments.sort_unstable();
-        segments.dedup();
-        segments
-    }
-
-    /// Indices of the native's matched residues, rising.
-    pub fn natives(&self) -> Vec<usize> {
-        let mut natives: Vec<usize> = self.pairs().map(|(_, native)| native).collect();
-        natives.sort_unstable();
-        natives
-    }
-
-    fn sorted_pairs(&self) -> Vec<(usize, usize)> {
-        let mut pairs: Vec<_> = self.pairs().collect();
-        pairs.sort_unstable();
-        pairs
-    }
-}
 
 /// The ways in which the user's side may lie on the native, the pair with most residues first. Empty when no sequence
 /// matches.
@@ -136,6 +74,7 @@ mod tests {
         chain_of, helix, molecule, moved, numbers, random_sequence, renamed,
     };
     use super::*;
+    use knotdock_scoring::se3::Pose;
     use knotdock_structures::molecule::Atom;
 
     fn residues(atoms: &[Atom]) -> Residues {

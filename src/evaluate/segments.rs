@@ -17,7 +17,7 @@
 
 use std::collections::HashSet;
 
-use super::residues::{LINKING_OXYGEN, Number, PHOSPHATE_BOND, PHOSPHORUS, Residue};
+use super::residue::{LINKING_OXYGEN, Number, PHOSPHATE_BOND, PHOSPHORUS, Residue};
 
 /// Smallest step in residue numbers that begins a new segment.
 const LEAP: i64 = 100;

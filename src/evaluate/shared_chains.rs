@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use knotdock_structures::molecule::Molecule;
 
 use super::alignment::align;
-use super::residues::{Residue, Residues};
+use super::residue::Residue;
+use super::residues::Residues;
 
 /// Fewest residues of a chain that counts.
 const MIN_RESIDUES: usize = 5;

@@ -17,6 +17,9 @@
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, SymmetricEigen, UnitQuaternion, Vector3};
 
+/// Largest backbone RMSD in Å of a side that fits the native.
+pub(super) const MAX_FIT_RMSD: f64 = 15.0;
+
 /// A moving point and the fixed point that it is compared with, in Å.
 pub(super) type PointPair = (Point3<f64>, Point3<f64>);
 

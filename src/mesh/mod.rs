@@ -23,15 +23,17 @@
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
+use knotdock_structures::numeric::Bump;
+use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampler::feature_size::feature_size;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
 use knotdock_structures::sampler::hausdorff::HausdorffMeter;
 use knotdock_structures::sampler::lattice::lattice;
 use knotdock_structures::sampler::weights::{self, FittedWeights};
 use knotdock_structures::sampler::{SampleError, knots};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use crate::options::DockOptions;
+use crate::options::{DockOptions, SampleWeights};
 
 /// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
@@ -43,30 +45,8 @@ pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 const CELL: f64 = 0.5 * RESOLUTION;
 /// What plays the part of an Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
-/// Nodes along each edge of a part's grid by default: m = 2^18.
-pub const PER_AXIS: usize = 64;
-
-/// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
-pub const MAX_PER_AXIS: usize = 512;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
-
-/// What the balls of a mesh weigh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SampleWeights {
-    /// Such that the summed bumps come closest to one inside and to zero outside.
-    #[default]
-    Fitted,
-    /// One each.
-    Unit,
-}
-
-impl SampleWeights {
-    fn are_fitted(self) -> bool {
-        self == Self::Fitted
-    }
-}
 
 /// How two meshes are sampled. Lengths in the files' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +72,9 @@ pub enum MeshSceneError {
         /// Why.
         source: SampleError,
     },
+    /// The bump function has no such exponent.
+    #[error(transparent)]
+    Alpha(#[from] AlphaError),
     /// The balls are not usable.
     #[error(transparent)]
     Knots(#[from] KnotsError),
@@ -141,7 +124,7 @@ impl MeshSceneError {
             Self::Sample { part, .. } | Self::Size { part, .. } | Self::Thin { part, .. } => {
                 Some(*part)
             }
-            Self::Knots(_) | Self::Offset { .. } => None,
+            Self::Alpha(_) | Self::Knots(_) | Self::Offset { .. } => None,
         }
     }
 
@@ -151,6 +134,7 @@ impl MeshSceneError {
             Self::Sample { .. } => {
                 "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
             }
+            Self::Alpha(_) => "give --alpha a number above zero",
             Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
             Self::Size { .. } => {
                 "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
@@ -273,10 +257,10 @@ pub fn sample_pair(
             true => solid.mesh().volume(),
             false => HausdorffMeter::new(solid, field).volume(),
         };
-        let fitted = options
-            .weights
-            .are_fitted()
-            .then(|| weights::fit(field, &balls, options.alpha, volume()));
+        let fitted = (options.weights == SampleWeights::Fitted)
+            .then(|| Bump::new(options.alpha))
+            .transpose()?
+            .map(|bump| weights::fit(field, &balls, bump, volume()));
         // A ball without weight would only cost time.
         let (balls, weights): (Vec<_>, Vec<f64>) = balls
             .into_iter()
@@ -311,12 +295,12 @@ impl MeshPair {
 
     /// The defaults of options that are lengths, for what was not given.
     pub fn defaults(&self, options: &mut DockOptions, given: GivenLengths) {
-        options.offset = self.offset;
+        options.kernel.offset = self.offset;
         if !given.resolution {
-            options.resolution = RESOLUTION * self.offset;
+            options.kernel.resolution = RESOLUTION * self.offset;
         }
         if !given.cluster_radius {
-            options.cluster_radius = CLUSTER_RADIUS * self.offset;
+            options.ranking.cluster_radius = CLUSTER_RADIUS * self.offset;
         }
     }
 }

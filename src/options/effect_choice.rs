@@ -59,7 +59,7 @@ impl std::str::FromStr for EffectChoice {
 
 #[cfg(test)]
 mod tests {
-    use crate::options::effect_choice::*;
+    use super::*;
 
     #[test]
     fn choices_are_read_and_written_alike() {

@@ -23,7 +23,7 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<(), FileError> {
             writeln!(
                 file,
                 "{x:.16e},{y:.16e},{z:.16e},{radius:.16e},{:.16e}",
-                weight.re
+                weight
             )?;
         }
         Ok(())
@@ -148,7 +148,7 @@ pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<(), PseudoAtomEr
             let [x, y, z] = center;
             // Names are reused past what the columns hold; a chain has 9,999 residues.
             let chain = char::from(b'A' + (index / 9999 % 26) as u8);
-            let weight = knots.weights[index].re.clamp(0.0, 999.99);
+            let weight = knots.weights[index].clamp(0.0, 999.99);
             writeln!(
                 file,
                 "HETATM{:>5}  X   BAL {chain}{:>4}    {x:8.3}{y:8.3}{z:8.3}{weight:6.2}{:6.2}           X",

@@ -4,7 +4,6 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::Symmetry;
 use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
@@ -12,6 +11,7 @@ use knotdock_structures::molecule::{
 use super::poses::PoseRow;
 use super::program::VERSION;
 use super::whole_file::{FileError, write_whole};
+use crate::pose_space::arrangement::Arrangement;
 
 /// Complexes as written.
 #[derive(Clone, Debug)]
@@ -33,25 +33,22 @@ pub fn file_names(rank: usize) -> [String; 3] {
 }
 
 /// Writes the complexes of `rows` into `folder` as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
-/// complex does not fit the PDB format. With a symmetry the ligand is a copy of the receptor, and all others of the ring are written too.
+/// complex does not fit the PDB format. Of a ring all copies are written.
 ///
 /// # Errors
 /// [`FileError`] when the folder cannot be made, a file cannot be written, or a row's pose is not one of such a ring.
 pub fn write_complexes(
     [receptor, ligand]: [&Molecule; 2],
-    symmetry: Option<Symmetry>,
+    arrangement: Arrangement,
     rows: &[PoseRow],
     folder: &Path,
 ) -> Result<Written, FileError> {
     if !rows.is_empty() {
         std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
-    let poses = |row: &PoseRow| match symmetry {
-        None => Ok(vec![row.pose]),
-        Some(symmetry) => match symmetry.ring(&row.pose) {
-            Some(ring) => Ok(ring[1..].to_vec()),
-            None => Err(not_a_ring(symmetry, row, folder)),
-        },
+    let poses = |row: &PoseRow| {
+        let images = arrangement.images(&row.pose);
+        images.ok_or_else(|| no_ring(arrangement, row, folder))
     };
     let copies = rows.iter().map(poses).collect::<Result<Vec<_>, _>>()?;
     // Placed molecules are made twice, once to see whether they fit and once to be written: many at once may not fit
@@ -64,7 +61,7 @@ pub fn write_complexes(
         .iter()
         .all(|poses| complex_format(&with(receptor, &placed(poses))) == Format::Pdb);
     let unplaced = match rows {
-        [] => vec![ligand.clone(); symmetry.map_or(1, |symmetry| symmetry.copies() - 1)],
+        [] => vec![ligand.clone(); arrangement.placed()],
         _ => Vec::new(),
     };
     let format = match rows {
@@ -77,7 +74,7 @@ pub fn write_complexes(
     for (row, poses) in rows.iter().zip(&copies) {
         let name = file_name(row.rank, format.extension());
         let others = placed(poses);
-        let remarks = remarks(row, symmetry);
+        let remarks = remarks(row, arrangement);
         write_whole(&folder.join(&name), |mut file| {
             let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
             chains = Some(map.map_err(io_error)?);
@@ -99,28 +96,24 @@ fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule>
     std::iter::once(receptor).chain(others).collect()
 }
 
-/// A row whose pose was not made by a search for such rings.
-fn not_a_ring(symmetry: Symmetry, row: &PoseRow, folder: &Path) -> FileError {
-    let rank = row.rank;
+/// The error of a row whose pose forms no ring.
+fn no_ring(arrangement: Arrangement, row: &PoseRow, folder: &Path) -> FileError {
     let error = io::Error::other(format!(
-        "the pose of rank {rank} makes no ring of {symmetry}"
+        "the pose of rank {} forms no ring{}",
+        row.rank,
+        arrangement.suffix()
     ));
     FileError::writing(folder, error)
 }
 
-/// What a complex says of itself: where it comes from and how its ligand, or each copy of a ring from the one before it, was moved.
-fn remarks(row: &PoseRow, symmetry: Option<Symmetry>) -> Vec<String> {
+/// Remarks of a complex: its origin, and how its ligand, or each copy of a ring from the one before it, was moved.
+fn remarks(row: &PoseRow, arrangement: Arrangement) -> Vec<String> {
     let [w, x, y, z] = row.pose.quaternion();
     let t = row.pose.translation;
-    let (rank, what) = match symmetry {
-        Some(symmetry) => {
-            let what = match symmetry.folds() {
-                Some(_) => "ring",
-                None => "each copy",
-            };
-            (format!("rank {} of {symmetry}", row.rank), what)
-        }
-        None => (format!("rank {}", row.rank), "ligand"),
+    let rank = format!("rank {}{}", row.rank, arrangement.suffix());
+    let what = match arrangement.moved() {
+        "copy" => "each copy",
+        moved => moved,
     };
     vec![
         format!("knotdock {VERSION}, {rank}"),

@@ -7,15 +7,12 @@ use super::poses::Column;
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, score of the cluster where it has one, by which they are ordered, then of its best pose pose score and z-score, size of the
-/// cluster, and whatever columns are appended to the poses.
+/// The best clusters as a table: rank, score, size of the cluster, pose score and z-score of its best pose, and whatever
+/// columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let clustered = ranking.iter().any(|row| row.cluster_score.is_some());
-    let mut header = vec!["rank"];
-    header.extend(clustered.then_some("cluster score"));
-    header.extend(["pose score", "z-score", "cluster size", "unfiltered"]);
+    let header = ["rank", "score", "cluster size", "pose score", "z-score"];
     let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];
@@ -25,16 +22,14 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         };
         let tenths =
             |value: Option<f64>| value.map(|value| format!("{value:.1}")).unwrap_or_default();
-        let mut line = vec![(index + 1).to_string()];
-        line.extend(clustered.then(|| tenths(row.cluster_score)));
-        line.extend([
+        let size = row.cluster_size.map(|size| size.to_string());
+        let mut line = vec![
+            (index + 1).to_string(),
+            tenths(Some(row.score)),
+            size.unwrap_or_default(),
             tenths(Some(row.pose_score)),
             tenths(row.z_score),
-            row.cluster_size
-                .map(|size| size.to_string())
-                .unwrap_or_default(),
-            tenths(Some(row.score_unfiltered)),
-        ]);
+        ];
         line.extend(appended.iter().map(|column| {
             let field = column.fields.get(index).map_or("", String::as_str);
             match field.parse::<f64>() {
@@ -98,6 +93,7 @@ pub fn align(lines: &[Vec<String>]) -> String {
 mod tests {
     use super::*;
     use knotdock_scoring::se3::Pose;
+    use knotdock_scoring::terms::pose::TermValues;
 
     fn pose(score: f64, cluster: Option<usize>) -> RankedPose {
         RankedPose {
@@ -112,12 +108,7 @@ mod tests {
             score_unfiltered: score,
             terms: [Some(score), None, None, None],
             slices: [0.0; 3],
-            fine_contact: None,
-            atom_pair: None,
-            relaxed: None,
-            attraction: None,
-            missing: None,
-            chain_ends: None,
+            pose_terms: TermValues::default(),
             other_copies: None,
             pose_score: score,
             z_score: None,

@@ -1,14 +1,13 @@
-//! Axes for rings: directions over half a sphere, and the grid's voxels whose poses turn about such an axis without sliding along it.
+//! Directions of ring axes, near uniform over half a sphere.
 
-use knotdock_scoring::engine::CpuEngine;
-use knotdock_scoring::symmetry::RingAxis;
-use knotdock_scoring::transform::Real;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Directions of axes, near uniform over half a sphere: a spiral of equal steps in height, each turned on by the golden angle (Swinbank and
-/// Purser, Q. J. R. Meteorol. Soc. 132 (2006) 1769-1793). The other half holds the same rings with their copies counted the other way.
+/// `count` axis directions, near uniform over half a sphere.
+///
+/// They form a spiral of equal steps in height, each rotated by the golden angle (Swinbank and Purser, Q. J. R.
+/// Meteorol. Soc. 132 (2006) 1769-1793). The other half holds the same rings, their copies counted the other way.
 pub fn axis_set(count: usize) -> Vec<Unit<Vector3<f64>>> {
     let golden = PI * (3.0 - 5f64.sqrt());
     let axis = |index: usize| {
@@ -23,8 +22,9 @@ pub fn axis_set(count: usize) -> Vec<Unit<Vector3<f64>>> {
     (0..count).map(axis).collect()
 }
 
-/// Largest angle in radians from any axis to the nearest of the set, an axis having no sign: over a fixed sample of directions, so a lower bound that is
-/// within a few per cent.
+/// Largest angle in radians from any axis to the nearest of the set; axes have no sign.
+///
+/// It is taken over a fixed sample of directions, so it is a lower bound, within a few per cent.
 pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
     // About 1e8 comparisons at most.
     let probes = (100_000_000 / axes.len().max(1)).clamp(64, 20_000);
@@ -42,204 +42,9 @@ pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
     least.min(1.0).acos()
 }
 
-/// Where voxels lie, to tell those whose poses make rings.
-pub(crate) struct RingVoxels {
-    /// Position of the ligand's centre less the receptor's along each axis of the grid, Å.
-    places: [Vec<f64>; 3],
-    receptor_center: Vector3<f64>,
-    ligand_center: Vector3<f64>,
-    spacing: f64,
-    /// The axis that a ring's must cross, of Dn.
-    across: Option<RingAxis>,
-}
-
-/// Voxels that stay: those that a plane runs through.
-struct Layer {
-    /// The plane's normal.
-    normal: Unit<Vector3<f64>>,
-    /// Where along it a voxel at the origin of positions lies, from the plane, Å.
-    start: f64,
-    /// Half of what a voxel reaches along it, Å.
-    reach: f64,
-}
-
-impl RingVoxels {
-    /// For the grids of an engine.
-    pub fn new<T: Real>(engine: &CpuEngine<T>, across: Option<RingAxis>) -> Self {
-        let plan = engine.plan();
-        let [nx, ny, nz] = plan.size();
-        let along = |axis: usize, count: usize, stride: usize| -> Vec<f64> {
-            let place = |index| engine.position(index * stride)[axis];
-            (0..count).map(place).collect()
-        };
-        Self {
-            places: [along(0, nx, ny * nz), along(1, ny, nz), along(2, nz, 1)],
-            receptor_center: plan.receptor_center,
-            ligand_center: plan.ligand_center,
-            spacing: plan.spacing,
-            across,
-        }
-    }
-
-    /// The layer of voxels whose poses move the molecule's origin by `shift` along `normal`.
-    fn layer(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        normal: Unit<Vector3<f64>>,
-        shift: f64,
-    ) -> Layer {
-        // How far a ligand is moved along it whose centre lies on the receptor's.
-        let from = self.receptor_center - rotation * self.ligand_center;
-        Layer {
-            normal,
-            start: normal.dot(&from) - shift,
-            reach: 0.5 * self.spacing * (normal.x.abs() + normal.y.abs() + normal.z.abs()),
-        }
-    }
-
-    /// Leaves of a rotation's grid only voxels through which the plane across the axis runs, on which its poses do not slide along it, and where the axis must
-    /// cross another, the plane on which it does; the others become minus infinity, and each row's largest value is found again.
-    pub fn keep<T: Real>(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        grid: &mut [T],
-        row_best: &mut [T],
-    ) {
-        let [along_x, along_y, along_z] = &self.places;
-        let slide = self.layer(rotation, Unit::new_normalize(rotation.imag()), 0.0);
-        let sideways = self.across.map(|across| {
-            let (normal, shift) = across.sideways(rotation);
-            self.layer(rotation, normal, shift)
-        });
-        let rows = grid.chunks_exact_mut(along_z.len()).zip(row_best);
-        for (index, (row, best)) in rows.enumerate() {
-            let (x, y) = (
-                along_x[index / along_y.len()],
-                along_y[index % along_y.len()],
-            );
-            slide.keep(x, y, along_z, row);
-            if let Some(sideways) = &sideways {
-                sideways.keep(x, y, along_z, row);
-            }
-            *best = row.iter().copied().fold(T::neg_infinity(), T::max);
-        }
-    }
-}
-
-impl Layer {
-    /// Leaves of a row of voxels those that the plane runs through.
-    fn keep<T: Real>(&self, x: f64, y: f64, along_z: &[f64], row: &mut [T]) {
-        let from = self.start + self.normal.x * x + self.normal.y * y;
-        for (value, z) in row.iter_mut().zip(along_z) {
-            if (from + self.normal.z * z).abs() > self.reach {
-                *value = T::neg_infinity();
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use crate::options::DockOptions;
-    use crate::pose_space::axes::*;
-    use knotdock_scoring::engine::{Plan, ReceptorSpectra};
-    use knotdock_scoring::lifted_axis::Quantity;
-    use knotdock_scoring::se3::Pose;
-    use knotdock_scoring::symmetry::Symmetry;
-    use knotdock_structures::Knots;
-    use std::sync::Arc;
-
-    /// The voxels that stay are those about whose position the pose can slide both ways along its axis, wherever the molecule stands in its file; and each
-    /// row's largest value is its own.
-    #[test]
-    fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
-        let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
-        let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
-        let voxels = RingVoxels::new(&engine, None);
-        let [nx, ny, nz] = plan.size();
-        let symmetry: Symmetry = "C3".parse().unwrap();
-        for axis in &axis_set(7) {
-            let rotation = symmetry.rotation(axis);
-            let value = |voxel: usize| (voxel * 7919 % 1009) as f64;
-            let mut grid: Vec<f64> = (0..nx * ny * nz).map(value).collect();
-            let mut rows = vec![f64::INFINITY; nx * ny];
-            voxels.keep(&rotation, &mut grid, &mut rows);
-            let mut kept = 0;
-            for (voxel, &left) in grid.iter().enumerate() {
-                let slide = |corner: [f64; 3]| {
-                    let place = plan.receptor_center
-                        + engine.position(voxel)
-                        + 0.5 * plan.spacing * Vector3::from(corner);
-                    let pose = Pose::about(rotation, plan.ligand_center, place);
-                    axis.dot(&pose.translation)
-                };
-                let signs = [-1.0, 1.0];
-                let corners = signs.map(|x| signs.map(|y| signs.map(|z| slide([x, y, z]))));
-                let slides = corners.as_flattened().as_flattened();
-                let through = slides.iter().any(|&s| s > -1e-9) && slides.iter().any(|&s| s < 1e-9);
-                let expected = if through {
-                    value(voxel)
-                } else {
-                    f64::NEG_INFINITY
-                };
-                assert_eq!(left, expected, "voxel {voxel}");
-                kept += usize::from(through);
-            }
-            // The plane is a layer or so of the box.
-            assert!(kept >= nx.min(ny).min(nz).pow(2) && kept < 3 * nx * ny.max(nz));
-            for (row, best) in grid.chunks_exact(nz).zip(&rows) {
-                assert_eq!(*best, row.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-            }
-        }
-    }
-
-    /// Where the axis must cross a ring's own, voxels stay about which the pose moves a point of that axis both ways aside, too: a line of them is left, which
-    /// holds the half turns at all heights.
-    #[test]
-    fn of_two_rings_voxels_along_their_axis_stay() {
-        let copies = [1.0, -1.0].map(|side| {
-            let cloud = [[9.0, 2.0, 3.0], [12.0, -3.0, 9.0], [15.0, 4.0, -6.0]];
-            let place = |[x, y, z]: [f64; 3]| [40.0 + side * x, side * y - 7.0, 3.0 + z];
-            cloud.map(place).to_vec()
-        });
-        let axis = RingAxis::of(&copies).unwrap();
-        let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
-        let [nx, ny, nz] = plan.size();
-        let symmetry: Symmetry = "D2".parse().unwrap();
-        for across in axis.across(5) {
-            let rotation = symmetry.rotation(&across);
-            let keep = |crossing| {
-                let mut grid = vec![1.0; nx * ny * nz];
-                let mut rows = vec![0.0; nx * ny];
-                RingVoxels::new(&engine, crossing).keep(&rotation, &mut grid, &mut rows);
-                grid.iter().map(|value| *value == 1.0).collect::<Vec<_>>()
-            };
-            let (line, layer) = (keep(Some(axis)), keep(None));
-            let mut heights = Vec::new();
-            for voxel in (0..line.len()).filter(|&voxel| line[voxel]) {
-                assert!(layer[voxel]);
-                let place = plan.receptor_center + engine.position(voxel);
-                let pose = Pose::about(rotation, plan.ligand_center, place);
-                let off = axis.nearest(&pose).translation - pose.translation;
-                assert!(off.norm() < 1.8 * plan.spacing, "{off}");
-                heights.push(pose.translation.z);
-            }
-            // The ring's axis is that of z, along which the voxels go from end to end.
-            heights.sort_by(f64::total_cmp);
-            assert!(heights.len() >= nz && heights.len() < 6 * nz);
-            assert!(
-                heights
-                    .windows(2)
-                    .all(|pair| pair[1] - pair[0] < 1.5 * plan.spacing)
-            );
-        }
-    }
+    use super::*;
 
     /// n caps of the covering radius hide the half sphere, so that their area is at least its own; and the set is not much worse than that.
     #[test]

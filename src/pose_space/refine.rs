@@ -1,15 +1,16 @@
-//! Climbing a peak off the grid, over translation and rotation together (BFGS).
+//! Refinement of a pose off the grid, over translation and rotation together (BFGS).
 //!
-//! The ascent runs on the receptor's field, the fast path's values read between its grid points; what is reported afterwards is
-//! the exact pair sum at the pose reached, and a ascent that the exact sum does not confirm is undone by the caller.
+//! The ascent follows the potential grid: the fast path's values, read between its grid points. The exact pair sum at
+//! the pose reached is reported afterwards. The caller undoes an ascent that the exact sum does not confirm.
 
 use knotdock_scoring::exact::PoseGradient;
+use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
 
-/// Bounds of a ascent.
+/// Bounds of an ascent.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClimbLimits {
+pub struct AscentLimits {
     /// Score evaluations at most.
     pub evaluations: usize,
     /// Farthest the ligand's centre may move, Å.
@@ -22,12 +23,54 @@ pub struct ClimbLimits {
     pub angstrom: f64,
 }
 
-/// The highest pose found from `start` on, and its score, by climbing `score`, which gives value and gradient (per Å, per radian) by the moves that
-/// `moved` makes of a turn and a shift: of the ligand about its centre ([`rigid_body`]), or of the two bodies of a ring together.
+/// A peak of the search, and the pose that it was refined to.
+#[derive(Clone, Copy)]
+pub(crate) struct RefinedPose {
+    /// The pose before refinement: the grid's, or of rings the one nearest to it.
+    pub start: Pose,
+    /// The pose after refinement.
+    pub pose: Pose,
+    /// The fast path's score at `pose`, of rings that of all copies.
+    pub score: f64,
+    /// Whether refinement found a better pose.
+    pub refined: bool,
+}
+
+impl RefinedPose {
+    /// A grid pose, and what it was refined to where that is better.
+    pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
+        let (start, score) = grid;
+        let unrefined = Self {
+            start,
+            pose: start,
+            score,
+            refined: false,
+        };
+        match refined {
+            Some((pose, higher)) if higher > score => Self {
+                pose,
+                score: higher,
+                refined: true,
+                ..unrefined
+            },
+            _ => unrefined,
+        }
+    }
+}
+
+/// The pose that its printed digits give back: normalised, w not negative.
+pub(crate) fn printed(pose: &Pose) -> Pose {
+    Pose::from_parts(pose.quaternion(), pose.translation.into())
+}
+
+/// Maximizes a score from `start`. Returned are the best pose found and its score.
+///
+/// `score` gives value and gradient (per Å, per radian). `moved` applies a rotation and a shift to a pose: to the ligand
+/// about its centre ([`rigid_body`]), or to the two bodies of a ring together.
 pub fn maximize(
     start: Pose,
     ligand_center: Vector3<f64>,
-    limits: &ClimbLimits,
+    limits: &AscentLimits,
     score: impl Fn(&Pose) -> (f64, PoseGradient),
     moved: impl Fn(&Pose, UnitQuaternion<f64>, Vector3<f64>) -> Pose,
 ) -> (Pose, f64) {
@@ -102,7 +145,7 @@ pub fn maximize(
     (pose, value)
 }
 
-/// Turns the ligand about its centre, and shifts it.
+/// Rotates the ligand about its centre, and shifts it.
 pub fn rigid_body(
     ligand_center: Vector3<f64>,
 ) -> impl Fn(&Pose, UnitQuaternion<f64>, Vector3<f64>) -> Pose {
@@ -112,9 +155,20 @@ pub fn rigid_body(
     }
 }
 
+/// Maximizes the fast path's score of a free ligand from `start`.
+pub(super) fn rigid_body_maximum(
+    field: &PotentialGrid,
+    center: Vector3<f64>,
+    start: &Pose,
+    limits: &AscentLimits,
+) -> (Pose, f64) {
+    let gradient = |pose: &Pose| field.gradient(pose);
+    maximize(*start, center, limits, gradient, rigid_body(center))
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::pose_space::refine::*;
+    use super::*;
 
     /// A paraboloid in position and angle has one top; the ascent must find it to its stopping length.
     #[test]
@@ -130,7 +184,7 @@ mod tests {
             };
             (value, gradient)
         };
-        let limits = ClimbLimits {
+        let limits = AscentLimits {
             evaluations: 60,
             distance: 5.0,
             angle: 1.0,
@@ -157,7 +211,7 @@ mod tests {
             };
             (pose.translation[0], gradient)
         };
-        let limits = ClimbLimits {
+        let limits = AscentLimits {
             evaluations: 100,
             distance: 2.0,
             angle: 0.2,

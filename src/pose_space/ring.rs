@@ -1,70 +1,39 @@
-//! Poses of rings off the grid: what the search's peaks become, and their ascent among rings, about any axis or, of Dn, about those across a ring's own.
+//! Rings of copies: their score by the fast path and its ascent, about any axis (Cn) or about axes across a ring's own (Dn).
 
-use crate::pose_space::axes::{axes_radius, axis_set};
-use crate::pose_space::refine::{ClimbLimits, maximize};
+use super::refine::{AscentLimits, maximize};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::{RingAxis, Symmetry, conjugated, conjugated_gradient};
-use nalgebra::{Unit, Vector3};
+use nalgebra::Vector3;
 
-/// The rings that are sought.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rings {
-    /// How copies stand to each other.
-    pub symmetry: Symmetry,
-    /// The axis of the molecule's own ring, of Dn.
-    pub axis: Option<RingAxis>,
-}
-
-impl Rings {
-    /// Directions of axes to be searched, and the largest angle in radians from any that may be meant to the nearest of them.
-    pub fn axes(&self, count: usize) -> (Vec<Unit<Vector3<f64>>>, f64) {
-        match &self.axis {
-            Some(axis) => (axis.across(count), axis.half_step(count)),
-            None => {
-                let axes = axis_set(count);
-                let radius = axes_radius(&axes);
-                (axes, radius)
+/// Maximizes the score of a ring from `start`, which must be a ring's pose. Returned are the best pose and its score.
+///
+/// The score is the fast path's for each pair of neighbours, that of copies beyond them included. With an axis only
+/// moves are made that keep it crossed (Dn).
+pub(super) fn maximum(
+    (symmetry, axis): (Symmetry, Option<&RingAxis>),
+    field: &PotentialGrid,
+    center: Vector3<f64>,
+    start: Pose,
+    limits: &AscentLimits,
+) -> (Pose, f64) {
+    maximize(
+        start,
+        center,
+        limits,
+        |pose| {
+            let (score, gradient) = whole(symmetry, field, center, pose);
+            match axis {
+                Some(axis) => (score, axis.along(center, &gradient)),
+                None => (score, gradient),
             }
-        }
-    }
-
-    /// The pose of a ring that lies nearest to one of the grid.
-    pub fn nearest(&self, pose: &Pose) -> Pose {
-        match &self.axis {
-            Some(axis) => axis.nearest(pose),
-            None => self.symmetry.nearest(pose),
-        }
-    }
-
-    /// The ring that climbs highest from `pose`, which the grid found, and its score with that of copies beyond the neighbours, by the fast path.
-    pub fn maximize(
-        &self,
-        field: &PotentialGrid,
-        center: Vector3<f64>,
-        pose: &Pose,
-        limits: &ClimbLimits,
-    ) -> (Pose, f64) {
-        let (top, score) = maximize(
-            self.nearest(pose),
-            center,
-            limits,
-            |pose| {
-                let (score, gradient) = whole(self.symmetry, field, center, pose);
-                match &self.axis {
-                    Some(axis) => (score, axis.along(center, &gradient)),
-                    None => (score, gradient),
-                }
-            },
-            |pose, turn, shift| match &self.axis {
-                Some(axis) => axis.moved(pose, turn, shift),
-                None => conjugated(pose, center, turn, shift),
-            },
-        );
-        // Rounding adds up over the steps.
-        (self.nearest(&top), score)
-    }
+        },
+        |pose, rotation, shift| match axis {
+            Some(axis) => axis.moved(pose, rotation, shift),
+            None => conjugated(pose, center, rotation, shift),
+        },
+    )
 }
 
 /// Score of a ring for each pair of neighbours, with its gradient by moves of the molecule under the axis.
@@ -91,7 +60,7 @@ fn whole(
 }
 
 /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
-pub(crate) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
+pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
     let score = |(pose, pairs): (Pose, f64)| pairs * scorer.score_only(&pose);
     symmetry
         .has_beyond()
@@ -100,18 +69,20 @@ pub(crate) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::dock::plan::plan;
     use crate::options::DockOptions;
-    use crate::pose_space::ring::*;
+    use crate::pose_space::PoseSpace;
+    use crate::pose_space::refine::RefinedPose;
     use crate::priors::restraints::tests::peptide;
     use crate::progress::Progress;
-    use crate::search::scan::{all_rotations, choose_rank, scan};
+    use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;
-    use knotdock_scoring::engine::{Plan, ReceptorSpectra};
-    use knotdock_scoring::lifted_axis::Quantity;
+    use knotdock_scoring::engine::{Plan, ReceptorSpectra, choose_rank};
+    use knotdock_scoring::quantity::Quantity;
     use knotdock_structures::Knots;
     use knotdock_structures::molecule::{Format, Molecule};
-    use nalgebra::UnitQuaternion;
+    use nalgebra::{Unit, UnitQuaternion};
     use std::f64::consts::PI;
 
     /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
@@ -125,11 +96,11 @@ mod tests {
             [0.8, -2.5, 2.0],
         ];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
-        let engine = DockOptions::default().engine();
+        let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &folded, &knots);
-        let scorer = ExactScorer::new(&plan.kernel, &knots, &knots).unwrap();
+        let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
         };
@@ -144,7 +115,7 @@ mod tests {
         assert!(other_copies(symmetry, &scorer, &start).unwrap().abs() > 1.0);
         assert_eq!(other_copies("C3".parse().unwrap(), &scorer, &start), None);
 
-        let center = plan.ligand_center;
+        let center = plan.ligand_center();
         let (_, gradient) = whole(symmetry, &field, center, &start);
         let step = 1e-3;
         let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
@@ -162,18 +133,17 @@ mod tests {
             assert!(near(gradient.torque[axis], turned, gradient.torque.norm()));
         }
 
-        let limits = ClimbLimits {
+        let limits = AscentLimits {
             evaluations: 40,
             distance: 3.0,
             angle: 0.3,
             gyration: 3.0,
             angstrom: 1.0,
         };
-        let rings = Rings {
-            symmetry,
-            axis: None,
-        };
-        let (top, score) = rings.maximize(&field, center, &start, &limits);
+        let space = PoseSpace::Cyclic(symmetry);
+        let RefinedPose {
+            pose: top, score, ..
+        } = space.refined(&field, center, (&start, 0.0), &limits);
         assert!(symmetry.ring(&top).is_some());
         assert!(exact(symmetry, &top) > exact(symmetry, &start) + 1.0);
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
@@ -204,55 +174,69 @@ mod tests {
         let ring = Molecule::new(atoms, Format::Pdb);
         // Off the file's origin.
         let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
-        let options = DockOptions {
-            symmetry: Some("D2".parse().unwrap()),
-            rotations: 12,
-            threads: 1,
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.search.symmetry = Some("D2".parse().unwrap());
+            options.search.rotations = 12;
+            options.machine.threads = 1.into();
+        });
         let plan = plan(&ring, &ring, &options).unwrap();
-        let rings = plan.rings.unwrap();
+        let space = plan.search.space;
         let folded = ReceptorSpectra::<f32>::new(
-            &plan.engine,
+            &plan.search.engine,
             &plan.receptor,
             &plan.ligand,
             Quantity::Score,
         );
-        let engine = ScanEngine::new(&plan, choose_rank(&plan, &folded).engine).unwrap();
-        let peaks = scan(&plan, &engine, &all_rotations(&plan), 20, None, &Silent)
+        let search = &plan.search;
+        let chosen = choose_rank(
+            &search.engine,
+            &folded,
+            &plan.ligand,
+            &search.rotations.coarse,
+        );
+        let engine = ScanEngine::new(search, chosen.engine).unwrap();
+        let groups = search.rotations.groups();
+        let peaks = scan(search, &engine, &groups, 20, None, &Silent)
             .unwrap()
             .peaks;
         assert_eq!(peaks.len(), 20);
-        let center = plan.engine.ligand_center;
+        let center = search.engine.ligand_center();
         let starts: Vec<Pose> = peaks
             .iter()
             .map(|peak| {
-                let place = plan.engine.receptor_center + engine.cpu.position(peak.voxel as usize);
-                Pose::about(plan.rotation(peak.rotation as usize).0, center, place)
+                let place =
+                    search.engine.receptor_center() + engine.cpu.position(peak.voxel as usize);
+                Pose::about(
+                    search.rotations.rotation(peak.rotation as usize).0,
+                    center,
+                    place,
+                )
             })
             .collect();
         for start in &starts {
-            let off = rings.nearest(start).translation - start.translation;
+            let off = space.nearest(start).translation - start.translation;
             assert!(off.norm() < 1.8 * plan.spacing, "{off}");
         }
 
-        let field = PotentialGrid::new(&plan.engine, &folded, &plan.ligand);
+        let field = PotentialGrid::new(&plan.search.engine, &folded, &plan.ligand);
         let scorer = plan.exact_scorer().unwrap();
-        let limits = ClimbLimits {
+        let limits = AscentLimits {
             evaluations: 60,
             distance: 6.0,
             angle: 0.5,
             gyration: 8.0,
             angstrom: 1.0,
         };
-        let (top, _) = rings.maximize(&field, center, &starts[4], &limits);
+        let top = space
+            .refined(&field, center, (&starts[4], 0.0), &limits)
+            .pose;
         let highest = scorer.score_only(&top);
-        assert!(highest > scorer.score_only(&rings.nearest(&starts[4])) + 1.0);
+        assert!(highest > scorer.score_only(&space.nearest(&starts[4])) + 1.0);
         for sign in [-1.0, 1.0] {
             let aside = [(sign * 0.05, 0.0), (0.0, sign * 0.3)];
             for (turned, shifted) in aside {
                 let shift = Vector3::new(0.0, 0.0, shifted);
-                let moved = rings.axis.unwrap().moved(&top, turn(turned), shift);
+                let moved = space.axis().unwrap().moved(&top, turn(turned), shift);
                 assert!(scorer.score_only(&moved) < highest, "{turned} {shifted}");
             }
         }

@@ -1,9 +1,10 @@
 //! What a pose should touch: residues that the user names, or else the active site of a peptidase.
 
 use crate::options::DockOptions;
+use crate::priors::{ActiveSite, Antibody};
 use knotdock_scoring::effect::restraint::ResidueRole;
-use knotdock_scoring::rescoring::Residues;
-use knotdock_structures::molecule::{ActiveSite, Molecule, Partner};
+use knotdock_scoring::terms::pose::Residues;
+use knotdock_structures::molecule::{Molecule, Partner};
 use serde::Serialize;
 
 /// Sets of residues, of which poses should touch all of one, and what those earn.
@@ -32,7 +33,7 @@ impl ActiveResidues {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.active_weight,
+            weight: options.restraints.active_weight,
             assumed: None,
         }
     }
@@ -43,7 +44,7 @@ impl ActiveResidues {
         marks: [&[ResidueRole]; 2],
         options: &DockOptions,
     ) -> Self {
-        let weight = options.peptidase_weight;
+        let weight = options.restraints.peptidase_weight;
         let assumed = (weight > 0.0).then(|| AssumedSite::of(molecules, marks));
         let assumed = assumed.flatten();
         let sets = assumed.as_ref().map_or(Vec::new(), |assumed| {
@@ -56,18 +57,13 @@ impl ActiveResidues {
             assumed,
         }
     }
-
-    /// Whether poses have anything to earn.
-    pub(crate) fn any(&self) -> bool {
-        !self.sets.is_empty() && self.weight > 0.0
-    }
 }
 
 impl AssumedSite {
     /// Where one of the two is a peptidase and the other is none, sites left out that are to stay free of contact. What an antibody was raised against is as
     /// likely to be anywhere.
     fn of(molecules: [&Molecule; 2], marks: [&[ResidueRole]; 2]) -> Option<Self> {
-        let (partner, mut sites, marks) = match molecules.map(Molecule::active_sites) {
+        let (partner, mut sites, marks) = match molecules.map(ActiveSite::all) {
             [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
             [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
             _ => return None,
@@ -76,7 +72,7 @@ impl AssumedSite {
             let mut atoms = site.atoms.iter().flatten();
             !atoms.any(|&atom| marks.get(atom) == Some(&ResidueRole::Excluded))
         });
-        let none = sites.is_empty() || molecules.iter().any(|m| m.antibody().is_some());
+        let none = sites.is_empty() || molecules.iter().any(|m| Antibody::of(m).is_some());
         (!none).then_some(Self { partner, sites })
     }
 
@@ -91,29 +87,16 @@ impl AssumedSite {
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (partner, sites) = (self.partner, sites_told(&self.sites));
+        let (partner, sites) = (self.partner, ActiveSite::all_in_words(&self.sites));
         write!(f, "the {partner} is a peptidase, {sites}")
     }
 }
 
-/// Active sites in words.
-pub fn sites_told(sites: &[ActiveSite]) -> String {
-    let told = |site: &ActiveSite| {
-        format!(
-            "of family {} like {} (catalytic {})",
-            site.family,
-            site.known_by,
-            site.residues.join(", ")
-        )
-    };
-    sites.iter().map(told).collect::<Vec<_>>().join("; ")
-}
-
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::dock::scene::{Decision, Scene};
-    use crate::priors::active_residues::*;
-    use crate::priors::restraints::AntibodySurface;
+    use crate::options::AntibodySurface;
     use knotdock_scoring::effect::Effect;
     use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};
 
@@ -129,7 +112,7 @@ mod tests {
         let (trypsin, inhibitor) = (example("receptor_unbound"), example("ligand_unbound"));
         let of = |molecules: [&Molecule; 2], options: &DockOptions| {
             let [receptor, ligand] = molecules;
-            Scene::new(receptor, ligand, options).unwrap().attracted
+            Scene::new(receptor, ligand, options).unwrap().active
         };
         let with = |change: fn(&mut DockOptions)| {
             let mut options = DockOptions::default();
@@ -137,7 +120,10 @@ mod tests {
             of([&trypsin, &inhibitor], &options)
         };
         let default = with(|_| {});
-        assert_eq!(default.weight, DockOptions::default().peptidase_weight);
+        assert_eq!(
+            default.weight,
+            DockOptions::default().restraints.peptidase_weight
+        );
         let site = default.assumed.clone().unwrap();
         assert_eq!(
             site.to_string(),
@@ -162,21 +148,23 @@ mod tests {
         assert_eq!(turned.sets, [[Vec::new(), receptor.clone()]]);
 
         let two = of([&trypsin, &trypsin], &DockOptions::default());
-        assert!(!two.any() && two.assumed.is_none());
+        assert!(two.sets.is_empty() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
-            |options| options.peptidase_weight = 0.0,
-            |options| options.effects = "shape,electrostatics".parse().unwrap(),
-            |options| options.block_receptor = Some("A:195".parse().unwrap()),
-            |options| options.active_ligand = Some("B:5".parse().unwrap()),
+            |options| options.restraints.peptidase_weight = 0.0,
+            |options| options.kernel.effects = "shape,electrostatics".parse().unwrap(),
+            |options| options.restraints.block_receptor = Some("A:195".parse().unwrap()),
+            |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
-                options.active_receptor = Some("A:20".parse().unwrap());
-                options.active_weight = 0.0;
+                options.restraints.active_receptor = Some("A:20".parse().unwrap());
+                options.restraints.active_weight = 0.0;
             },
         ];
         for change in changes {
             assert_eq!(with(change).assumed, None);
         }
-        assert!(with(|options| options.block_receptor = Some("A:20-30".parse().unwrap())).any());
+        let elsewhere =
+            with(|options| options.restraints.block_receptor = Some("A:20-30".parse().unwrap()));
+        assert_eq!(elsewhere.sets, default.sets);
     }
 
     /// The heavy chain of trastuzumab, as alpha carbons; it is none the less an antibody where all of it may touch.
@@ -206,14 +194,12 @@ mod tests {
         let antibody = Molecule::new(atoms, Format::Pdb);
         let trypsin = example("receptor_unbound");
         for surface in [AntibodySurface::Cdrs, AntibodySurface::Whole] {
-            let options = DockOptions {
-                antibody: surface,
-                ..DockOptions::default()
-            };
+            let options =
+                DockOptions::default().changed(|options| options.restraints.antibody = surface);
             let scene = Scene::new(&trypsin, &antibody, &options).unwrap();
             let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
             assert!(scene.decisions.iter().any(contact));
-            assert!(!scene.attracted.any());
+            assert!(scene.active.sets.is_empty());
         }
     }
 }

@@ -1,43 +1,10 @@
 //! Which atoms are to stay free of contact, what of an antibody lies away from its CDRs and what the user blocks, and which are to be in contact.
 
 use crate::error::SearchError;
-use crate::options::DockOptions;
+use crate::options::{AntibodySurface, DockOptions};
+use crate::priors::Antibody;
 use knotdock_scoring::effect::restraint::ResidueRole;
-use knotdock_structures::molecule::{
-    Antibody, Molecule, PARATOPE_EDGE, ResidueSelection, VariableDomain,
-};
-use serde::{Deserialize, Serialize};
-
-/// What part of an antibody may touch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum AntibodySurface {
-    /// Its CDRs and what lies about them.
-    #[default]
-    Cdrs,
-    /// All of it.
-    Whole,
-}
-
-impl AntibodySurface {
-    /// Name as on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cdrs => "cdrs",
-            Self::Whole => "whole",
-        }
-    }
-}
-
-impl std::str::FromStr for AntibodySurface {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let known = [Self::Cdrs, Self::Whole];
-        let known = known.into_iter().find(|known| known.name() == text);
-        known.ok_or_else(|| "cdrs or whole is needed".to_owned())
-    }
-}
+use knotdock_structures::molecule::{Molecule, ResidueSelection};
 
 /// What is wanted of the contacts of both sides' atoms.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,18 +33,15 @@ impl Restraints {
             .zip(&mut attracted)
         {
             let side = named.side;
-            if options.antibody == AntibodySurface::Cdrs
-                && let Some(antibody) = molecule.antibody()
+            if options.restraints.antibody == AntibodySurface::Cdrs
+                && let Some(antibody) = Antibody::of(molecule)
             {
                 for (mark, paratope) in marks.iter_mut().zip(&antibody.paratope) {
                     if !paratope {
                         *mark = ResidueRole::Excluded;
                     }
                 }
-                reasons.push(format!(
-                    "the {side} is an antibody ({}), which binds by its CDRs and what lies within {PARATOPE_EDGE} Å of them",
-                    domains_told(&antibody)
-                ));
+                reasons.push(format!("the {side} is {}", antibody.reason()));
             }
             for (option, residues, mark, told) in [
                 (named.block, named.blocked, ResidueRole::Excluded, "blocked"),
@@ -137,16 +101,16 @@ fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
         Named {
             side: "receptor",
             block: "block-receptor",
-            blocked: options.block_receptor.as_ref(),
+            blocked: options.restraints.block_receptor.as_ref(),
             attract: "active-receptor",
-            attracted: options.active_receptor.as_ref(),
+            attracted: options.restraints.active_receptor.as_ref(),
         },
         Named {
             side: "ligand",
             block: "block-ligand",
-            blocked: options.block_ligand.as_ref(),
+            blocked: options.restraints.block_ligand.as_ref(),
             attract: "active-ligand",
-            attracted: options.active_ligand.as_ref(),
+            attracted: options.restraints.active_ligand.as_ref(),
         },
     ]
 }
@@ -167,19 +131,9 @@ fn selected(
         })
 }
 
-/// The variable domains of an antibody in words.
-pub fn domains_told(antibody: &Antibody) -> String {
-    let told = |domain: &VariableDomain| {
-        let [first, last] = &domain.residues;
-        format!("{} {}:{first}-{last}", domain.kind.name(), domain.chain)
-    };
-    let domains = antibody.domains.iter().map(told);
-    domains.collect::<Vec<_>>().join(", ")
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
-    use crate::priors::restraints::*;
+    use super::*;
     use knotdock_structures::molecule::{Atom, Format};
 
     /// Alpha carbons of glycine, number 1 to 4, so many Å apart.
@@ -206,11 +160,10 @@ pub(crate) mod tests {
     fn named_residues_of_either_side_are_blocked_and_nothing_else() {
         let molecule = peptide(10.0);
         let of = |receptor: Option<&str>, ligand: Option<&str>| {
-            let options = DockOptions {
-                block_receptor: receptor.map(|text| text.parse().unwrap()),
-                block_ligand: ligand.map(|text| text.parse().unwrap()),
-                ..DockOptions::default()
-            };
+            let options = DockOptions::default().changed(|options| {
+                options.restraints.block_receptor = receptor.map(|text| text.parse().unwrap());
+                options.restraints.block_ligand = ligand.map(|text| text.parse().unwrap());
+            });
             Restraints::new([&molecule, &molecule], &options)
         };
         let none = of(None, None).unwrap();
@@ -234,12 +187,11 @@ pub(crate) mod tests {
     #[test]
     fn attracted_residues_are_marked_and_listed() {
         let molecule = peptide(10.0);
-        let options = DockOptions {
-            block_receptor: Some("A:3-4".parse().unwrap()),
-            active_receptor: Some("A:1,A:4".parse().unwrap()),
-            active_ligand: Some("A:2".parse().unwrap()),
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.restraints.block_receptor = Some("A:3-4".parse().unwrap());
+            options.restraints.active_receptor = Some("A:1,A:4".parse().unwrap());
+            options.restraints.active_ligand = Some("A:2".parse().unwrap());
+        });
         let restraints = Restraints::new([&molecule, &molecule], &options).unwrap();
         use ResidueRole::{Active, Excluded, Free};
         assert_eq!(restraints.marks[0], [Active, Free, Excluded, Active]);

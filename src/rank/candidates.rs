@@ -1,10 +1,11 @@
 //! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
 
+use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
-use crate::search::peaks::Peak;
 use knotdock_scoring::exact::ExactScore;
-use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
+use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
 /// A pose in the running.
@@ -12,10 +13,10 @@ use rayon::prelude::*;
 pub(crate) struct Candidate {
     /// The pose.
     pub pose: Pose,
-    /// The fast path's score at `pose`, and what rescoring adds there.
+    /// The fast path's score at `pose` plus the pose terms there.
     pub score: f64,
-    /// What rescoring says of `pose`.
-    pub rescored: Rescored,
+    /// Values of the pose terms at `pose`.
+    pub pose_terms: TermValues,
     /// The pose that it was refined from.
     pub start: Pose,
     /// All terms at `start`, where they are known already.
@@ -26,46 +27,6 @@ pub(crate) struct Candidate {
     pub rotation: usize,
     /// The grid's score where it came from.
     pub score_grid: f64,
-}
-
-/// Where a peak of the search led to.
-#[derive(Clone, Copy)]
-pub(crate) struct RefinedPose {
-    /// The pose that it was refined from: the grid's, or of rings the one nearest to it.
-    pub start: Pose,
-    /// The pose that it was refined to.
-    pub pose: Pose,
-    /// The fast path's score at `pose`, of rings that of all copies.
-    pub score: f64,
-    /// Whether the two differ.
-    pub refined: bool,
-}
-
-impl RefinedPose {
-    /// A grid pose, and what it was refined to where that is better.
-    pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
-        let (start, score) = grid;
-        let unrefined = Self {
-            start,
-            pose: start,
-            score,
-            refined: false,
-        };
-        match refined {
-            Some((pose, higher)) if higher > score => Self {
-                pose,
-                score: higher,
-                refined: true,
-                ..unrefined
-            },
-            _ => unrefined,
-        }
-    }
-}
-
-/// The pose as its printed digits give it back: normalised, w not negative.
-pub(crate) fn printed(pose: &Pose) -> Pose {
-    Pose::from_parts(pose.quaternion(), pose.translation.into())
 }
 
 /// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
@@ -80,13 +41,13 @@ pub(crate) fn candidates(
         .zip(placed)
         .enumerate()
         .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
-            let rescored = rescorer
+            let pose_terms = rescorer
                 .map(|rescorer| rescorer.score(&placed.pose, workspace))
                 .unwrap_or_default();
             Candidate {
                 pose: placed.pose,
-                score: placed.score + rescored.sum(),
-                rescored,
+                score: placed.score + pose_terms.sum(),
+                pose_terms,
                 start: placed.start,
                 terms: at_start.get(index).copied(),
                 refined: placed.refined,
@@ -114,23 +75,24 @@ pub(crate) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance:
         if !candidate.refined {
             return true;
         }
-        let founder = groups[index] == seen;
+        let is_best = groups[index] == seen;
         index += 1;
-        seen += usize::from(founder);
-        founder
+        seen += usize::from(is_best);
+        is_best
     });
 }
 
-/// Each candidate's cluster, numbered from 0 in the order of their founders.
+/// Each candidate's cluster, numbered from 0 in the order of their centres.
 pub(crate) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f64) -> Vec<usize> {
     let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
     greedy(body, &poses, radius)
 }
 
-/// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster. A refined pose has left the samples
-/// of the search and stands for those about it; that they climbed to where it is, or would have, says how broad its hill is, so they count in its cluster,
-/// while a list of poses has use for one of them.
-pub(crate) fn listed(
+/// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster.
+///
+/// A refined pose has left the samples of the search and stands for those about it. They still count in its cluster,
+/// whose size says how broad the maximum is; a list of poses needs only one of them.
+pub(crate) fn deduplicated(
     candidates: &[Candidate],
     clusters: &[usize],
     body: &RigidBody,
@@ -155,7 +117,7 @@ pub(crate) fn listed(
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::candidates::*;
+    use super::*;
     use nalgebra::Vector3;
 
     /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.
@@ -187,7 +149,7 @@ mod tests {
         .into_iter()
         .unzip();
         let candidates = candidates(&peaks, &placed, &[], None);
-        let of = |clusters: &[usize]| listed(&candidates, clusters, &body, 2.0);
+        let of = |clusters: &[usize]| deduplicated(&candidates, clusters, &body, 2.0);
         assert_eq!(of(&[0; 6]), [true, false, false, true, true, false]);
         // The second cluster's best pose, and what lies beyond it.
         let seconds = [0, 1, 0, 1, 1, 1];

@@ -3,8 +3,8 @@
 //! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')), c the images
 //! of the points' mean and C their covariance: O(1) a pair of poses.
 
+use crate::pose_space::equivalents::Equivalents;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::RingAxis;
 use nalgebra::{Matrix3, Vector3};
 
 /// The body whose RMSD is taken: mean and covariance of its points in its own frame.
@@ -13,18 +13,7 @@ pub struct RigidBody {
     mean: Vector3<f64>,
     covariance: Matrix3<f64>,
     /// Poses that are one with a pose.
-    alike: Alike,
-}
-
-/// Which poses are one with a pose M of a body.
-#[derive(Clone, Debug, PartialEq)]
-enum Alike {
-    /// No others.
-    None,
-    /// Its inverse: a ring with its copies counted the other way.
-    Inverse,
-    /// M after a turn of the body onto itself: a second ring with its copies counted from another one.
-    Turned(Vec<Pose>),
+    equivalents: Equivalents,
 }
 
 /// A pose with what its distances to others need.
@@ -51,31 +40,22 @@ impl RigidBody {
         Self {
             mean,
             covariance,
-            alike: Alike::None,
+            equivalents: Equivalents::None,
         }
     }
 
-    /// The body as a copy in a ring, of which a pose and its inverse are the same with its copies counted either way; or as one of two rings that have an axis,
-    /// of which a pose is the same whichever copy the turns about that axis bring first.
-    pub fn in_ring(self, axis: Option<&RingAxis>) -> Self {
-        let alike = match axis {
-            Some(axis) => Alike::Turned(axis.turns().collect()),
-            None => Alike::Inverse,
-        };
-        Self { alike, ..self }
+    /// The body in a space in which further poses are one with a pose.
+    pub fn with_equivalents(self, equivalents: Equivalents) -> Self {
+        Self {
+            equivalents,
+            ..self
+        }
     }
 
     /// The body at all poses that are one with this one, itself first.
     fn images(&self, pose: &Pose) -> Vec<PlacedBody> {
-        let mut images = vec![self.place(pose)];
-        match &self.alike {
-            Alike::None => {}
-            Alike::Inverse => images.push(self.place(&pose.inverse())),
-            Alike::Turned(turns) => {
-                images.extend(turns.iter().map(|turn| self.place(&pose.after(turn))));
-            }
-        }
-        images
+        let poses = self.equivalents.of(pose);
+        poses.map(|pose| self.place(&pose)).collect()
     }
 
     /// The first of some placed bodies that a pose, or one that is one with it, lies within `distance` (Å RMSD) of.
@@ -120,16 +100,16 @@ impl RigidBody {
 }
 
 /// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
-/// founds one. Returns each pose's cluster, numbered from 0 in order of founding.
+/// becomes the centre of a new one. Returns each pose's cluster, numbered from 0 in that order.
 pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
-    let mut founders: Vec<PlacedBody> = Vec::new();
+    let mut centres: Vec<PlacedBody> = Vec::new();
     poses
         .iter()
         .map(|pose| {
-            let near = body.first_within(&founders, pose, radius);
+            let near = body.first_within(&centres, pose, radius);
             near.unwrap_or_else(|| {
-                founders.push(body.place(pose));
-                founders.len() - 1
+                centres.push(body.place(pose));
+                centres.len() - 1
             })
         })
         .collect()
@@ -137,7 +117,8 @@ pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::cluster::*;
+    use super::*;
+    use knotdock_scoring::symmetry::RingAxis;
 
     #[test]
     fn closed_form_is_the_rmsd_of_the_points() {
@@ -167,7 +148,10 @@ mod tests {
         let forward = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [0.0; 3]);
         let poses = [forward, forward.inverse()];
         assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
-        assert_eq!(greedy(&body.in_ring(None), &poses, 5.0), [0, 0]);
+        assert_eq!(
+            greedy(&body.with_equivalents(Equivalents::Inverse), &poses, 5.0),
+            [0, 0]
+        );
     }
 
     /// A second ring is the same whichever of its copies is called the first.
@@ -184,7 +168,7 @@ mod tests {
         let pose = Pose::from_parts([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 12.0]);
         let turned = pose.after(&axis.turns().next().unwrap());
         assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 1]);
-        let body = body.in_ring(Some(&axis));
+        let body = body.with_equivalents(Equivalents::Rotated(axis.turns().collect()));
         assert_eq!(greedy(&body, &[pose, turned], 5.0), [0, 0]);
     }
 
@@ -205,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn greedy_takes_the_best_as_founder() {
+    fn greedy_takes_the_best_as_centre() {
         let body = RigidBody::new(&[[0.0; 3], [1.0, 0.0, 0.0]]);
         let at = |x: f64| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
         let clusters = greedy(&body, &[at(0.0), at(8.0), at(4.0), at(6.0), at(20.0)], 5.0);

@@ -16,14 +16,13 @@
 
 use crate::dock::outcome::RankedPose;
 use crate::dock::scene::LengthUnit;
-use crate::pose_space::ring::other_copies;
+use crate::pose_space::PoseSpace;
 use crate::progress::Progress;
 use crate::rank::candidates::Candidate;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::rescoring::{Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::symmetry::Symmetry;
+use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
 /// What rows of the table are scored by.
@@ -35,8 +34,8 @@ pub(crate) struct PoseScorer<'a> {
     pub rescorer: Option<&'a Rescorer>,
     /// Which effects are on, by effect.
     pub on: [bool; Effect::ALL.len()],
-    /// The symmetry of rings, where they are sought.
-    pub symmetry: Option<Symmetry>,
+    /// The poses that are searched.
+    pub space: &'a PoseSpace,
     /// T of the clusters' scores, as a share of the run's best score.
     pub cluster_temperature: f64,
 }
@@ -62,9 +61,9 @@ const ROWS_TOGETHER: usize = 8;
 /// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
 /// clusters are numbered; ties in the order given.
 ///
-/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its founder are scored.
+/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are scored.
 pub(crate) fn report(
-    judge: PoseScorer,
+    pose_scorer: PoseScorer,
     candidates: &[Candidate],
     clusters: (&[usize], &[bool]),
     every_pose: bool,
@@ -76,17 +75,17 @@ pub(crate) fn report(
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
     let best = candidates.first().map_or(0.0, |best| best.score.abs());
-    let temperature = (judge.cluster_temperature * best).max(f64::MIN_POSITIVE);
+    let temperature = (pose_scorer.cluster_temperature * best).max(f64::MIN_POSITIVE);
     let background = Background::of(candidates);
-    let mut founders = vec![f64::NEG_INFINITY; count];
+    let mut centres = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
     for ((candidate, &cluster), &listed) in candidates.iter().zip(clusters).zip(listed) {
         sizes[cluster] += 1;
-        // The founder comes first, being the best by the fast path.
-        founders[cluster] = founders[cluster].max(candidate.score);
-        // Scores against the founder's, so that nothing overflows.
-        weights[cluster] += ((candidate.score - founders[cluster]) / temperature).exp();
-        if listed && (every_pose || candidate.score >= founders[cluster] - margin) {
+        // The centre comes first, being the best by the fast path.
+        centres[cluster] = centres[cluster].max(candidate.score);
+        // Scores against the centre's, so that nothing overflows.
+        weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
+        if listed && (every_pose || candidate.score >= centres[cluster] - margin) {
             wanted.push((candidate, cluster));
         }
     }
@@ -95,7 +94,7 @@ pub(crate) fn report(
         .into_par_iter()
         .with_max_len(ROWS_TOGETHER)
         .map(|(candidate, cluster)| {
-            let row = candidate.reported(judge);
+            let row = candidate.reported(pose_scorer);
             progress.advance(1);
             (row, cluster)
         })
@@ -127,6 +126,7 @@ pub(crate) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
+                score: if every_pose { row.pose_score } else { score },
                 z_score: background.z_score(row.pose_score),
                 ..row
             })
@@ -173,18 +173,15 @@ impl Background {
 
 impl Candidate {
     /// Its row of the table, exactly scored, not yet in a cluster.
-    fn reported(&self, judge: PoseScorer) -> RankedPose {
+    fn reported(&self, pose_scorer: PoseScorer) -> RankedPose {
         let PoseScorer {
             scorer,
             rescorer,
             on,
-            symmetry,
+            space,
             cluster_temperature: _,
-        } = judge;
-        let others = |pose: &Pose| {
-            let others = symmetry.map(|symmetry| other_copies(symmetry, scorer, pose));
-            others.flatten()
-        };
+        } = pose_scorer;
+        let others = |pose: &Pose| space.other_copies(scorer, pose);
         let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
         let (pose, terms, others, refined) = if self.refined {
             let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
@@ -202,25 +199,21 @@ impl Candidate {
         } else {
             (self.start, at_start(), others(&self.start), false)
         };
-        let rescored = match rescorer {
+        let pose_terms = match rescorer {
             // An undone climb leaves another pose than was rescored.
             Some(rescorer) if refined != self.refined => {
                 rescorer.score(&pose, &mut Workspace::default())
             }
-            _ => self.rescored,
+            _ => self.pose_terms,
         };
         RankedPose {
             pose,
-            fine_contact: rescored.fine_contact,
-            atom_pair: rescored.atom_pair,
-            relaxed: rescored.relaxed,
-            attraction: rescored.attraction,
-            missing: rescored.missing,
-            chain_ends: rescored.chain_ends,
+            pose_terms,
             other_copies: others,
-            pose_score: terms.score + rescored.sum() + others.unwrap_or(0.0),
+            pose_score: terms.score + pose_terms.sum() + others.unwrap_or(0.0),
             z_score: None,
-            score: terms.score,
+            score: 0.0,
+            search_score: terms.score,
             cluster: None,
             cluster_size: None,
             cluster_score: None,
@@ -236,10 +229,11 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::candidates::{RefinedPose, candidates};
-    use crate::rank::ranking::*;
-    use crate::search::peaks::Peak;
+    use super::*;
+    use crate::pose_space::refine::RefinedPose;
+    use crate::rank::candidates::candidates;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
+    use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
 
@@ -308,19 +302,26 @@ mod tests {
             let refined = Some((at(to), peak.score + 1.0));
             let placed = RefinedPose::best_of((at(from), peak.score), refined);
             let candidates = candidates(&[peak], &[placed], &[], None);
-            let judge = PoseScorer {
+            let pose_scorer = PoseScorer {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
-                symmetry: None,
+                space: &PoseSpace::Free,
                 cluster_temperature: 0.1,
             };
-            let ranking = report(judge, &candidates, (&[0], &[true]), true, 0.0, &Silent);
+            let ranking = report(
+                pose_scorer,
+                &candidates,
+                (&[0], &[true]),
+                true,
+                0.0,
+                &Silent,
+            );
             ranking.poses[0].clone()
         };
         let undone = climbed(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
-        assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
+        assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
         let stands = climbed(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
@@ -359,15 +360,15 @@ mod tests {
         let placed: Vec<RefinedPose> = poses.iter().map(placed).collect();
         let candidates = candidates(&peaks, &placed, &[], None);
         let first = |unit| {
-            let judge = PoseScorer {
+            let pose_scorer = PoseScorer {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
-                symmetry: None,
+                space: &PoseSpace::Free,
                 cluster_temperature: cluster_temperature(unit),
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
-            let ranking = report(judge, &candidates, clusters, false, 0.0, &Silent);
+            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &Silent);
             let first = &ranking.poses[0];
             (
                 first.cluster_size,

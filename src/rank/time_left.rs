@@ -4,11 +4,12 @@
 //! the machine as it then is, and the poses that scored least are left out where time is short.
 
 use crate::options::DockOptions;
-use crate::rank::candidates::{RefinedPose, candidates, clusters_of};
+use crate::pose_space::refine::RefinedPose;
+use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
-use crate::search::peaks::Peak;
-use crate::search::schedule::Deadline;
-use knotdock_scoring::rescoring::Rescorer;
+use crate::search::deadline::Deadline;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
 /// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
@@ -38,11 +39,11 @@ pub(crate) fn poses_in_time(
         begun.elapsed().as_secs_f64() / probed.max(1) as f64
     });
     // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
-    let scored = if options.every_pose {
+    let scored = if options.ranking.no_cluster {
         1.0
     } else {
         let unscored = candidates(peaks, placed, &[], None);
-        let clusters = clusters_of(&unscored, body, options.cluster_radius);
+        let clusters = clusters_of(&unscored, body, options.ranking.cluster_radius);
         let count = clusters.iter().max().map_or(0, |last| last + 1);
         count as f64 / unscored.len().max(1) as f64
     };
@@ -61,7 +62,7 @@ fn within(left: f64, each: f64, count: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::rank::time_left::*;
+    use super::*;
 
     #[test]
     fn as_many_poses_are_kept_as_fit() {

@@ -5,12 +5,13 @@
 //! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
 //! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
 
-use crate::dock::plan::DockPlan;
 use crate::error::SearchError;
+use crate::pose_space::rotations::RotationSample;
 use crate::progress::Progress;
-use crate::search::peaks::{NEIGHBOURS, Peak};
-use crate::search::scan::{Quartet, scan};
+use crate::search::plan::SearchPlan;
+use crate::search::scan::scan;
 use crate::search::scan_engine::ScanEngine;
+use knotdock_scoring::peaks::{NEIGHBOURS, Peak};
 use knotdock_scoring::transform::Real;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -30,18 +31,23 @@ pub struct FineSearched {
 /// # Errors
 /// As [`scan`].
 pub(crate) fn search_finer<T: Real>(
-    plan: &DockPlan,
+    plan: &SearchPlan,
     engine: &ScanEngine<T>,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Peak>, FineSearched), SearchError> {
-    let cell_of = nearest(&plan.fine_set, &plan.set);
-    let mut sizes = vec![0usize; plan.set.len()];
+    let RotationSample {
+        coarse: set,
+        fine: fine_set,
+        ..
+    } = &plan.rotations;
+    let cell_of = nearest(fine_set, set);
+    let mut sizes = vec![0usize; set.len()];
     for &cell in &cell_of {
         sizes[cell as usize] += 1;
     }
-    let wanted = (plan.options.fine_share * plan.fine_set.len() as f64).ceil() as usize;
-    let mut chosen = vec![false; plan.set.len()];
+    let wanted = (plan.fine_share * fine_set.len() as f64).ceil() as usize;
+    let mut chosen = vec![false; set.len()];
     let (mut rotations, mut cells) = (0, 0);
     for peak in &coarse {
         if rotations >= wanted {
@@ -53,21 +59,13 @@ pub(crate) fn search_finer<T: Real>(
             cells += 1;
         }
     }
-    let quartets: Vec<Quartet> = cell_of
-        .chunks(4)
-        .enumerate()
-        .map(|(index, cells)| Quartet {
-            first: plan.set.len() + 4 * index,
-            wanted: std::array::from_fn(|image| {
-                cells.get(image).is_some_and(|&cell| chosen[cell as usize])
-            }),
-        })
-        .filter(|quartet| quartet.wanted.contains(&true))
-        .collect();
+    let groups = plan
+        .rotations
+        .fine_groups(|index| chosen[cell_of[index] as usize]);
     progress.stage("fine", rotations as u64);
-    let fine = scan(plan, engine, &quartets, usize::MAX, None, progress)?.peaks;
+    let fine = scan(plan, engine, &groups, usize::MAX, None, progress)?.peaks;
 
-    let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(plan.set.len()) {
+    let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(set.len()) {
         Some(index) => cell_of[index],
         None => peak.rotation,
     };
@@ -77,25 +75,25 @@ pub(crate) fn search_finer<T: Real>(
     crowded.extend(fine);
     crowded.sort_unstable_by(|a, b| cell(a).cmp(&cell(b)).then(a.order(b)));
     let position = |peak: &Peak| {
-        let (_, half_turn) = plan.rotation(peak.rotation as usize);
+        let (_, half_turn) = plan.rotations.rotation(peak.rotation as usize);
         let voxel = peak.voxel as usize;
         engine.cpu.position_after(half_turn, voxel)
     };
     for group in crowded.chunk_by(|a, b| cell(a) == cell(b)) {
-        peaks.extend(apart(
+        peaks.extend(spaced(
             group,
-            plan.options.per_rotation,
-            plan.spacing,
+            plan.per_rotation,
+            plan.engine.spacing(),
             position,
         ));
     }
     peaks.sort_unstable_by(Peak::order);
-    peaks.truncate(plan.options.poses);
+    peaks.truncate(plan.kept);
     Ok((peaks, FineSearched { rotations, cells }))
 }
 
 /// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's peaks may.
-fn apart(
+fn spaced(
     peaks: &[Peak],
     count: usize,
     spacing: f64,
@@ -138,8 +136,8 @@ fn nearest(fine: &[UnitQuaternion<f64>], coarse: &[UnitQuaternion<f64>]) -> Vec<
 
 #[cfg(test)]
 mod tests {
-    use crate::search::coarse_to_fine::*;
-    use crate::search::rotations::{rotation_set, spiral_set};
+    use super::*;
+    use knotdock_scoring::so3::{rotation_set, spiral_set};
 
     #[test]
     fn cells_are_those_of_the_nearest_rotation() {
@@ -168,9 +166,9 @@ mod tests {
         };
         let peaks: Vec<Peak> = (0..10).map(peak).collect();
         let on_a_line = |peak: &Peak| Vector3::new(f64::from(peak.voxel), 0.0, 0.0);
-        let kept = apart(&peaks, 3, 1.0, on_a_line);
+        let kept = spaced(&peaks, 3, 1.0, on_a_line);
         assert_eq!(kept, [peak(0), peak(3), peak(6)]);
-        assert_eq!(apart(&peaks, 9, 1.0, on_a_line).len(), 4);
-        assert_eq!(apart(&peaks[..0], 3, 1.0, on_a_line), []);
+        assert_eq!(spaced(&peaks, 9, 1.0, on_a_line).len(), 4);
+        assert_eq!(spaced(&peaks[..0], 3, 1.0, on_a_line), []);
     }
 }

@@ -1,16 +1,32 @@
 //! What a run correlates with: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
 
-use crate::dock::outcome::Adapter;
-use crate::dock::plan::DockPlan;
 use crate::error::SearchError;
 use crate::options::EngineChoice;
+use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::peaks::Peak;
+use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
+use serde::Serialize;
 
 #[cfg(feature = "gpu")]
-use crate::search::peaks::NEIGHBOURS;
-#[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
+#[cfg(feature = "gpu")]
+use knotdock_scoring::peaks::NEIGHBOURS;
+#[cfg(feature = "gpu")]
+
+/// The graphics processor that correlated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Adapter {
+    /// Its name.
+    pub name: String,
+    /// The interface that it was driven through, such as `vulkan`.
+    pub backend: &'static str,
+    /// Whether it is a program on the CPU that plays one.
+    pub software: bool,
+    /// Rotations that were in flight at once, half-turns counted.
+    pub rotations_in_flight: usize,
+}
 
 /// An engine that is ready to scan.
 pub(crate) struct ScanEngine<T: Real> {
@@ -20,6 +36,16 @@ pub(crate) struct ScanEngine<T: Real> {
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
     pub adapter: Option<Adapter>,
+}
+
+impl<T: Real> ScanEngine<T> {
+    /// The pose of a peak, as the grid has it.
+    pub fn grid_pose(&self, plan: &SearchPlan, peak: &Peak) -> Pose {
+        let (rotation, half_turn) = plan.rotations.rotation(peak.rotation as usize);
+        let position = self.cpu.position_after(half_turn, peak.voxel as usize);
+        let place = plan.engine.receptor_center() + position;
+        Pose::about(rotation, plan.engine.ligand_center(), place)
+    }
 }
 
 #[cfg(feature = "gpu")]
@@ -35,8 +61,8 @@ impl<T: Real> ScanEngine<T> {
     ///
     /// # Errors
     /// [`SearchError::Graphics`] where there is no graphics processor, or it cannot be used.
-    pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
-        if plan.options.engine == EngineChoice::Cpu {
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+        if plan.device == EngineChoice::Cpu {
             return Ok(Self {
                 cpu,
                 gpu: None,
@@ -48,7 +74,7 @@ impl<T: Real> ScanEngine<T> {
         let gpu = GpuEngine::new(
             &device,
             &cpu,
-            plan.options.per_rotation,
+            plan.per_rotation,
             NEIGHBOURS,
             plan.graphics_bytes,
         )?;
@@ -72,8 +98,8 @@ impl<T: Real> ScanEngine<T> {
     ///
     /// # Errors
     /// [`SearchError::Graphics`] where a graphics processor is wanted, for this build has none.
-    pub fn new(plan: &DockPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
-        match plan.options.engine {
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+        match plan.device {
             EngineChoice::Cpu => Ok(Self { cpu, adapter: None }),
             EngineChoice::Gpu => Err(SearchError::Graphics(
                 "this build was made without the feature `gpu`".to_owned(),

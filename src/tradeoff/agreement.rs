@@ -60,7 +60,7 @@ pub fn compare(scores: &[f64], reference: &[f64]) -> Comparison {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::agreement::*;
+    use super::*;
 
     #[test]
     fn agreement_is_the_share_that_has_a_neighbour() {

@@ -24,7 +24,7 @@ pub fn front(pairs: &[(f64, Option<f64>)]) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use crate::tradeoff::front::*;
+    use super::*;
     use proptest::prelude::*;
 
     #[test]

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::StageTime;
 use crate::options::DockOptions;
-use crate::tradeoff::settings::Setting;
+use crate::tradeoff::settings::{Refused, Setting};
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
@@ -86,18 +86,16 @@ impl Measured {
     /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
     pub fn same_score(&self, default: &DockOptions) -> bool {
         let options = &self.setting.options;
-        (options.resolution, options.pass_length, options.sample_grid)
-            == (default.resolution, default.pass_length, default.sample_grid)
+        (
+            options.kernel.resolution,
+            options.kernel.pass_length,
+            options.sampling.sample_grid,
+        ) == (
+            default.kernel.resolution,
+            default.kernel.pass_length,
+            default.sampling.sample_grid,
+        )
     }
-}
-
-/// A setting that could not be run.
-#[derive(Clone, Debug, Serialize)]
-pub struct Refused {
-    /// Its name.
-    pub setting: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// All that a sweep measured.

@@ -17,6 +17,6 @@ pub mod plot;
 pub mod settings;
 pub mod sweep;
 
-pub use measured::{Measured, Refused, Tradeoff};
-pub use settings::{Knob, Setting};
+pub use measured::{Measured, Tradeoff};
+pub use settings::{Parameter, Refused, Setting};
 pub use sweep::{SweepProgress, sweep};

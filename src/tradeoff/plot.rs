@@ -2,7 +2,7 @@
 
 use crate::plot::chart::{Axis, ChartError, Colour, Panel, Series, Style, draw};
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
-use crate::tradeoff::settings::Knob;
+use crate::tradeoff::settings::Parameter;
 
 /// Where nothing of the reference is missed: half a row, which a logarithm can show.
 const NONE_MISSED: f64 = 0.5;
@@ -10,20 +10,20 @@ const NONE_MISSED: f64 = 0.5;
 const FRONT: Colour = [0x88, 0x88, 0x88];
 
 /// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
-fn colour(knob: Knob) -> Colour {
-    match knob {
-        Knob::Default => [0x00, 0x00, 0x00],
-        Knob::Reference => [0x77, 0x77, 0x77],
-        Knob::Tolerance => [0xd5, 0x5e, 0x00],
-        Knob::Precision => [0x99, 0x99, 0x33],
-        Knob::Spacing => [0xe6, 0x9f, 0x00],
-        Knob::Resolution => [0x00, 0x9e, 0x73],
-        Knob::Rotations => [0x00, 0x72, 0xb2],
-        Knob::CoarseToFine => [0x33, 0x22, 0x88],
-        Knob::PerRotation => [0x56, 0xb4, 0xe9],
-        Knob::Refine => [0xaa, 0x33, 0x77],
-        Knob::SampleGrid => [0x8b, 0x5a, 0x2b],
-        Knob::Combination => [0xcc, 0x33, 0x11],
+fn colour(parameter: Parameter) -> Colour {
+    match parameter {
+        Parameter::Default => [0x00, 0x00, 0x00],
+        Parameter::Reference => [0x77, 0x77, 0x77],
+        Parameter::Option("tolerance") => [0xd5, 0x5e, 0x00],
+        Parameter::Option("spacing") => [0xe6, 0x9f, 0x00],
+        Parameter::Option("resolution") => [0x00, 0x9e, 0x73],
+        Parameter::Option("rotations") => [0x00, 0x72, 0xb2],
+        Parameter::Option("fine_rotations") => [0x33, 0x22, 0x88],
+        Parameter::Option("per_rotation") => [0x56, 0xb4, 0xe9],
+        Parameter::Option("refine") => [0xaa, 0x33, 0x77],
+        Parameter::Option("sample_grid") => [0x8b, 0x5a, 0x2b],
+        Parameter::Option(_) => [0x99, 0x99, 0x33],
+        Parameter::Combination => [0xcc, 0x33, 0x11],
     }
 }
 
@@ -41,7 +41,11 @@ impl Point<'_> {
 
     /// Whether its name is written before those of others: the front's, the default's and the reference's.
     fn is_important(&self) -> bool {
-        self.front || matches!(self.run.setting.knob, Knob::Default | Knob::Reference)
+        self.front
+            || matches!(
+                self.run.setting.parameter,
+                Parameter::Default | Parameter::Reference
+            )
     }
 }
 
@@ -62,7 +66,7 @@ pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
         .collect::<Vec<_>>()
     };
     let missed = |run: &Measured| {
-        let counted = run.setting.knob != Knob::Reference;
+        let counted = run.setting.parameter != Parameter::Reference;
         counted.then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
     };
     let mut panels = vec![
@@ -115,10 +119,10 @@ fn panel(title: &str, up: Axis, points: &[Point]) -> Panel {
             .iter()
             .filter(|point| point.is_important() == important)
         {
-            let knob = point.run.setting.knob;
+            let parameter = point.run.setting.parameter;
             series.push(Series {
                 name: String::new(),
-                colour: colour(knob),
+                colour: colour(parameter),
                 style: if point.front {
                     Style::Discs
                 } else {
@@ -140,8 +144,8 @@ fn panel(title: &str, up: Axis, points: &[Point]) -> Panel {
         });
     };
     for point in points {
-        let knob = point.run.setting.knob;
-        entry(knob.name(), colour(knob), Style::HollowDiscs);
+        let parameter = point.run.setting.parameter;
+        entry(parameter.name(), colour(parameter), Style::HollowDiscs);
     }
     entry(
         "filled: nothing is better in less time",

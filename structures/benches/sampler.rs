@@ -7,6 +7,7 @@ use std::path::Path;
 
 use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, read};
+use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampler::ball_tree::BallTree;
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
 use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
@@ -197,6 +198,7 @@ fn main() {
         "\n| m | balls | rms off one, weights 1 | fitted | integral / volume, weights 1 | fitted | zeros |\n|{}",
         "---|".repeat(7)
     );
+    let bump = Bump::new(2.0).expect("above zero");
     for paper in PAPER.iter().filter(|paper| paper.power <= last.min(18)) {
         let run = run(
             &solid,
@@ -205,7 +207,7 @@ fn main() {
         );
         let volume = HausdorffMeter::new(&solid, &run.sampling.field).volume();
         let balls = &run.sampling.sets[2].balls;
-        let fitted = weights::fit(&run.sampling.field, balls, 2.0, volume);
+        let fitted = weights::fit(&run.sampling.field, balls, bump, volume);
         println!(
             "| 2^{} | {} | {:.3} | {:.3} | {:.2} | {:.3} | {} |",
             paper.power,

@@ -1,11 +1,9 @@
 //! Knots: a solid as a countable set of balls, held as parallel arrays.
 
-use num_complex::Complex64;
-
-/// A set of balls with complex weights: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
+/// A set of weighted balls: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
 ///
-/// The arrays have the same length; labels may be absent altogether. Shape alone needs weights of one; the double-skin affinity
-/// function (B&I eq. 51) needs complex ones, which is why they are complex here. Labels are what further effects act on.
+/// The arrays have the same length; labels may be absent altogether. Weights are real: the affinity function with its
+/// complex weights (B&I eq. 51) is a type of the scoring crate. Further effects act on the labels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Knots {
     /// Ball centres x_i, in Å (or the mesh's unit).
@@ -13,7 +11,7 @@ pub struct Knots {
     /// Ball radii r_i > 0, in the unit of `centers`.
     pub radii: Vec<f64>,
     /// Dimensionless weights c_i.
-    pub weights: Vec<Complex64>,
+    pub weights: Vec<f64>,
     /// Charges in units of the elementary charge e, one a knot; empty where the knots carry none (a mesh).
     pub charges: Vec<f64>,
     /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
@@ -88,7 +86,7 @@ impl Knots {
     /// # Errors
     /// [`KnotsError`] when the set is empty, the lengths differ, or a number is not usable.
     pub fn new(centers: Vec<[f64; 3]>, radii: Vec<f64>) -> Result<Self, KnotsError> {
-        let weights = vec![Complex64::new(1.0, 0.0); centers.len()];
+        let weights = vec![1.0; centers.len()];
         Self::with_weights(centers, radii, weights)
     }
 
@@ -99,7 +97,7 @@ impl Knots {
     pub fn with_weights(
         centers: Vec<[f64; 3]>,
         radii: Vec<f64>,
-        weights: Vec<Complex64>,
+        weights: Vec<f64>,
     ) -> Result<Self, KnotsError> {
         let knots = Self {
             centers,
@@ -169,7 +167,7 @@ impl Knots {
             if !(radius.is_finite() && radius > 0.0) {
                 return Err(KnotsError::Radius { index, radius });
             }
-            if !(weight.re.is_finite() && weight.im.is_finite()) {
+            if !weight.is_finite() {
                 return Err(KnotsError::Weight { index });
             }
         }

@@ -17,6 +17,8 @@ pub mod knots;
 pub mod mesh;
 #[cfg(feature = "molecule")]
 pub mod molecule;
+pub mod neighbours;
+pub mod numeric;
 
 #[cfg(feature = "mesh")]
 pub mod sampler;

@@ -6,22 +6,26 @@ mod solids;
 
 use std::f64::consts::PI;
 
+use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampler::decomposition::DecompositionOptions;
 use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::weights::{bump, bump_volume, fit};
+use knotdock_structures::sampler::weights::fit;
 use knotdock_structures::sampler::{Ball, Method, sample};
 use solids::{cuboid, sphere};
 
+fn bump(alpha: f64) -> Bump {
+    Bump::new(alpha).unwrap()
+}
+
 #[test]
 fn the_bump_is_that_of_the_paper() {
-    assert_eq!(
-        (bump(0.0, 2.0), bump(1.0, 2.0), bump(2.0, 2.0)),
-        (1.0, 0.0, 0.0)
-    );
-    assert!((bump(0.5f64.sqrt(), 2.0) - (-1f64).exp()).abs() < 1e-15);
+    let values = [0.0, 1.0, 2.0].map(|x| bump(2.0).value(x));
+    assert_eq!(values, [1.0, 0.0, 0.0]);
+    assert!((bump(2.0).value(0.5f64.sqrt()) - (-1f64).exp()).abs() < 1e-15);
     // The indicator of the ball as alpha grows.
-    assert!((bump_volume(1e5) - 4.0 / 3.0 * PI).abs() < 1e-3);
-    assert!(bump_volume(1.0) < bump_volume(2.0) && bump_volume(2.0) < bump_volume(8.0));
+    let volume = |alpha| bump(alpha).volume();
+    assert!((volume(1e5) - 4.0 / 3.0 * PI).abs() < 1e-3);
+    assert!(volume(1.0) < volume(2.0) && volume(2.0) < volume(8.0));
 }
 
 #[test]
@@ -46,10 +50,10 @@ fn one_ball_and_its_copies() {
                 .sqrt()
                 / 0.5
         })
-        .map(|x| bump(x, 2.0))
+        .map(|x| bump(2.0).value(x))
         .collect();
     let expected = values.iter().sum::<f64>() / values.iter().map(|v| v * v).sum::<f64>();
-    let one = fit(&field, &[ball], 2.0, 0.5);
+    let one = fit(&field, &[ball], bump(2.0), 0.5);
     assert!(
         (one.weights[0] / expected - 1.0).abs() < 1e-6,
         "{} {expected}",
@@ -57,7 +61,7 @@ fn one_ball_and_its_copies() {
     );
     assert!(one.rms_fitted < one.rms_unit);
     // A ball split in copies keeps its sum.
-    let three = fit(&field, &[ball; 3], 2.0, 0.5);
+    let three = fit(&field, &[ball; 3], bump(2.0), 0.5);
     assert!((three.weights.iter().sum::<f64>() / expected - 1.0).abs() < 1e-3);
     assert!((three.rms_fitted - one.rms_fitted).abs() < 1e-6);
     assert!((three.volume_unit / one.volume_unit - 3.0).abs() < 1e-12);
@@ -68,7 +72,7 @@ fn one_ball_and_its_copies() {
         center: [0.0; 3],
         radius: 2.0,
     };
-    let exact = fit(&field, &[all, all], 1e9, 1.0);
+    let exact = fit(&field, &[all, all], bump(1e9), 1.0);
     assert!((exact.weights.iter().sum::<f64>() - 1.0).abs() < 1e-6 && exact.rms_fitted < 1e-6);
 }
 
@@ -85,14 +89,14 @@ fn weights_meet_the_conditions_of_the_minimum() {
     let field = &sampling.field;
     let balls = &sampling.sets[2].balls;
     let volume = 2.0 * 1.2 * 0.8 / solid.frame().unit.powi(3);
-    let fitted = fit(field, balls, 2.0, volume);
+    let fitted = fit(field, balls, bump(2.0), volume);
     let value = |ball: &Ball, node: usize| {
         let place = field.grid.node(node);
         let apart = (0..3)
             .map(|axis| (place[axis] - ball.center[axis]).powi(2))
             .sum::<f64>()
             .sqrt();
-        bump(apart / ball.radius, 2.0)
+        bump(2.0).value(apart / ball.radius)
     };
     let nodes: Vec<usize> = (0..field.grid.nodes())
         .filter(|&node| field.depth[node] != 0.0)

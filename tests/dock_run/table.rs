@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::run::*;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,fine_contact,pose_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends";
+                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,pose_score,z_score,restraint,other_copies,fine_contact,atom_pair,relaxed,active_residues,unresolved,termini";
 
 #[test]
 fn the_table_says_what_its_columns_promise() {

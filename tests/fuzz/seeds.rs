@@ -17,9 +17,9 @@ impl Reader {
             Self::Off => vec![OFF.to_owned(), format!("# a comment\n{OFF}"), WRAPPED_OFF.to_owned()],
             Self::Poses => vec!["rank,score,qw,qx,qy,qz,tx,ty,tz,note\n1,10.5,1,0,0,0,0.5,-1,2e1,\"a, b\"\n2,9,0.5,0.5,0.5,0.5,1,2,3,\n3,8,0,0,0,1,4,5,6,c\n".to_owned()],
             Self::Run => vec![RUN.to_owned()],
-            Self::Contact => vec![include_str!("../../scoring/src/effect/contact_potential.csv").to_owned()],
-            Self::FineContact => vec![include_str!("../../scoring/src/rescoring/fine_contact_potential.csv").to_owned()],
-            Self::AtomPair => vec![include_str!("../../scoring/src/rescoring/atom_pair_potential.csv").to_owned()],
+            Self::Contact => vec![include_str!("../../scoring/src/terms/effect/contact_potential.csv").to_owned()],
+            Self::FineContact => vec![include_str!("../../scoring/src/terms/pose/fine_contact_potential.csv").to_owned()],
+            Self::AtomPair => vec![include_str!("../../scoring/src/terms/pose/atom_pair_potential.csv").to_owned()],
             Self::Pairs => vec![PAIRS.to_owned()],
         };
         texts.into_iter().map(String::into_bytes).collect()

@@ -7,7 +7,8 @@ use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_option
 use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
-use knotdock_scoring::lifted_axis::{Quantity, RadiusBasis};
+use knotdock_scoring::lifted_axis::RadiusBasis;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -107,7 +108,7 @@ fn without_a_preference_for_contact_the_score_is_a_second_derivative() {
 fn the_grids_mean_is_the_same_for_all_rotations() {
     let (a, b) = (cloud(80, 9.0, &RADII, 5), cloud(40, 6.0, &RADII, 6));
     let pair = Pair::<f64>::new(&a, &b, engine_options(1e-3));
-    let kernel = &pair.plan.kernel;
+    let kernel = pair.plan.kernel();
     let weights = kernel.options().slice_weights();
     let (mut expected, mut size) = (0.0, 0.0);
     for r in &a.radii {
@@ -119,7 +120,7 @@ fn the_grids_mean_is_the_same_for_all_rotations() {
             }
         }
     }
-    let volume = pair.plan.modes.volume();
+    let volume = pair.plan.modes().volume();
     let mut work = pair.engine.workspace();
     let mut first = None;
     for turn in 0..5 {
@@ -157,7 +158,7 @@ fn as_many_fields_as_distinct_radii_are_exact() {
     let many: Vec<f64> = (0..80).map(|i| 1.4 + f64::from(i) / 130.0).collect();
     let (a, b) = (cloud(80, 9.0, &many, 7), cloud(45, 6.0, &RADII, 8));
     let pair = Pair::<f64>::new(&a, &b, engine_options(1e-2));
-    assert_eq!(pair.plan.basis, RadiusBasis::Modes);
+    assert_eq!(*pair.plan.basis(), RadiusBasis::Modes);
     let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
     let at = |rank: usize| {
         let engine = CpuEngine::new(pair.plan.clone(), &folded, &b, rank);

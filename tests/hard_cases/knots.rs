@@ -12,12 +12,11 @@ use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
-use num_complex::Complex64;
 
 /// Knots with one weight for all.
 fn weighted(knots: &Knots, weight: f64) -> Knots {
     Knots {
-        weights: vec![Complex64::new(weight, 0.0); knots.len()],
+        weights: vec![weight; knots.len()],
         ..knots.clone()
     }
 }
@@ -76,7 +75,7 @@ fn duplicate_atoms_are_weights() {
     // A weightless knot inside the box.
     weights.centers.push([0.3, 0.2, 0.1]);
     weights.radii.push(1.7);
-    weights.weights.push(Complex64::default());
+    weights.weights.push(0.0);
     let grid = |receptor: &Knots, ligand: &Knots| {
         Pair::<f64>::new(receptor, ligand, engine_options(1e-3))
             .correlate(&some_rotation())
@@ -382,7 +381,7 @@ fn knots_that_are_none_are_refused_everywhere() {
         with(&|knots| knots.radii[3] = 0.0),
         with(&|knots| knots.radii[3] = -1.0),
         with(&|knots| knots.radii[3] = f64::INFINITY),
-        with(&|knots| knots.weights[3].re = f64::NAN),
+        with(&|knots| knots.weights[3] = f64::NAN),
         with(&|knots| {
             knots.radii.pop();
         }),
@@ -413,11 +412,6 @@ fn knots_that_are_none_are_refused_everywhere() {
             assert!(ProductScorer::new(&product, a, b).is_err());
         }
     }
-    let complex = with(&|knots| knots.weights[3].im = 1.0);
-    assert!(matches!(
-        Plan::new(&complex, &good, engine_options(1e-2)),
-        Err(PlanError::ComplexWeight(3))
-    ));
     // A stray atom far away asks for a box that no machine holds.
     let stray = with(&|knots| knots.centers[3][0] = 1e12);
     assert!(matches!(

@@ -4,8 +4,8 @@
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::KernelOptions;
-use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::potential_grid::PotentialGrid;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -186,7 +186,13 @@ fn doubling_every_length_keeps_the_grids_bits() {
         };
         let small = Pair::<f32>::new(&a, &b, options);
         let large = Pair::<f32>::new(&doubled(&a), &doubled(&b), twice);
-        let lengths = |plan: &Plan| (plan.spacing, plan.effective_reach, plan.kernel.reach());
+        let lengths = |plan: &Plan| {
+            (
+                plan.spacing(),
+                plan.effective_reach(),
+                plan.kernel().reach(),
+            )
+        };
         let (one, two) = (lengths(&small.plan), lengths(&large.plan));
         assert_eq!((2.0 * one.0, 2.0 * one.1, 2.0 * one.2), two);
         let bits = |pair: &Pair<f32>| -> Vec<u32> {

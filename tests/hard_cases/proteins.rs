@@ -4,7 +4,7 @@
 //! references are too slow for all modes and all voxels of a protein, so 2,000 modes and 200 poses are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_scoring::transform::real_fft_3d::RealFft3d;
@@ -52,22 +52,22 @@ fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
     let plan = &pair.plan;
     let drawn = drawn_modes(&pair);
     let exact = direct(&pair, a, b, rotation, &drawn);
-    let fft = RealFft3d::<f64>::new(plan.modes.size);
+    let fft = RealFft3d::<f64>::new(plan.modes().size);
     let mut spectrum = vec![Complex64::default(); fft.spectrum_len()];
     fft.forward(&mut grid, &mut spectrum, &mut fft.workspace());
-    let [nx, ny, _] = plan.modes.size;
-    let points = plan.modes.size.iter().product::<usize>() as f64;
+    let [nx, ny, _] = plan.modes().size;
+    let points = plan.modes().size.iter().product::<usize>() as f64;
     // Voxel 0 is not the origin of translations.
     let origin = pair.engine.position(0);
     let mut all = 0.0;
-    plan.modes
+    plan.modes()
         .for_each(|_, _, multiplicity| all += multiplicity);
     let (mut worst, mut squares, mut weight) = (0.0f64, 0.0, 0.0);
     for (mode, exact) in drawn.iter().zip(exact) {
         let place = mode.map(|w| w.index);
         let index = |axis: usize, n: usize| place[axis].rem_euclid(n as i64) as usize;
         let value =
-            spectrum[(index(2, plan.modes.size[2]) * ny + index(1, ny)) * nx + index(0, nx)];
+            spectrum[(index(2, plan.modes().size[2]) * ny + index(1, ny)) * nx + index(0, nx)];
         let turns: f64 = (0..3).map(|i| mode[i].frequency * origin[i]).sum();
         let error = (value / points * Complex64::cis(-2.0 * PI * turns) - exact).norm() / best;
         let multiplicity = if place[2] == 0 { 1.0 } else { 2.0 };
@@ -110,7 +110,7 @@ struct Wave {
 
 /// Modes drawn evenly from all that the plan keeps.
 fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
-    let modes = &pair.plan.modes;
+    let modes = pair.plan.modes();
     let mut all = Vec::with_capacity(modes.count);
     modes.for_each(|_, w, _| all.push(w));
     let mut numbers = Numbers(17);
@@ -135,10 +135,10 @@ fn direct<T: Real>(
     drawn: &[[Wave; 3]],
 ) -> Vec<Complex64> {
     let plan = &pair.plan;
-    let receptor = Lifted::new(a, |x| x - plan.receptor_center, 1.0);
+    let receptor = Lifted::new(a, |x| x - plan.receptor_center(), 1.0);
     // The r-mirrored ligand: radii enter with the other sign.
-    let ligand = Lifted::new(b, |y| rotation * (y - plan.ligand_center), -1.0);
-    let last = plan.axis.modes() as i64;
+    let ligand = Lifted::new(b, |y| rotation * (y - plan.ligand_center()), -1.0);
+    let last = plan.axis().modes() as i64;
     drawn
         .par_iter()
         .enumerate()
@@ -148,7 +148,7 @@ fn direct<T: Real>(
             let classes = [receptor.classes(w), ligand.classes(w)];
             if place % 500 == 0 {
                 for (body, classes) in [&receptor, &ligand].into_iter().zip(&classes) {
-                    let eta = plan.axis.eta(last);
+                    let eta = plan.axis().eta(last);
                     let plain = ndft_4d(&body.centers, &body.radii, &body.weights, w, eta);
                     let difference = (plain - turned(classes, eta)).norm();
                     assert!(
@@ -159,14 +159,14 @@ fn direct<T: Real>(
             }
             let sum: Complex64 = (-last..=last)
                 .map(|k| {
-                    let eta = plan.axis.eta(k);
-                    plan.axis.coefficient(&plan.kernel, length, k)
-                        * plan.axis.fold_factor(&plan.kernel, Quantity::Score, k)
+                    let eta = plan.axis().eta(k);
+                    plan.axis().coefficient(plan.kernel(), length, k)
+                        * plan.axis().fold_factor(plan.kernel(), Quantity::Score, k)
                         * turned(&classes[0], eta)
                         * turned(&classes[1], eta).conj()
                 })
                 .sum();
-            sum / plan.modes.volume()
+            sum / plan.modes().volume()
         })
         .collect()
 }
@@ -175,7 +175,7 @@ fn direct<T: Real>(
 struct Lifted {
     centers: Vec<[f64; 3]>,
     radii: Vec<f64>,
-    weights: Vec<Complex64>,
+    weights: Vec<f64>,
 }
 
 impl Lifted {

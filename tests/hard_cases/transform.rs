@@ -11,10 +11,9 @@ use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_scoring::kernel::radial_transform::RadialTransform;
 use knotdock_scoring::kernel::{Band, Bump, KernelOptions};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
-use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -128,9 +127,7 @@ fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
 fn nothing_to_transform_scores_nothing() {
     let (a, b) = (cloud(40, 8.0, &RADII, 1), cloud(20, 5.0, &RADII, 2));
     let weighted = |knots: &Knots, weight: &dyn Fn(usize) -> f64| Knots {
-        weights: (0..knots.len())
-            .map(|i| Complex64::new(weight(i), 0.0))
-            .collect(),
+        weights: (0..knots.len()).map(weight).collect(),
         ..knots.clone()
     };
     let nothing = weighted(&b, &|_| 0.0);

@@ -6,8 +6,8 @@
 
 use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
 use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::lifted_axis::Quantity;
 use knotdock_scoring::potential_grid::PotentialGrid;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::TruncatedCorrelation;
@@ -32,12 +32,12 @@ fn lattice(counts: [usize; 3]) -> Knots {
 /// over every 31st voxel of the rest, relative to the best exact score seen.
 fn worst(pair: &Pair<f32>, rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let work = pair.correlate(&rotation);
-    let half = pair.plan.modes.lengths.map(|length| 0.5 * length);
+    let half = pair.plan.modes().lengths.map(|length| 0.5 * length);
     let errors: Vec<(bool, f64, f64)> = (0..work.grid.len())
         .into_par_iter()
         .filter_map(|voxel| {
             let t = pair.engine.position(voxel);
-            let face = (0..3).any(|axis| half[axis] - t[axis].abs() < pair.plan.spacing);
+            let face = (0..3).any(|axis| half[axis] - t[axis].abs() < pair.plan.spacing());
             if !face && voxel % 31 != 0 {
                 return None;
             }
@@ -117,7 +117,7 @@ fn the_field_ends_with_the_box() {
     for axis in 0..3 {
         for boxes in [-2.0, -1.0, 1.0, 2.0] {
             let mut step = Vector3::zeros();
-            step[axis] = boxes * pair.plan.modes.lengths[axis];
+            step[axis] = boxes * pair.plan.modes().lengths[axis];
             let away = Pose {
                 translation: pose.translation + step,
                 ..pose
@@ -150,7 +150,7 @@ fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
         let pair = Pair::<f64>::new(&a, &b, options);
         let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
         let direct =
-            TruncatedCorrelation::new(&pair.plan, &folded, &b, &Selection::all(&pair.plan.modes));
+            TruncatedCorrelation::new(&pair.plan, &folded, &b, &Selection::all(pair.plan.modes()));
         let mut work = direct.workspace();
         let rotation = some_rotation();
         let grid = pair.correlate(&rotation).grid;

@@ -29,7 +29,7 @@ fn a_ring_that_is_known_to_fit_is_found_first() {
         "dock both.pdb --symmetry C2 --rotations 200 --poses 400 --effects shape -o run --quiet";
     succeed(folder.path(), options.split(' '));
     let rows = rows(&folder.path().join("run"));
-    // Of the ring's poses that one is first in which the ends of chains are least in the way.
+    // The first pose of the ring is the one with the fewest contacts of termini.
     assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.5);
     assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
 }
@@ -125,8 +125,8 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
             if !row["other_copies"].is_empty() {
                 assert!(close(number(row, "other_copies"), others), "{name}");
             }
-            let loose = number(row, "missing") + number(row, "chain_ends");
-            let ranked = own + others + loose;
+            let flexible = number(row, "unresolved") + number(row, "termini");
+            let ranked = own + others + flexible;
             assert!(close(number(row, "pose_score"), ranked), "{name}");
         }
     }
@@ -192,7 +192,7 @@ fn residues_are_named_for_all_copies() {
     let folder = tempfile::tempdir().unwrap();
     let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
     assert!(told["run"]["options"]["active_ligand"].is_null());
-    assert!(rows.iter().all(|row| row["attraction"].is_empty()));
+    assert!(rows.iter().all(|row| row["active_residues"].is_empty()));
     let molecule = example("ligand_unbound");
     let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
     let mut arguments = vec!["dock", &molecule, "--symmetry", "C3"];
@@ -209,7 +209,7 @@ fn residues_are_named_for_all_copies() {
     }
     // Two residues on either side: each that touches earns a quarter of the weight.
     let rows = self::rows(&folder.path().join("run"));
-    let earned = |row: &Row| number(row, "attraction");
+    let earned = |row: &Row| number(row, "active_residues");
     assert!(earned(&rows[0]) >= 1000.0);
     assert!(rows.iter().all(|row| earned(row) % 500.0 == 0.0));
 }

@@ -10,7 +10,6 @@
 use super::columns::Reading;
 use super::packed::{LANES, Packet, Packing, reversed};
 use super::plan::Plan;
-use super::preparation::ligand_forward;
 use crate::se3::HalfTurn;
 use crate::transform::Real;
 use crate::transform::modes::place;
@@ -22,9 +21,9 @@ use rustfft::Fft;
 use std::sync::{Arc, OnceLock};
 
 /// Columns that go through the x transforms together.
-const COLUMNS: usize = 8;
+pub(super) const COLUMNS: usize = 8;
 /// Planes kz that go through the y transforms together: a cache line of the spectrum's rows.
-const PLANES: usize = 8;
+pub(super) const PLANES: usize = 8;
 
 /// A prepared correlation of one pair.
 pub struct CpuEngine<T: Real> {
@@ -102,7 +101,7 @@ impl<T: Real> CpuEngine<T> {
 
     /// Buffers for one rotation at a time.
     pub fn workspace(&self) -> Workspace<T> {
-        let [nx, ny, nz] = self.plan.modes.size;
+        let [nx, ny, nz] = self.plan.modes().size;
         let zero = Complex::new(T::zero(), T::zero());
         let scratch = self
             .inverse_x
@@ -124,28 +123,17 @@ impl<T: Real> CpuEngine<T> {
         }
     }
 
-    /// Bytes that a workspace of a plan takes at a rank, before the engine is built.
-    pub fn workspace_estimate(plan: &Plan, rank: usize) -> usize {
-        let [nx, ny, nz] = plan.modes.size;
-        let forward = ligand_forward::<T>(plan, rank);
-        let reals = 2 * COLUMNS * rank * forward.line_length()
-            + 2 * rank * LANES * Packing::new(&plan.modes).count()
-            + 2 * PLANES * nx * ny
-            + nx * ny * nz
-            + nx * ny * (nz + 1);
-        forward.workspace_bytes() + reals * std::mem::size_of::<T>()
-    }
-
     /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `half_turn` gave, in Å, in the box
     /// centred on the receptor.
     pub fn position_after(&self, half_turn: HalfTurn, voxel: usize) -> Vector3<f64> {
-        let [_, ny, nz] = self.plan.modes.size;
+        let [_, ny, nz] = self.plan.modes().size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
         // The block turns with the ligand in it.
         let signs = half_turn.signs();
         Vector3::from([0, 1, 2].map(|axis| {
-            let length = self.plan.modes.lengths[axis];
-            let t = index[axis] as f64 * self.plan.spacing + signs[axis] * self.block_center[axis]
+            let length = self.plan.modes().lengths[axis];
+            let t = index[axis] as f64 * self.plan.spacing()
+                + signs[axis] * self.block_center[axis]
                 - self.receptor_center[axis];
             t - length * (t / length + 0.5).floor()
         }))
@@ -240,7 +228,7 @@ impl<T: Real> CpuEngine<T> {
     /// Forward along x, column by column: completes the ligand's transform.
     #[inline(always)]
     fn columns(&self, work: &mut Workspace<T>) {
-        let modes = &self.plan.modes;
+        let modes = self.plan.modes();
         let mx = self.forward.line_length();
         let rank = self.rank();
         for start in (0..modes.columns.len()).step_by(COLUMNS) {
@@ -267,10 +255,10 @@ impl<T: Real> CpuEngine<T> {
     /// Products of columns and their inverse along x; then y for each block of planes.
     #[inline(always)]
     fn multiply(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
-        let half = self.plan.modes.size[2] / 2 + 1;
+        let half = self.plan.modes().size[2] / 2 + 1;
         let reading = Reading::after(half_turn);
         let spectra = if reading.reversed {
-            let modes = &self.plan.modes;
+            let modes = self.plan.modes();
             self.reversed
                 .get_or_init(|| reversed(modes, &self.packing, self.rank(), &self.spectra))
         } else {
@@ -294,7 +282,7 @@ impl<T: Real> CpuEngine<T> {
         level: usize,
         work: &mut Workspace<T>,
     ) {
-        let modes = &self.plan.modes;
+        let modes = self.plan.modes();
         let [nx, ny, _] = modes.size;
         let plane = &mut work.planes[level * nx * ny..(level + 1) * nx * ny];
         plane.fill(Complex::new(T::zero(), T::zero()));
@@ -354,14 +342,14 @@ impl<T: Real> CpuEngine<T> {
             &spectra[self.packing.range(index, rank)],
             &turned[self.packing.range(twin, rank)],
         ];
-        let side = self.plan.modes.columns[index].kx_max as usize;
+        let side = self.plan.modes().columns[index].kx_max as usize;
         reading.multiply(rank, side, pair, sums, product);
     }
 
     /// Joins the rows of `depth` planes from kz = `block` on in pairs.
     #[inline(always)]
     fn pair_rows(&self, block: usize, depth: usize, work: &mut Workspace<T>) {
-        let [nx, ny, nz] = self.plan.modes.size;
+        let [nx, ny, nz] = self.plan.modes().size;
         for (pair, row) in work.rows.chunks_exact_mut(nz).enumerate() {
             for level in 0..depth {
                 let at = level * nx * ny + 2 * pair;
@@ -381,7 +369,7 @@ impl<T: Real> CpuEngine<T> {
     /// Rows: complex to real along z, two at a time, and the best of each row.
     #[inline(always)]
     fn rows_to_grid(&self, work: &mut Workspace<T>) {
-        let [_, ny, nz] = self.plan.modes.size;
+        let [_, ny, nz] = self.plan.modes().size;
         let planes = work
             .rows
             .chunks_exact_mut(ny / 2 * nz)

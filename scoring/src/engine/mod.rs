@@ -10,11 +10,13 @@ pub mod gpu;
 mod packed;
 pub mod plan;
 mod preparation;
+mod rank;
 pub mod receptor_spectra;
 mod resolved;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
+pub use rank::{ChosenRank, choose_rank};
 pub use receptor_spectra::{Factors, ReceptorSpectra};
 pub use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan, UniformGridWorkspace};

@@ -1,6 +1,6 @@
 //! Preparing the engine on CPU cores: everything that does not turn, for a rank of the lifted axis.
 
-use super::cpu::CpuEngine;
+use super::cpu::{COLUMNS, CpuEngine, PLANES};
 use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
 use super::receptor_spectra::{Factors, ReceptorSpectra};
@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 impl<T: Real> CpuEngine<T> {
     /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
     pub fn new(plan: Arc<Plan>, folded: &ReceptorSpectra<T>, ligand: &Knots, rank: usize) -> Self {
-        let factors = folded.factor(&plan.modes);
+        let factors = folded.factor(plan.modes());
         Self::with_factors(plan, folded, &factors, ligand, rank)
     }
 
@@ -26,7 +26,7 @@ impl<T: Real> CpuEngine<T> {
         ligand: &Knots,
         rank: usize,
     ) -> Self {
-        let modes = Arc::clone(&plan.modes);
+        let modes = Arc::clone(plan.modes());
         let rank = rank.clamp(1, folded.full_rank());
         let Factors {
             combination,
@@ -85,7 +85,7 @@ impl<T: Real> CpuEngine<T> {
             ligand: ligand
                 .centers
                 .iter()
-                .map(|&y| Vector3::from(y) - plan.ligand_center)
+                .map(|&y| Vector3::from(y) - plan.ligand_center())
                 .collect(),
             block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
             receptor_center: folded.center,
@@ -96,6 +96,18 @@ impl<T: Real> CpuEngine<T> {
             singular: singular.iter().map(|value| value / largest).collect(),
             plan,
         }
+    }
+
+    /// Bytes that a workspace of a plan takes at a rank, before the engine is built.
+    pub fn workspace_estimate(plan: &Plan, rank: usize) -> usize {
+        let [nx, ny, nz] = plan.modes().size;
+        let forward = ligand_forward::<T>(plan, rank);
+        let reals = 2 * COLUMNS * rank * forward.line_length()
+            + 2 * rank * LANES * Packing::new(plan.modes()).count()
+            + 2 * PLANES * nx * ny
+            + nx * ny * nz
+            + nx * ny * (nz + 1);
+        forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
     /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first fields are these.
@@ -131,8 +143,8 @@ impl<T: Real> CpuEngine<T> {
 
 /// The transform of the ligand, which may lie anyhow within its radius.
 pub(super) fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
-    let modes = &plan.modes;
+    let modes = plan.modes();
     let extent = [0, 1, 2]
-        .map(|axis| plan.ligand_radius * plan.fine[axis] as f64 / modes.lengths[axis] + 0.5);
-    Forward::new(Arc::clone(modes), plan.fine, plan.width, extent, rank)
+        .map(|axis| plan.ligand_radius() * plan.fine()[axis] as f64 / modes.lengths[axis] + 0.5);
+    Forward::new(Arc::clone(modes), plan.fine(), plan.width(), extent, rank)
 }

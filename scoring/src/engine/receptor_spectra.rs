@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use crate::effect::{ActiveTerm, Effect, Label, Term};
 use crate::kernel::table::Table;
-use crate::lifted_axis::Quantity;
+use crate::quantity::Quantity;
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
 use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
@@ -42,17 +42,18 @@ impl<T: Real> ReceptorSpectra<T> {
     /// Transforms the receptor and folds the lifted kernel into it; the plan's further terms belong to the score alone, not to slices and
     /// sensitivities.
     pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
-        let modes = &plan.modes;
-        let (receptor_size, ligand_size) = plan.basis.sizes(&plan.axis);
-        let fine = plan.fine;
-        let extent = [0, 1, 2]
-            .map(|axis| plan.receptor_extent[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5);
+        let modes = plan.modes();
+        let (receptor_size, ligand_size) = plan.basis().sizes(plan.axis());
+        let fine = plan.fine();
+        let extent = [0, 1, 2].map(|axis| {
+            plan.receptor_extent()[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5
+        });
         let knots = Receptor {
-            forward: Forward::<T>::new(Arc::clone(modes), fine, plan.width, extent, 1),
+            forward: Forward::<T>::new(Arc::clone(modes), fine, plan.width(), extent, 1),
             points: receptor
                 .centers
                 .iter()
-                .map(|&x| (Vector3::from(x) - plan.receptor_center).into())
+                .map(|&x| (Vector3::from(x) - plan.receptor_center()).into())
                 .collect(),
             modes: Arc::clone(modes),
         };
@@ -65,7 +66,7 @@ impl<T: Real> ReceptorSpectra<T> {
             let mut weights = Vec::new();
             for (i, &radius) in receptor.radii.iter().enumerate() {
                 let value =
-                    plan.basis.receptor_value(&plan.axis, a, radius) * receptor.weights[i].re;
+                    plan.basis().receptor_value(plan.axis(), a, radius) * receptor.weights[i];
                 if value != 0.0 {
                     inside.push(knots.points[i]);
                     weights.push(T::of(value));
@@ -87,15 +88,15 @@ impl<T: Real> ReceptorSpectra<T> {
         }
         let mut columns: Vec<Vec<f64>> = (0..ligand_size)
             .map(|b| {
-                let value = |j: usize| plan.basis.ligand_value(&plan.axis, b, ligand.radii[j]);
+                let value = |j: usize| plan.basis().ligand_value(plan.axis(), b, ligand.radii[j]);
                 (0..ligand.len())
-                    .map(|j| ligand.weights[j].re * value(j))
+                    .map(|j| ligand.weights[j] * value(j))
                     .collect()
             })
             .collect();
         let mut effects = vec![Effect::Shape; ligand_size];
         let terms = match fold {
-            Quantity::Score => plan.effects.as_slice(),
+            Quantity::Score => plan.effects(),
             _ => &[],
         };
         for ActiveTerm { term, kernel } in terms {

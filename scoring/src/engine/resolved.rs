@@ -17,12 +17,12 @@ impl Plan {
     /// Indices of the knots that the planned correlation cannot resolve: of two of them on one place less than a tenth of their
     /// overlap is left by the low-pass, or, where there is none, their radius is below the grid spacing.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
-        match &self.pair {
+        match &self.pair() {
             PairKernel::Product(kernel) if kernel.band() == Band::Whole => {
-                by_radius(knots, |radius| radius < self.spacing)
+                by_radius(knots, |radius| radius < self.spacing())
             }
             _ => by_radius(knots, |radius| {
-                self.kernel.overlap_left(2.0 * radius) < SHARE
+                self.kernel().overlap_left(2.0 * radius) < SHARE
             }),
         }
     }

@@ -27,7 +27,7 @@ use super::plan::{PlanError, check_bodies};
 use crate::exact::center;
 use crate::kernel::product::{Body, factors, peak_score_and_reach};
 use crate::kernel::{Band, KernelOptions, ProductKernel};
-use crate::lifted_axis::Quantity;
+use crate::quantity::Quantity;
 use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
 use crate::transform::{Real, fast_size};
 use knotdock_structures::Knots;
@@ -270,7 +270,7 @@ fn balls(knots: &Knots, center: Vector3<f64>) -> Vec<Ball> {
         .map(|i| Ball {
             position: Vector3::from(knots.centers[i]) - center,
             radius: knots.radii[i],
-            weight: knots.weights[i].re,
+            weight: knots.weights[i],
         })
         .collect()
 }

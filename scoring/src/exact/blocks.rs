@@ -4,12 +4,10 @@
 //! sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass, those knots that lie
 //! within reach are listed one after another, so that what follows, which costs more, is done for none but these.
 
-use super::near::{Near, vectors, vectors_mut};
+use super::near::{LANES, Near, vectors, vectors_mut};
 use nalgebra::Vector3;
 use pulp::Simd;
 
-/// Knots in a block.
-pub(super) const LANES: usize = 8;
 /// Blocks in a group.
 const GROUP: usize = 16;
 

@@ -1,7 +1,6 @@
 //! The score's gradient over the six degrees of freedom of a pose.
 
-use super::blocks::LANES;
-use super::near::Near;
+use super::near::{LANES, Near};
 use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
 use crate::se3::Pose;

@@ -81,7 +81,7 @@ struct LigandKnot {
 }
 
 impl ExactScorer {
-    /// Prepares two sets of knots for shape alone; only the real parts of weights count (shape has no other).
+    /// Prepares two sets of knots for shape alone.
     ///
     /// # Errors
     /// [`KnotsError`] when a set is not usable.
@@ -124,7 +124,7 @@ impl ExactScorer {
                 .collect(),
             tables,
             knots: blocks.arranged(|index| ReceptorKnot {
-                weight: receptor.weights[index].re,
+                weight: receptor.weights[index],
                 class: receptor_class[index] as u32,
             }),
             receptor: blocks,
@@ -132,7 +132,7 @@ impl ExactScorer {
             ligand: (0..ligand.len())
                 .map(|j| LigandKnot {
                     position: Vector3::from(ligand.centers[j]) - ligand_center,
-                    weight: ligand.weights[j].re,
+                    weight: ligand.weights[j],
                     class: ligand_class[j],
                 })
                 .collect(),

@@ -1,9 +1,11 @@
-//! Receptor knots within reach of a point, one after another, so that what follows is done for none but these.
+//! Receptor knots within reach of a point, one after another, so that later steps handle these alone.
 
-use super::blocks::LANES;
 use pulp::Simd;
 
-/// Knots that are listed before they are handed on.
+/// Knots in a block: what vector registers take together.
+pub(super) const LANES: usize = 8;
+
+/// Knots that are collected before they are handed on.
 const CAPACITY: usize = 1024;
 
 /// For each set of lanes, as bits: its lanes first, in order.

@@ -7,8 +7,7 @@
 //! spelt out where it found none of its own: that took the score with its slices from 0.71 to 0.39 of the plain loop's time
 //! (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
-use super::blocks::LANES;
-use super::near::{Near, vectors, vectors_mut};
+use super::near::{LANES, Near, vectors, vectors_mut};
 use super::tables::{Line, Places};
 use super::{ExactScore, ExactScorer};
 use crate::effect::Effect;

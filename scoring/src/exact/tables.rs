@@ -5,8 +5,7 @@
 //! ends at the reach; one of zeros follows, in which all farther pairs end up. The score's table is the weighted sum of the slices' own
 //! coefficients, so the score alone and the score from the slices differ by rounding only.
 
-use super::blocks::LANES;
-use super::near::{vectors, vectors_mut};
+use super::near::{LANES, vectors, vectors_mut};
 use crate::kernel::RankingKernel;
 use crate::kernel::table::{PanelFit, TERMS};
 use pulp::Simd;

@@ -46,15 +46,15 @@ fn equals_the_plain_double_sum_and_the_complex_one_array_form() {
     let (fa, fb) = (skin.knots(&a), skin.knots(&b));
     let mut whole = Complex64::new(0.0, 0.0);
     let mut plain = Complex64::new(0.0, 0.0);
-    for i in 0..fa.len() {
-        for j in 0..fb.len() {
-            let x = pose.apply(fb.centers[j]);
+    for i in 0..fa.radii().len() {
+        for j in 0..fb.radii().len() {
+            let x = pose.apply(fb.centers()[j]);
             let d = (0..3)
-                .map(|k| (x[k] - fa.centers[i][k]).powi(2))
+                .map(|k| (x[k] - fa.centers()[i][k]).powi(2))
                 .sum::<f64>()
                 .sqrt();
-            let sigma = fa.radii[i] + fb.radii[j];
-            let weight = fa.weights[i] * fb.weights[j];
+            let sigma = fa.radii()[i] + fb.radii()[j];
+            let weight = fa.weights()[i] * fb.weights()[j];
             whole += weight
                 * if d < kernel.reach() {
                     kernel.value(d, sigma)
@@ -290,14 +290,14 @@ fn weights_count() {
     let mut weighted = a.clone();
     let mut doubled = a.clone();
     for i in 0..a.len() {
-        weighted.weights[i] = Complex64::new((i % 3) as f64, 0.0);
+        weighted.weights[i] = (i % 3) as f64;
     }
     let keep = |i: &usize| !i.is_multiple_of(3);
     let twice = (0..a.len()).filter(keep).flat_map(|i| vec![i; i % 3]);
     let members: Vec<usize> = twice.collect();
     doubled.centers = members.iter().map(|&i| a.centers[i]).collect();
     doubled.radii = members.iter().map(|&i| a.radii[i]).collect();
-    doubled.weights = vec![Complex64::new(1.0, 0.0); members.len()];
+    doubled.weights = vec![1.0; members.len()];
     // The middles of the two sets differ, which is rounding only.
     let one = ExactScorer::new(&kernel, &weighted, &ligand).unwrap();
     let two = ExactScorer::new(&kernel, &doubled, &ligand).unwrap();

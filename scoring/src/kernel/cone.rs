@@ -3,8 +3,8 @@
 //! kappa(d, sigma) = psi_alpha(d / sigma) w(sigma) with sigma = r + s + rho for balls of radii r, s and a slice at offset rho
 //! (B&I write r = -rho). w is the trim along the radius axis, which makes the cone periodic in sigma so that it has Fourier modes.
 
-use super::bump::Bump;
 use super::low_pass::smooth_step_down;
+use knotdock_structures::numeric::Bump;
 use serde::{Deserialize, Serialize};
 
 /// The trim w(sigma) along the lifted axis.

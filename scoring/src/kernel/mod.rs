@@ -1,7 +1,6 @@
 //! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product kernel of
 //! rasterised bumps.
 
-pub mod bump;
 pub mod cone;
 pub mod low_pass;
 mod options;
@@ -14,8 +13,8 @@ pub mod ranking;
 mod reference;
 pub mod table;
 
-pub use bump::Bump;
 pub use cone::{Cone, Trim};
+pub use knotdock_structures::numeric::{Bump, bump};
 pub use options::{KernelError, KernelOptions};
 pub use product::{Band, ProductKernel};
 pub use product_sum::ProductScorer;

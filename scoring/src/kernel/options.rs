@@ -1,7 +1,7 @@
 //! What defines a kernel, and which kernels cannot be built.
 
-use super::bump::{AlphaError, Bump};
 use super::cone::Trim;
+use knotdock_structures::numeric::bump::{AlphaError, Bump};
 use serde::{Deserialize, Serialize};
 
 /// What defines the ranking kernel. Lengths in the unit of the knots (Å for molecules).
@@ -19,6 +19,21 @@ pub struct KernelOptions {
     pub pass_length: f64,
     /// Trim along the lifted axis.
     pub trim: Trim,
+}
+
+impl Default for KernelOptions {
+    /// The options that `knotdock dock` uses: lambda, r0 and the resolution were chosen on training pairs
+    /// (docs/defaults.md), alpha is B&I's.
+    fn default() -> Self {
+        Self {
+            lambda: 9.0,
+            offset: 2.2,
+            alpha: 2.0,
+            resolution: 4.5,
+            pass_length: 9.0,
+            trim: Trim::FlatTop,
+        }
+    }
 }
 
 /// Why a kernel cannot be built.

@@ -68,7 +68,7 @@ impl ProductScorer {
             (0..knots.len())
                 .map(|i| PlacedKnot {
                     position: Vector3::from(knots.centers[i]) - center,
-                    weight: knots.weights[i].re,
+                    weight: knots.weights[i],
                     class: class[i],
                 })
                 .collect()

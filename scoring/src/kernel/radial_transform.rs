@@ -3,7 +3,7 @@
 //! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z). A ball of radius
 //! sigma has the transform sigma^3 psi^(q sigma), which continues to sigma < 0 as an odd function.
 
-use super::bump::Bump;
+use knotdock_structures::numeric::{Bump, double_exponential};
 use std::f64::consts::PI;
 
 /// sin(pi z) / (pi z), 1 at z = 0.
@@ -37,21 +37,14 @@ impl RadialTransform {
         if bump.alpha().is_infinite() {
             return Self { kind: Kind::Ball };
         }
-        // x = (1 + tanh(pi/2 sinh t)) / 2 clusters the nodes doubly exponentially at both ends, which takes in the
-        // essential singularity at x = 1 and the |x|^alpha cusp at 0; in the middle dx = (pi/4) dt, so the step must
-        // also resolve cos(2 pi q x).
+        // In the middle of the interval dx = (pi/4) dt, so the step must also resolve cos(2 pi q x).
         let step = (1.0 / 64.0f64).min(0.25 / (q_max.abs() + 1.0));
         let half = (4.0 / step).ceil() as i64;
         let mut nodes = Vec::new();
         let mut weights = Vec::new();
-        for k in -half..=half {
-            let t = k as f64 * step;
-            let s = 0.5 * PI * t.sinh();
-            // Distance to the nearer end without cancellation: 1/(1+exp(2|s|)).
-            let end = 1.0 / (1.0 + (2.0 * s.abs()).exp());
-            let x = if s < 0.0 { end } else { 1.0 - end };
-            let slope = PI * t.cosh() * end * (1.0 - end);
-            let weight = 4.0 * PI * x * x * bump.value(x) * slope * step;
+        for node in double_exponential::nodes(step, half) {
+            let x = node.x();
+            let weight = 4.0 * PI * x * x * bump.value(x) * node.slope * step;
             if weight > 1e-22 {
                 nodes.push(x);
                 weights.push(weight);

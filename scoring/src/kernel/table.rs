@@ -1,5 +1,7 @@
 //! Radial functions as piecewise polynomials on equal panels: one multiply, one truncation and a Horner chain a value.
 
+use knotdock_structures::numeric::chebyshev;
+
 /// Coefficients a panel holds: polynomials of degree 7.
 pub(crate) const TERMS: usize = 8;
 
@@ -65,26 +67,11 @@ pub(crate) struct PanelFit {
 
 impl PanelFit {
     pub(crate) fn new() -> Self {
-        let nodes: [f64; TERMS] = std::array::from_fn(|i| {
-            -(std::f64::consts::PI * (i as f64 + 0.5) / TERMS as f64).cos()
-        });
-        // Column `node` holds the coefficients of the Lagrange polynomial that is 1 there and 0 at the others.
-        let mut inverse = [[0.0; TERMS]; TERMS];
-        for node in 0..TERMS {
-            let mut polynomial = [0.0; TERMS];
-            polynomial[0] = 1.0;
-            for (degree, other) in (0..TERMS).filter(|&other| other != node).enumerate() {
-                let scale = 1.0 / (nodes[node] - nodes[other]);
-                for power in (0..=degree).rev() {
-                    let value = polynomial[power] * scale;
-                    polynomial[power + 1] += value;
-                    polynomial[power] = -nodes[other] * value;
-                }
-            }
-            for power in 0..TERMS {
-                inverse[power][node] = polynomial[power];
-            }
+        let mut nodes = [0.0; TERMS];
+        for (own, node) in nodes.iter_mut().zip(chebyshev::nodes(TERMS)) {
+            *own = -node;
         }
+        let inverse = chebyshev::to_monomials(&nodes);
         Self { nodes, inverse }
     }
 

@@ -1,9 +1,10 @@
 //! The basis in which knots meet the fourth axis: radius classes, lifted modes, or nodes over the radii.
 
+use super::LiftedAxis;
 use super::nodes::{MAX_NODES, node_value, nodes_for};
-use super::{LiftedAxis, Quantity};
 use crate::kernel::table::Table;
 use crate::kernel::{ProductKernel, RankingKernel};
+use crate::quantity::Quantity;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 

@@ -13,22 +13,10 @@ pub use basis::RadiusBasis;
 
 use crate::affinity::DoubleSkin;
 use crate::kernel::RankingKernel;
+use crate::quantity::Quantity;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
-
-/// What the engine correlates: one slice, or the score that folds all three.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// The weighted sum of the three slices: G.
-    Score,
-    /// One unweighted slice, 0, 1 or 2 for rho = 0, r0, 2 r0.
-    Slice(usize),
-    /// dG / d rho, all three offsets moved by the same length: the score's sensitivity to the knots' radii, per Å.
-    ScoreByOffset,
-    /// dg / d rho of one slice, per Å (= -dg / dr on B&I's r axis, which runs the other way).
-    SliceByOffset(usize),
-}
 
 /// The lifted kernel's modes: for each k = 0..=K a complex radial profile (negative k are the conjugates).
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::kernel::ProductKernel;
 use crate::kernel::product::Body;
-use std::f64::consts::PI;
+use knotdock_structures::numeric::chebyshev;
 
 /// Most nodes of [`super::RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product kernel.
 pub(super) const MAX_NODES: usize = 32;
@@ -35,8 +35,7 @@ pub(super) fn nodes_for(
     let between = |i: usize, n: usize| low + (high - low) * i as f64 / n as f64;
     let mut reached = (Vec::new(), f64::INFINITY);
     for count in 2..=MAX_NODES {
-        let nodes: Vec<f64> = (0..count)
-            .map(|i| (PI * (i as f64 + 0.5) / count as f64).cos())
+        let nodes: Vec<f64> = chebyshev::nodes(count)
             .map(|x| 0.5 * (low + high) + 0.5 * (high - low) * x)
             .collect();
         let mut error = 0.0f64;

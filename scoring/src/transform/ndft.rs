@@ -1,4 +1,4 @@
-//! The nufft discrete Fourier transform, direct and in f64: slow, plainly right, the reference for every fast path.
+//! The nonequispaced discrete Fourier transform, direct and in f64: slow, the reference that every fast path is tested against.
 
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -41,7 +41,7 @@ pub fn adjoint<const D: usize>(
 fn waves<const D: usize>(point: &[f64; D], modes: [usize; D]) -> Vec<Complex64> {
     let mut waves = vec![Complex64::new(1.0, 0.0)];
     for (x, n) in point.iter().zip(modes) {
-        // ReceptorSpectra first, so that a point many periods away keeps the digits that it has.
+        // Whole periods go first, so that a point many periods away keeps the digits that it has.
         let x = x - x.round();
         let of_axis: Vec<Complex64> = (0..n)
             .map(|index| Complex64::cis(-2.0 * PI * (index as f64 - (n / 2) as f64) * x))
@@ -55,10 +55,12 @@ fn waves<const D: usize>(point: &[f64; D], modes: [usize; D]) -> Vec<Complex64> 
 }
 
 /// sum_i c_i exp(-2 pi i (w.x_i + eta r_i)) at one lifted frequency (w, eta): O(knots).
-pub fn ndft_4d(
+///
+/// Weights are real, those of knots, or complex, those of the affinity function.
+pub fn ndft_4d<W: Copy + Into<Complex64>>(
     centers: &[[f64; 3]],
     radii: &[f64],
-    weights: &[Complex64],
+    weights: &[W],
     w: [f64; 3],
     eta: f64,
 ) -> Complex64 {
@@ -66,9 +68,9 @@ pub fn ndft_4d(
         .iter()
         .zip(radii)
         .zip(weights)
-        .map(|((x, r), c)| {
+        .map(|((x, r), &c)| {
             let turns = w[0] * x[0] + w[1] * x[1] + w[2] * x[2] + eta * r;
-            c * Complex64::cis(-2.0 * PI * turns)
+            c.into() * Complex64::cis(-2.0 * PI * turns)
         })
         .sum()
 }

@@ -1,9 +1,13 @@
-//! The nufft fast Fourier transform, type 1 (knots to modes), pruned at both ends.
+//! The search's transform: type 1 (knots to modes), pruned at both ends.
 //!
 //! Knots are spread with a Kaiser-Bessel window onto a grid finer than the modes need, but only over the block that they
-//! occupy; the three one-dimensional transforms then skip the lines that hold nothing and the modes that nobody keeps. Several
-//! fields (sets of weights on the same knots) go through together. The window's own transform is *not* divided out here:
-//! [`Forward::deconvolution`] gives the factors, which the caller folds into whatever multiplies the modes anyway.
+//! occupy. The three one-dimensional transforms then skip the lines that hold nothing and the modes that are not kept.
+//! Several components (sets of weights on the same knots) go through together.
+//!
+//! How it differs from the general transform, [`super::nufft`]: it takes lengths in Å relative to a block's centre, not
+//! fractions of a period; it keeps the modes of a [`ModeSet`], not a box of them; it runs in stages, so that an engine can
+//! use a column while it is in the cache; and it checks its input in debug builds alone. The window's own transform is
+//! *not* divided out: [`Forward::deconvolution`] gives the factors, which the caller multiplies into its own.
 
 use super::Real;
 use super::modes::{ModeSet, place};

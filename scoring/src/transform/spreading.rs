@@ -4,6 +4,7 @@
 //! grid point (in the knot's offset), so that one Horner chain fills the whole window.
 
 use super::Real;
+use knotdock_structures::numeric::chebyshev;
 use std::f64::consts::PI;
 
 /// Widest window, in grid points.
@@ -29,9 +30,7 @@ impl<T: Real> SpreadingKernel<T> {
                 .max(0.1)
                 .sqrt();
         let terms = width + 5;
-        let nodes: Vec<f64> = (0..terms)
-            .map(|i| (PI * (i as f64 + 0.5) / terms as f64).cos())
-            .collect();
+        let nodes: Vec<f64> = chebyshev::nodes(terms).collect();
         let mut coefficients = vec![[T::zero(); MAX_WIDTH]; terms];
         #[allow(clippy::needless_range_loop)] // `point` is the lane of every row
         for point in 0..width {
@@ -39,7 +38,10 @@ impl<T: Real> SpreadingKernel<T> {
                 .iter()
                 .map(|node| window(beta, w, 0.5 * (node + 1.0) + point as f64 - 0.5 * w))
                 .collect();
-            for (power, value) in monomials(&nodes, &values).into_iter().enumerate() {
+            for (power, value) in chebyshev::monomials(&nodes, &values)
+                .into_iter()
+                .enumerate()
+            {
                 coefficients[power][point] = T::of(value);
             }
         }
@@ -143,25 +145,6 @@ pub(super) fn bessel_i0(x: f64) -> f64 {
         sum += term;
     }
     sum
-}
-
-/// Monomial coefficients of the polynomial through (nodes, values), by Newton's divided differences.
-fn monomials(nodes: &[f64], values: &[f64]) -> Vec<f64> {
-    let count = nodes.len();
-    let mut divided = values.to_vec();
-    for order in 1..count {
-        for i in (order..count).rev() {
-            divided[i] = (divided[i] - divided[i - 1]) / (nodes[i] - nodes[i - order]);
-        }
-    }
-    let mut polynomial = vec![0.0; count];
-    for i in (0..count).rev() {
-        for power in (1..count).rev() {
-            polynomial[power] = polynomial[power - 1] - nodes[i] * polynomial[power];
-        }
-        polynomial[0] = divided[i] - nodes[i] * polynomial[0];
-    }
-    polynomial
 }
 
 #[cfg(test)]

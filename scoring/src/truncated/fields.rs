@@ -52,9 +52,9 @@ pub(super) fn of<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, knots: usize
         combination,
         coefficients,
         singular,
-    } = folded.factor(&plan.modes);
+    } = folded.factor(plan.modes());
     let largest = singular.first().copied().unwrap_or(0.0);
-    let least = SINGULAR_SHARE * plan.options.tolerance * largest;
+    let least = SINGULAR_SHARE * plan.options().tolerance * largest;
     let rank = singular.iter().filter(|&&value| value > least).count();
     if rank * knots >= reads {
         return direct;
@@ -80,8 +80,8 @@ pub(super) fn centering<T: Real>(
     folded: &ReceptorSpectra<T>,
 ) -> impl Fn(usize) -> Complex64 {
     let center = folded.center();
-    let mut turns = Vec::with_capacity(plan.modes.count);
-    plan.modes.for_each(|_, w, _| {
+    let mut turns = Vec::with_capacity(plan.modes().count);
+    plan.modes().for_each(|_, w, _| {
         turns.push(w[0] * center[0] + w[1] * center[1] + w[2] * center[2]);
     });
     move |place| Complex64::cis(2.0 * PI * turns[place])

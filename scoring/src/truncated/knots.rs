@@ -1,6 +1,5 @@
 //! The ligand's knots in blocks, a vector lane each.
 
-use super::read::Read;
 use crate::exact::PoseGradient;
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, Vector3};
@@ -19,6 +18,12 @@ pub(super) struct Block {
     /// Relative to the ligand's centre, Å.
     positions: [Vector3<f64>; LANES],
     pub weights: Lane,
+}
+
+/// What the knots of a block read: value and slope along each axis, per Å.
+pub(super) struct Read {
+    pub value: Lane,
+    pub slope: [Lane; 3],
 }
 
 /// Positions by axis, relative to a centre, Å.

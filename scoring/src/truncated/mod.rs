@@ -16,13 +16,16 @@
 
 mod columns;
 mod fields;
+mod frame;
 mod gather;
 mod knots;
 mod place;
 mod read;
 mod rotation_spectrum;
+mod workspace;
 
 pub use rotation_spectrum::RotationSpectrum;
+pub use workspace::Workspace;
 
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
@@ -32,6 +35,7 @@ use crate::transform::Real;
 use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
 use columns::{Harmonic, Layout};
+use frame::Frame;
 use knotdock_structures::Knots;
 use knots::Block;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -47,58 +51,17 @@ pub struct TruncatedCorrelation {
     blocks: Vec<Block>,
 }
 
-/// Where the two bodies lie.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    receptor_center: Vector3<f64>,
-    ligand_center: Vector3<f64>,
-    /// Half the box, Å.
-    half: Vector3<f64>,
-}
-
-impl Frame {
-    /// The ligand's centre relative to the receptor's, Å; `None` outside the box.
-    fn position(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        translation: &Vector3<f64>,
-    ) -> Option<Vector3<f64>> {
-        let position = rotation * self.ligand_center + translation - self.receptor_center;
-        (0..3)
-            .all(|axis| position[axis].abs() <= self.half[axis])
-            .then_some(position)
-    }
-}
-
-/// Tables of phases: one evaluation at a time, for any configuration of the same pair and no more modes.
-#[derive(Clone, Debug)]
-pub struct Workspace {
-    read: read::ReadTables,
-    place: place::PlaceTables,
-    gather: gather::GatherTables,
-}
-
-impl Workspace {
-    fn new(layout: &Layout, blocks: usize) -> Self {
-        Self {
-            read: read::ReadTables::new(layout),
-            place: place::PlaceTables::new(layout),
-            gather: gather::GatherTables::new(layout, blocks),
-        }
-    }
-}
-
 impl TruncatedCorrelation {
-    /// Takes the selected modes of a folded correlation ([`crate::lifted_axis::Quantity`] says of what: score, slice or sensitivity).
+    /// Takes the selected modes of a folded correlation ([`crate::quantity::Quantity`] says of what: score, slice or sensitivity).
     pub fn new<T: Real>(
         plan: &Plan,
         folded: &ReceptorSpectra<T>,
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
-        let layout = Layout::new(&plan.modes, selection);
+        let layout = Layout::new(plan.modes(), selection);
         let fields = fields::of(plan, folded, ligand.len());
-        let volume = plan.modes.volume();
+        let volume = plan.modes().volume();
         // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
         let turns = fields::centering(plan, folded);
         let values = fields
@@ -112,13 +75,13 @@ impl TruncatedCorrelation {
         let blocks = fields
             .iter()
             .enumerate()
-            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center))
+            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center()))
             .collect();
         Self {
             frame: Frame {
-                receptor_center: plan.receptor_center,
-                ligand_center: plan.ligand_center,
-                half: Vector3::from(plan.modes.lengths) * 0.5,
+                receptor_center: plan.receptor_center(),
+                ligand_center: plan.ligand_center(),
+                half: Vector3::from(plan.modes().lengths) * 0.5,
             },
             layout: Arc::new(layout),
             fields: values,
@@ -185,11 +148,11 @@ impl TruncatedCorrelation {
 /// [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
 pub fn envelope<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
     let fields = fields::of(plan, folded, ligand.len());
-    let mut envelope = vec![0.0; plan.modes.count];
+    let mut envelope = vec![0.0; plan.modes().count];
     for field in &fields {
         let weight: f64 = field.knots.iter().map(|knot| knot.1.abs()).sum();
         for (place, value) in envelope.iter_mut().enumerate() {
-            *value += field.mode(folded, place).norm() * weight / plan.modes.volume();
+            *value += field.mode(folded, place).norm() * weight / plan.modes().volume();
         }
     }
     envelope

@@ -4,14 +4,8 @@
 //! and part; columns are then turned by their phase along y, planes by theirs along z.
 
 use super::columns::{Harmonic, Layout};
-use super::knots::{Arms, LANES, Lane, powers};
+use super::knots::{Arms, LANES, Lane, Read, powers};
 use nalgebra::Vector3;
-
-/// What the knots of a block read: value and slope along each axis, per Å.
-pub(super) struct Read {
-    pub value: Lane,
-    pub slope: [Lane; 3],
-}
 
 /// Phases of one block.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! One rotation, prepared: its spectrum, and the value and force at any translation.
 
 use super::columns::{Harmonic, Layout};
-use super::{Frame, Workspace};
+use super::frame::Frame;
+use super::workspace::Workspace;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;

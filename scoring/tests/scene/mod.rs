@@ -7,7 +7,7 @@
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra, Workspace};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
-use knotdock_scoring::lifted_axis::Quantity;
+use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
@@ -100,7 +100,7 @@ impl<T: Real> Pair<T> {
         let folded = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
         Self {
             engine: CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank()),
-            scorer: ExactScorer::new(&plan.kernel, a, b).unwrap(),
+            scorer: ExactScorer::new(plan.kernel(), a, b).unwrap(),
             plan,
         }
     }
@@ -114,8 +114,8 @@ impl<T: Real> Pair<T> {
 
     /// The pose of a voxel.
     pub fn pose(&self, rotation: UnitQuaternion<f64>, voxel: usize) -> Pose {
-        let place: Vector3<f64> = self.plan.receptor_center + self.engine.position(voxel);
-        Pose::about(rotation, self.plan.ligand_center, place)
+        let place: Vector3<f64> = self.plan.receptor_center() + self.engine.position(voxel);
+        Pose::about(rotation, self.plan.ligand_center(), place)
     }
 
     /// The exact score of a voxel's pose.

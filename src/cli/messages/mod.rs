@@ -6,3 +6,4 @@ pub mod failure;
 pub mod library_errors;
 pub mod shared_chains;
 pub mod suggestions;
+pub mod usage;

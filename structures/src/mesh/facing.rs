@@ -15,6 +15,7 @@ use super::Mesh;
 use super::edges::Sets;
 use super::nesting::containers;
 use super::vector::{add, cross, dot, norm, scale, subtract};
+use crate::neighbours::cell::{Cell, around, cell_of};
 
 /// How far apart the borders of two pieces of one surface are at most, about, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
@@ -133,10 +134,10 @@ pub(super) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) 
 
 /// The parts of each surface.
 fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> {
-    let cell = SEAM * mesh.extent();
+    let edge = SEAM * mesh.extent();
     let mut surfaces = Vec::new();
     // The parts with a border in each cell, and those that hang together.
-    let mut borders: HashMap<[i64; 3], usize> = HashMap::new();
+    let mut borders: HashMap<Cell, usize> = HashMap::new();
     let mut joined = Sets::new(parts.len());
     let mut open = Vec::new();
     for (index, part) in parts.iter().enumerate() {
@@ -157,18 +158,16 @@ fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> 
         open.push(index);
         for triangle in border {
             for corner in mesh.corners(mesh.triangles[triangle as usize]) {
-                let place = corner.map(|x| (x / cell).floor() as i64);
+                let place = cell_of(corner, edge);
                 let first = *borders.entry(place).or_insert(index);
                 joined.join(first, index);
             }
         }
     }
-    let mut places: Vec<([i64; 3], usize)> =
-        borders.iter().map(|(at, part)| (*at, *part)).collect();
+    let mut places: Vec<(Cell, usize)> = borders.iter().map(|(at, part)| (*at, *part)).collect();
     places.sort_unstable();
     for (at, part) in places {
-        for step in 0..27 {
-            let near = std::array::from_fn(|axis| at[axis] + step / 3_i64.pow(axis as u32) % 3 - 1);
+        for near in around(at) {
             if let Some(&other) = borders.get(&near) {
                 joined.join(part, other);
             }

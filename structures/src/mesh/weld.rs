@@ -4,12 +4,11 @@
 //! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have the rules.
 //! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is one.
 
-use std::collections::HashMap;
-
 use super::error::MeshErrorKind;
 use super::faces::Faces;
 use super::rounding::{self, Digits};
 use super::{polygon, seams};
+use crate::neighbours::SpatialHash;
 
 /// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a vertex
 /// with the same digits, so this needs to take up no more than the rounding of one conversion of units.
@@ -121,53 +120,39 @@ fn number_by_appearance(kept: Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -> Vec<
 
 /// Vertices by their place.
 struct Places {
-    low: [f64; 3],
     reach: f64,
     /// Cells are twice the reach, so that what is within reach of a vertex lies in its cell or in one that it nearly
     /// touches: mostly one look-up a vertex.
-    cell: f64,
-    cells: HashMap<[i64; 3], Vec<u32>>,
+    cells: SpatialHash<u32>,
     kept: Vec<[f64; 3]>,
 }
 
 impl Places {
     fn new(low: [f64; 3], reach: f64, vertices: usize) -> Self {
         Self {
-            low,
             reach,
-            cell: 2.0 * reach,
-            cells: HashMap::with_capacity(vertices / 2),
+            cells: SpatialHash::with_origin(low, 2.0 * reach, vertices / 2),
             kept: Vec::new(),
         }
     }
 
     /// The vertex that stands for a position: the earliest within reach, else a new one.
     fn name(&mut self, position: [f64; 3]) -> u32 {
-        let (low, reach, cell) = (self.low, self.reach, self.cell);
-        let along =
-            |axis: usize, shift: f64| ((position[axis] - low[axis] + shift) / cell).floor() as i64;
-        let mut found: Option<u32> = None;
-        for x in along(0, -reach)..=along(0, reach) {
-            for y in along(1, -reach)..=along(1, reach) {
-                for z in along(2, -reach)..=along(2, reach) {
-                    for &other in self.cells.get(&[x, y, z]).into_iter().flatten() {
-                        let apart = super::vector::distance(self.kept[other as usize], position);
-                        if apart <= reach && found.is_none_or(|found| other < found) {
-                            found = Some(other);
-                        }
-                    }
-                }
-            }
+        let within = |other: &&u32| {
+            super::vector::distance(self.kept[**other as usize], position) <= self.reach
+        };
+        let earliest = self
+            .cells
+            .touching(position, self.reach)
+            .filter(within)
+            .min();
+        if let Some(&earliest) = earliest {
+            return earliest;
         }
-        found.unwrap_or_else(|| {
-            let name = self.kept.len() as u32;
-            self.kept.push(position);
-            self.cells
-                .entry([along(0, 0.0), along(1, 0.0), along(2, 0.0)])
-                .or_default()
-                .push(name);
-            name
-        })
+        let name = self.kept.len() as u32;
+        self.kept.push(position);
+        self.cells.push(position, name);
+        name
     }
 
     /// One position for each name.

@@ -1,8 +1,8 @@
 //! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points on the atoms'
 //! expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
-use super::cells::Cells;
 use super::{Molecule, squared_distance};
+use crate::neighbours::SpatialHash;
 
 /// Radius of the water probe, in Å.
 pub const PROBE: f64 = 1.4;
@@ -14,7 +14,7 @@ impl Molecule {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();
         let reach = 2.0 * grown.iter().copied().fold(0.0, f64::max);
-        let cells = Cells::new(self.atoms.iter().map(|atom| atom.position), reach);
+        let cells = SpatialHash::of_points(self.atoms.iter().map(|atom| atom.position), reach);
         let mut near: Vec<usize> = Vec::new();
         self.atoms
             .iter()
@@ -22,7 +22,7 @@ impl Molecule {
             .enumerate()
             .map(|(index, (atom, &radius))| {
                 near.clear();
-                near.extend(cells.around(atom.position).filter(|&other| {
+                near.extend(cells.around(atom.position).copied().filter(|&other| {
                     let touch = radius + grown[other];
                     let at = self.atoms[other].position;
                     other != index && squared_distance(atom.position, at) < touch * touch

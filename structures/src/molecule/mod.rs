@@ -19,10 +19,8 @@ use serde::Serialize;
 mod accessible;
 mod additives;
 mod alternate;
-mod antibody;
 mod assembly;
 mod buried;
-mod cells;
 mod chain_ends;
 mod chains;
 mod charge_table;
@@ -43,8 +41,6 @@ mod models;
 mod other_names;
 mod overlap;
 mod parse;
-mod peptidase;
-mod peptidase_families;
 mod policy;
 mod pseudo_atoms;
 mod radii;
@@ -64,7 +60,6 @@ mod wanted;
 mod write;
 
 pub use accessible::PROBE;
-pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
 pub use assembly::BuiltAssembly;
 pub use chain_ends::ChainEnds;
 pub use confidence::{Confidence, ConfidenceSource, LOW};
@@ -76,7 +71,6 @@ pub use input::InputSpec;
 pub use labels::{LabelReport, Labels};
 pub use missing::MissingResidues;
 pub use models::JoinedModels;
-pub use peptidase::ActiveSite;
 pub use policy::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
 };
@@ -85,6 +79,7 @@ pub use report::{
     Altered, AlternateChoice, ChainCount, DropKind, Dropped, GroupCount, OtherName, ReadReport,
 };
 pub use residue_selection::{ResidueSelection, UnknownResidues};
+pub use sequence::{PeptideChain, PeptideResidue, one_letter};
 pub use source::file_bytes;
 pub use standard_names::{plain_atom_name, plain_residue_name, standard_residue_name};
 pub use write::{

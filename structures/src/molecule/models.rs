@@ -12,6 +12,7 @@ use super::assembly::{ON_AXIS, copy_name};
 use super::parse::Parsed;
 use super::report::count;
 use super::squared_distance;
+use crate::neighbours::cell::{Cell, cell_of};
 
 /// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold one.
 const CELL: f64 = 2.0;
@@ -41,9 +42,9 @@ pub(super) enum Relation {
 
 /// How the models lie, by the models and positions (Å) of their atoms.
 pub(super) fn relation(atoms: impl Iterator<Item = (usize, [f64; 3])> + Clone) -> Relation {
-    let cell = |position: [f64; 3]| position.map(|x| (x / CELL).floor() as i64);
+    let cell = |position: [f64; 3]| cell_of(position, CELL);
     // The model of a cell's atoms; nothing where they are of several.
-    let mut owners: HashMap<[i64; 3], Option<usize>> = HashMap::new();
+    let mut owners: HashMap<Cell, Option<usize>> = HashMap::new();
     for (model, position) in atoms.clone() {
         let owner = owners.entry(cell(position)).or_insert(Some(model));
         if *owner != Some(model) {

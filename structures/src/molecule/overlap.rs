@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cells::Cells;
 use super::groups::{Residue, ResidueKey};
 use super::report::{count, show_chain};
 use super::{Atom, squared_distance};
+use crate::neighbours::SpatialHash;
 
 /// Distance in Å below which atoms of different residues are in one place: bonded ones are more than 1.2 Å apart, hydrogens left aside.
 const ON_TOP: f64 = 0.5;
@@ -138,7 +138,7 @@ fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> 
         }
     }
     let positions = atoms.iter().map(|atom| atom.position);
-    let cells = Cells::with_at_most(positions, ONE_NUMBER, MAX_IN_CELL);
+    let cells = SpatialHash::of_crowded_points(positions, ONE_NUMBER, MAX_IN_CELL);
     let is_on = |residue: usize, other: usize, squared: f64| {
         let (Some(own), Some(there)) = (residues.get(residue), residues.get(other)) else {
             return false;
@@ -153,7 +153,7 @@ fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> 
     };
     let mut found = Vec::new();
     for (atom, &residue) in atoms.iter().zip(&residue_of) {
-        let mut others = cells.around(atom.position).filter_map(|index| {
+        let mut others = cells.around(atom.position).copied().filter_map(|index| {
             let (there, &other) = (atoms.get(index)?, residue_of.get(index)?);
             let squared = squared_distance(there.position, atom.position);
             (other < residue && is_on(residue, other, squared)).then_some((other, squared))

@@ -1,33 +1,71 @@
-//! Chains as sequences: runs of amino acids, their letters and their numbers.
+//! Peptide chains as sequences: runs of amino acids, their letters and their numbers.
 
-use super::groups::{GroupKind, Residue};
+use std::ops::Range;
+
+use super::Molecule;
+use super::groups::{Residue, residue_runs};
 use super::residues::parent;
 
-/// Runs of amino acids that stand in one chain, each in file order.
-pub(super) fn peptides<'a, 'b>(groups: &'b [Residue<'a>]) -> Vec<&'b [Residue<'a>]> {
-    let is_peptide = |residue: &Residue<'_>| {
-        matches!(
-            residue.kind,
-            GroupKind::AminoAcid | GroupKind::ModifiedResidue
-        )
-    };
-    groups
-        .chunk_by(|a, b| a.key.0 == b.key.0 && is_peptide(a) == is_peptide(b))
-        .filter(|run| run.first().is_some_and(is_peptide))
-        .collect()
+/// A run of amino acids that stand in one chain of a file, one after another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PeptideChain<'a> {
+    /// The author's name of the chain; may be empty.
+    pub name: &'a str,
+    /// Its residues in file order; none may be missing between two that follow each other here.
+    pub residues: Vec<PeptideResidue>,
 }
 
-/// A residue's number with its insertion code.
-pub(super) fn number(residue: &Residue<'_>) -> String {
-    let (_, number, insertion, _) = residue.key;
-    match insertion {
-        Some(insertion) => format!("{number}{insertion}"),
-        None => number.to_string(),
+/// An amino acid of a chain.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PeptideResidue {
+    /// The author's number with the insertion code, e.g. `52A`.
+    pub number: String,
+    /// One letter, X of an amino acid outside the twenty.
+    pub letter: char,
+    /// The indices of its atoms in the molecule.
+    pub atoms: Range<usize>,
+}
+
+impl PeptideChain<'_> {
+    /// The letters of all residues.
+    pub fn sequence(&self) -> String {
+        self.residues.iter().map(|residue| residue.letter).collect()
     }
 }
 
-/// One letter of an amino acid, X of one outside the twenty.
-pub(super) fn letter(residue_name: &str) -> char {
+impl Molecule {
+    /// The peptide chains in file order, modified amino acids included.
+    ///
+    /// A chain ends where its name changes or another kind of residue stands between; where numbers begin again under one name,
+    /// it goes on.
+    pub fn peptide_chains(&self) -> Vec<PeptideChain<'_>> {
+        let runs = residue_runs(&self.atoms);
+        runs.chunk_by(|a, b| a.key.0 == b.key.0 && a.is_peptide() == b.is_peptide())
+            .filter(|run| run.first().is_some_and(Residue::is_peptide))
+            .map(|run| PeptideChain {
+                name: run.first().map_or("", |residue| residue.key.0),
+                residues: run.iter().map(peptide_residue).collect(),
+            })
+            .collect()
+    }
+}
+
+fn peptide_residue(residue: &Residue<'_>) -> PeptideResidue {
+    let (_, number, insertion, _) = residue.key;
+    // The atoms of a run stand together.
+    let start = residue.atoms.first().copied().unwrap_or(0);
+    PeptideResidue {
+        number: match insertion {
+            Some(insertion) => format!("{number}{insertion}"),
+            None => number.to_string(),
+        },
+        letter: one_letter(residue.known_as),
+        atoms: start..start + residue.atoms.len(),
+    }
+}
+
+/// One letter of an amino acid by its residue name, X of one outside the twenty.
+pub fn one_letter(residue_name: &str) -> char {
     match parent(residue_name) {
         "ALA" => 'A',
         "ARG" => 'R',
@@ -54,46 +92,48 @@ pub(super) fn letter(residue_name: &str) -> char {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-    use crate::molecule::Atom;
+    use crate::molecule::{Atom, Format};
 
-    /// The atoms of such `names` of each residue of a chain, numbered from `first`, all of them where `position` has their residue's number; X is a residue
-    /// of an unknown name.
-    pub fn chain(
-        chain: &str,
-        sequence: &str,
-        first: i64,
-        names: &[&str],
-        position: impl Fn(i64) -> [f64; 3],
-    ) -> Vec<Atom> {
-        const RESIDUES: [&str; 20] = [
-            "ALA", "ARG", "ASN", "ASP", "CYX", "GLN", "GLU", "GLY", "HIE", "ILE", "LEU", "LYS",
-            "MSE", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL",
-        ];
-        let atom = |number: i64, one: char, name: &str| Atom {
-            name: name.to_owned(),
-            residue_name: RESIDUES
-                .iter()
-                .find(|name| letter(name) == one)
-                .map_or("XYZ", |name| name)
-                .to_string(),
+    #[test]
+    fn chains_are_runs_of_amino_acids_under_one_name() {
+        let residue = |chain: &str, name: &str, number: i64, insertion: Option<char>| Atom {
+            name: "CA".to_owned(),
+            residue_name: name.to_owned(),
             chain: chain.to_owned(),
             residue_number: number,
-            insertion_code: None,
+            insertion_code: insertion,
             alternate_location: None,
             element: "C".to_owned(),
-            position: position(number),
+            position: [0.0; 3],
             occupancy: 1.0,
             b_factor: 0.0,
             hetero: false,
             radius: 1.9,
             line: 1,
         };
-        let mut atoms = Vec::new();
-        for (number, one) in (first..).zip(sequence.chars()) {
-            atoms.extend(names.iter().map(|name| atom(number, one, name)));
-        }
-        atoms
+        let atoms = vec![
+            residue("H", "GLY", 52, None),
+            residue("H", "HIE", 52, Some('A')),
+            residue("H", "MSE", 1, None),
+            residue("L", "ALA", 1, None),
+            residue("L", "HEM", 2, None),
+            residue("L", "SER", 3, None),
+        ];
+        let molecule = Molecule::new(atoms, Format::Pdb);
+        let chains = molecule.peptide_chains();
+        let shown: Vec<(&str, String)> = chains.iter().map(|c| (c.name, c.sequence())).collect();
+        let expected = [("H", "GHM"), ("L", "A"), ("L", "S")];
+        assert_eq!(
+            shown,
+            expected.map(|(name, letters)| (name, letters.to_owned()))
+        );
+        let second = &chains[0].residues[1];
+        assert_eq!(
+            (second.number.as_str(), second.atoms.clone()),
+            ("52A", 1..2)
+        );
+        assert_eq!(chains[2].residues[0].atoms, 5..6);
     }
 }

@@ -4,13 +4,13 @@
 //! and begin another if the chain's name changes, the first has its second carboxyl oxygen and the gap in the numbering does not fit, or there is none; else, where numbers are
 //! missing, so are residues, and the loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
 
-use super::cells::Cells;
 use super::charge_table::{
     AMINO_TERMINUS, CARBOXYL_CARBON, CARBOXYL_OXYGENS, PROLINE_TERMINUS, TERMINI_PKA,
 };
 use super::groups::{GroupKind, Residue, ResidueKey};
 use super::labels::{Labels, is_proline};
 use super::{Atom, Molecule, squared_distance};
+use crate::neighbours::SpatialHash;
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.
 pub(super) const BOND: f64 = 2.5;
@@ -29,7 +29,7 @@ struct Cap<'a> {
 /// All of them, sorted by place.
 pub(super) struct Caps<'a> {
     atoms: Vec<Cap<'a>>,
-    cells: Cells,
+    cells: SpatialHash<usize>,
 }
 
 impl Molecule {
@@ -128,7 +128,7 @@ impl Molecule {
         {
             return true;
         }
-        caps.cells.around(end.position).any(|index| {
+        caps.cells.around(end.position).copied().any(|index| {
             let cap = &caps.atoms[index];
             let fits = cap
                 .end
@@ -165,7 +165,7 @@ impl Molecule {
             }
         }
         Caps {
-            cells: Cells::new(atoms.iter().map(|cap| cap.position), MAX_CAP_LENGTH),
+            cells: SpatialHash::of_points(atoms.iter().map(|cap| cap.position), MAX_CAP_LENGTH),
             atoms,
         }
     }

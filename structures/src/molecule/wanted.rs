@@ -3,7 +3,6 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use super::cells::Cells;
 use super::error::ReadError;
 use super::groups::ResidueKey;
 use super::parse::Parsed;
@@ -12,6 +11,7 @@ use super::residue_selection::{Picked, ResidueSelection};
 use super::sieve::AtomRecord;
 use super::termini::MAX_CAP_LENGTH;
 use super::{Atom, squared_distance};
+use crate::neighbours::SpatialHash;
 
 /// An end that a selection of residues made of a bond: a residue that is kept, and its atom whose partner is not.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,10 +41,11 @@ pub(super) fn cut_ends(kept: &[Atom], left_out: &[Atom]) -> Vec<CutEnd> {
     if partners.is_empty() {
         return Vec::new();
     }
-    let cells = Cells::new(partners.iter().map(|atom| atom.position), MAX_CAP_LENGTH);
+    let cells = SpatialHash::of_points(partners.iter().map(|atom| atom.position), MAX_CAP_LENGTH);
     let is_cut = |atom: &Atom| {
         let mut near = cells
             .around(atom.position)
+            .copied()
             .filter_map(|index| partners.get(index));
         near.any(|partner| {
             partner.name != atom.name

@@ -5,14 +5,13 @@
 //! the ball of the deepest point that lies within that distance under it. Then inside points on a grid of half the spacing that
 //! are farther than eps get balls of their own.
 
-use std::collections::HashMap;
-
 use rayon::prelude::*;
 
 use super::ball_tree::{Ball, BallTree};
 use super::grid::DepthField;
 use crate::mesh::vector::{along, distance};
 use crate::mesh::{Probe, Solid, SurfaceSample};
+use crate::neighbours::SpatialHash;
 
 /// Distance between a surface point and the nearest sample, as a share of eps.
 pub const SAMPLE_SPACING: f64 = 0.1;
@@ -151,43 +150,21 @@ fn deepest_under(solid: &Solid, sample: &SurfaceSample, reach: f64) -> Option<Ba
 }
 
 /// Balls added so far, by cells of their centres: a point within reach of one is at most a cell from its centre.
-struct Added {
-    cell: f64,
-    balls: HashMap<[i64; 3], Vec<Ball>>,
-}
+struct Added(SpatialHash<Ball>);
 
 impl Added {
     fn new(cell: f64) -> Self {
-        Self {
-            cell,
-            balls: HashMap::new(),
-        }
-    }
-
-    fn cell_of(&self, point: [f64; 3]) -> [i64; 3] {
-        point.map(|value| (value / self.cell).floor() as i64)
+        Self(SpatialHash::new(cell))
     }
 
     fn push(&mut self, ball: Ball) {
-        self.balls
-            .entry(self.cell_of(ball.center))
-            .or_default()
-            .push(ball);
+        self.0.push(ball.center, ball);
     }
 
     /// Whether `point` is within `reach` of a ball, for balls whose radius plus `reach` is no more than a cell.
     fn is_near(&self, point: [f64; 3], reach: f64) -> bool {
-        let [x, y, z] = self.cell_of(point);
-        (x - 1..=x + 1).any(|x| {
-            (y - 1..=y + 1).any(|y| {
-                (z - 1..=z + 1).any(|z| {
-                    let balls = self.balls.get(&[x, y, z]);
-                    balls
-                        .into_iter()
-                        .flatten()
-                        .any(|ball| distance(ball.center, point) - ball.radius <= reach)
-                })
-            })
-        })
+        self.0
+            .around(point)
+            .any(|ball| distance(ball.center, point) - ball.radius <= reach)
     }
 }

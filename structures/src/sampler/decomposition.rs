@@ -19,14 +19,13 @@
 //! What holds then for a closed mesh, with S(A) for the union of the balls: S(A1) in S in S(A2), S(A1) in S(A3) in S(A2), and
 //! each within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
 
-use std::collections::HashMap;
-
 use super::SampleError;
 use super::ball_tree::Ball;
 use super::cover::{self, Covering};
 use super::grid::DepthField;
 use super::skeletal_density::{Priority, priorities};
 use crate::mesh::Solid;
+use crate::neighbours::SpatialHash;
 
 /// The protrusion factor mu and the order of the nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,31 +154,24 @@ pub(crate) fn reduce(balls: &[Ball], epsilon: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..balls.len()).collect();
     order.sort_by(|&a, &b| balls[b].radius.total_cmp(&balls[a].radius).then(a.cmp(&b)));
     // Balls up to four eps are looked up in cells of their reach; the few larger ones are tried in turn.
-    let cell = 5.0 * epsilon;
-    let cell_of = |point: [f64; 3]| point.map(|value| (value / cell).floor() as i64);
     let mut large: Vec<Ball> = Vec::new();
-    let mut small: HashMap<[i64; 3], Vec<Ball>> = HashMap::new();
+    let mut small = SpatialHash::new(5.0 * epsilon);
     let mut kept = Vec::new();
     for index in order {
         let ball = balls[index];
-        let [x, y, z] = cell_of(ball.center);
-        let near = || {
-            (x - 1..=x + 1)
-                .flat_map(move |x| {
-                    (y - 1..=y + 1).flat_map(move |y| (z - 1..=z + 1).map(move |z| [x, y, z]))
-                })
-                .filter_map(|cell| small.get(&cell))
-                .flatten()
-        };
-        if large.iter().any(|other| other.holds(&ball)) || near().any(|other| other.holds(&ball)) {
+        let mut near = small.around(ball.center);
+        if large.iter().any(|other| other.holds(&ball))
+            || near.any(|other: &Ball| other.holds(&ball))
+        {
             continue;
         }
+        drop(near);
         kept.push(index);
         let grown = ball.grown(epsilon);
         if ball.radius > 4.0 * epsilon {
             large.push(grown);
         } else {
-            small.entry([x, y, z]).or_default().push(grown);
+            small.push(ball.center, grown);
         }
     }
     kept.sort_unstable();

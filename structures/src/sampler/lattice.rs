@@ -42,6 +42,7 @@ pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::Bump;
     use crate::sampler::grid::Grid;
     use crate::sampler::weights;
     use crate::test_support::cuboid;
@@ -71,10 +72,11 @@ mod tests {
         let solid = cuboid([0.5, 0.45, 0.4]);
         let field = DepthField::new(&solid, Grid::new(&solid, 40));
         let volume = solid.mesh().volume();
+        let bump = Bump::new(2.0).unwrap();
         for k in [2, 3] {
             let cell = k as f64 * field.grid.spacing();
             let balls = lattice(&field, k, 1.3 * cell);
-            let fitted = weights::fit(&field, &balls, 2.0, volume);
+            let fitted = weights::fit(&field, &balls, bump, volume);
             let (with_fitted, with_unit) = (fitted.volume_fitted, fitted.volume_unit);
             assert!((with_fitted - 1.0).abs() < 0.1, "{with_fitted}");
             assert!(with_unit > 2.0, "{with_unit}");
@@ -88,7 +90,7 @@ mod tests {
                     .zip(&fitted.weights)
                     .map(|(ball, weight)| {
                         let d = crate::mesh::vector::distance(ball.center, place);
-                        weight * weights::bump(d / ball.radius, 2.0)
+                        weight * bump.value(d / ball.radius)
                     })
                     .sum();
                 assert!((sum - 1.0).abs() < 0.25, "{sum} at depth {depth}");

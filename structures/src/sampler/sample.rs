@@ -163,9 +163,6 @@ pub fn knots(frame: Frame, balls: &[Ball], weights: Option<&[f64]>) -> Result<Kn
     let radii = balls.iter().map(|ball| ball.radius * frame.unit).collect();
     match weights {
         None => Knots::new(centers, radii),
-        Some(weights) => {
-            let weights = weights.iter().map(|&weight| weight.into()).collect();
-            Knots::with_weights(centers, radii, weights)
-        }
+        Some(weights) => Knots::with_weights(centers, radii, weights.to_vec()),
     }
 }

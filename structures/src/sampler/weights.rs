@@ -7,41 +7,18 @@
 //! problem being convex. Nodes outside have a part in it because without them the balls that reach out of the solid are free:
 //! on the bunny at m = 2^12 their weights then made the integral 3.9 times the volume, where weights of one make it 2.3 times.
 
-use std::f64::consts::PI;
-
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ball_tree::Ball;
 use super::grid::DepthField;
+use crate::numeric::Bump;
 
 /// Rounds over all weights at most.
 const ROUNDS: usize = 300;
 
 /// Ends when no weight of a round moves by more than this.
 const SETTLED: f64 = 1e-4;
-
-/// The bump psi_alpha(x) = exp(1 / (1 - |x|^-alpha)) for |x| < 1, else 0 (B&I eq. 10): one at 0, and the indicator of the ball as
-/// alpha grows.
-pub fn bump(x: f64, alpha: f64) -> f64 {
-    let u = x.abs().powf(alpha);
-    if u >= 1.0 {
-        0.0
-    } else {
-        (-u / (1.0 - u)).exp()
-    }
-}
-
-/// The integral of the bump over its unit ball, 4 pi times that of psi x^2 from 0 to 1.
-pub fn bump_volume(alpha: f64) -> f64 {
-    let steps = 20_000;
-    let width = 1.0 / f64::from(steps);
-    let sum: f64 = (0..steps)
-        .map(|i| (f64::from(i) + 0.5) * width)
-        .map(|x| bump(x, alpha) * x * x)
-        .sum();
-    4.0 * PI * sum * width
-}
 
 /// A ball whose bump squared sums to less than this over the nodes is one that the grid hardly sees: the tail of a bump at a
 /// node or two would decide its weight, and could make it thousands.
@@ -73,7 +50,7 @@ pub struct FittedWeights {
 type Column = Vec<(u32, f32)>;
 
 /// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that the nodes hardly see keeps weight one.
-pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> FittedWeights {
+pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> FittedWeights {
     let columns: Vec<Column> = balls
         .par_iter()
         .map(|ball| {
@@ -81,7 +58,7 @@ pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> Fitte
             field
                 .grid
                 .visit_ball(ball.center, ball.radius, |node, squared| {
-                    let value = bump(squared.sqrt() / ball.radius, alpha) as f32;
+                    let value = bump.value(squared.sqrt() / ball.radius) as f32;
                     // On the surface itself the indicator is neither.
                     if field.depth[node] != 0.0 && value > 0.0 {
                         column.push((node as u32, value));
@@ -142,7 +119,7 @@ pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> Fitte
             break;
         }
     }
-    let unit = bump_volume(alpha);
+    let unit = bump.volume();
     let integral = |weights: &mut dyn Iterator<Item = f64>| -> f64 {
         balls
             .iter()
@@ -153,7 +130,7 @@ pub fn fit(field: &DepthField, balls: &[Ball], alpha: f64, volume: f64) -> Fitte
             / volume
     };
     FittedWeights {
-        alpha,
+        alpha: bump.alpha(),
         zeros: weights.iter().filter(|&&weight| weight == 0.0).count(),
         rms_unit,
         rms_fitted: rms(&left),

@@ -43,11 +43,11 @@ impl Sizes {
     /// Of an engine, with so many peaks an image that keep `reach` voxels free on each side.
     pub fn new<T: Real>(engine: &CpuEngine<T>, peaks: usize, reach: usize) -> Self {
         let plan = engine.plan();
-        let modes = &plan.modes;
+        let modes = plan.modes();
         let kernel = engine.forward.kernel();
         Self {
             grid: modes.size,
-            fine: plan.fine,
+            fine: plan.fine(),
             block: engine.forward.block(),
             fields: engine.rank(),
             knots: engine.ligand.len(),
@@ -170,7 +170,7 @@ impl Buffers {
         sizes: &Sizes,
         batch: Batch,
     ) -> Result<Self, GpuError> {
-        let modes = &engine.plan().modes;
+        let modes = &engine.plan().modes();
         let columns: Vec<Column> = modes
             .columns
             .iter()

@@ -23,9 +23,6 @@ pub enum PlanError {
         /// Its range.
         bound: &'static str,
     },
-    /// A weight has an imaginary part.
-    #[error("the fast engine takes real weights; knot {0} has a complex one")]
-    ComplexWeight(usize),
     /// A body's weights are so large or small that scores would leave the range of single precision.
     #[error(
         "a body's weights add up to {0:.1e} in size; multiply them by a common factor that brings this between 1e-9 and 1e9"
@@ -36,15 +33,12 @@ pub enum PlanError {
     TooLarge(f64),
 }
 
-/// Refuses knots that no engine can correlate: unusable ones, complex weights, and weights that leave single precision.
+/// Refuses knots that no engine can correlate: unusable ones, and weights that leave single precision.
 pub(in crate::engine) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
     for knots in [receptor, ligand] {
         knots.check()?;
-        if let Some(index) = knots.weights.iter().position(|c| c.im != 0.0) {
-            return Err(PlanError::ComplexWeight(index));
-        }
-        let size: f64 = knots.weights.iter().map(|c| c.re.abs()).sum();
-        // No weight at all is a body that scores nothing, which every precision holds.
+        let size: f64 = knots.weights.iter().map(|c| c.abs()).sum();
+        // A body without any weight scores nothing, which every precision holds.
         if size != 0.0 && !(1e-9..=1e9).contains(&size) {
             return Err(PlanError::WeightRange(size));
         }

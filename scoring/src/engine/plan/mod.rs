@@ -10,12 +10,15 @@
 
 mod error;
 mod grid;
+mod options;
+mod pair_kernel;
 mod radii;
 
 use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
-use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
-use crate::lifted_axis::{LiftedAxis, Quantity, RadiusBasis};
+use crate::kernel::{Band, RankingKernel};
+use crate::lifted_axis::{LiftedAxis, RadiusBasis};
+use crate::quantity::Quantity;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_tolerance, checked_spacing};
@@ -26,67 +29,129 @@ use grid::{
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use radii::Radii;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 pub use error::PlanError;
 pub(super) use error::check_bodies;
-
-/// What a user may set; every approximation is a knob.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EngineOptions {
-    /// The kernel that is correlated.
-    pub kernel: KernelOptions,
-    /// Grid spacing in Å; `None`: as the tolerance needs, resolution / 2 at most.
-    pub spacing: Option<f64>,
-    /// Error of the fast path that is aimed at, relative to the best score.
-    pub tolerance: f64,
-}
-
-/// The function of two balls that a plan correlates.
-#[derive(Clone, Debug)]
-pub enum PairKernel {
-    /// The lifted cone at r + s + rho, low-passed and windowed: `Plan::kernel`.
-    Lifted,
-    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they are.
-    Product(Box<ProductKernel>),
-}
+pub use options::EngineOptions;
+pub use pair_kernel::PairKernel;
 
 /// A planned correlation.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The options it was made from.
-    pub options: EngineOptions,
+    options: EngineOptions,
+    pair: PairKernel,
+    kernel: RankingKernel,
+    effects: Vec<ActiveTerm>,
+    axis: LiftedAxis,
+    axis_error: f64,
+    basis: RadiusBasis,
+    modes: Arc<ModeSet>,
+    spacing: f64,
+    fine: [usize; 3],
+    width: usize,
+    effective_reach: f64,
+    receptor_center: Vector3<f64>,
+    receptor_extent: [f64; 3],
+    ligand_center: Vector3<f64>,
+    ligand_radius: f64,
+}
+
+/// What the plan decided.
+impl Plan {
+    /// The options that it was made from.
+    pub fn options(&self) -> &EngineOptions {
+        &self.options
+    }
+
     /// Which kernel is correlated.
-    pub pair: PairKernel,
+    pub fn pair(&self) -> &PairKernel {
+        &self.pair
+    }
+
     /// The ranking kernel.
-    pub kernel: RankingKernel,
+    pub fn kernel(&self) -> &RankingKernel {
+        &self.kernel
+    }
+
     /// Terms beside shape, each with its filtered kernel.
-    pub effects: Vec<ActiveTerm>,
-    /// Its lifted modes; of a product kernel the mean alone, which nothing uses.
-    pub axis: LiftedAxis,
-    /// Largest relative error of the lifted series at the radius sums in use, or of the product kernel's interpolation over radii.
-    pub axis_error: f64,
+    pub fn effects(&self) -> &[ActiveTerm] {
+        &self.effects
+    }
+
+    /// The lifted modes; of a product kernel the mean alone, which nothing uses.
+    pub fn axis(&self) -> &LiftedAxis {
+        &self.axis
+    }
+
+    /// Largest relative error of the lifted series at the radius sums in use, or of the product kernel's interpolation
+    /// over radii.
+    pub fn axis_error(&self) -> f64 {
+        self.axis_error
+    }
+
     /// How radii meet the lifted axis.
-    pub basis: RadiusBasis,
+    pub fn basis(&self) -> &RadiusBasis {
+        &self.basis
+    }
+
     /// The modes kept.
-    pub modes: Arc<ModeSet>,
+    pub fn modes(&self) -> &Arc<ModeSet> {
+        &self.modes
+    }
+
+    /// Grid points per axis.
+    pub fn size(&self) -> [usize; 3] {
+        self.modes.size
+    }
+
     /// Grid spacing in Å.
-    pub spacing: f64,
-    /// Fine grid of the nufft transforms, points per axis.
-    pub fine: [usize; 3],
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Fine grid of the nonequispaced transforms, points per axis.
+    pub fn fine(&self) -> [usize; 3] {
+        self.fine
+    }
+
     /// Width of the spreading window, fine cells.
-    pub width: usize,
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
     /// Distance in Å beyond which the kernel stays below the tolerance: what the box allows for.
-    pub effective_reach: f64,
+    pub fn effective_reach(&self) -> f64 {
+        self.effective_reach
+    }
+
     /// Middle of the receptor's bounding box, Å.
-    pub receptor_center: Vector3<f64>,
+    pub fn receptor_center(&self) -> Vector3<f64> {
+        self.receptor_center
+    }
+
     /// Half the receptor's bounding box, Å.
-    pub receptor_extent: [f64; 3],
+    pub fn receptor_extent(&self) -> [f64; 3] {
+        self.receptor_extent
+    }
+
     /// Middle of the ligand's bounding box, Å.
-    pub ligand_center: Vector3<f64>,
+    pub fn ligand_center(&self) -> Vector3<f64> {
+        self.ligand_center
+    }
+
     /// Distance of the farthest ligand knot from it, Å.
-    pub ligand_radius: f64,
+    pub fn ligand_radius(&self) -> f64 {
+        self.ligand_radius
+    }
+
+    /// Distance in Å beyond which two knots do not interact.
+    pub fn reach(&self) -> f64 {
+        match self.pair {
+            PairKernel::Lifted => self.kernel.reach(),
+            PairKernel::Product(_) => self.effective_reach,
+        }
+    }
 }
 
 impl Plan {
@@ -288,18 +353,5 @@ impl Plan {
                 self.basis.product_coupling(product, fold, (a, b), w_max)
             }
         }
-    }
-
-    /// Distance in Å beyond which two knots do not feel each other.
-    pub fn reach(&self) -> f64 {
-        match self.pair {
-            PairKernel::Lifted => self.kernel.reach(),
-            PairKernel::Product(_) => self.effective_reach,
-        }
-    }
-
-    /// Grid points per axis.
-    pub fn size(&self) -> [usize; 3] {
-        self.modes.size
     }
 }

@@ -1,6 +1,6 @@
 //! The radii of two bodies, and how they meet in the kernel.
 
-use super::PairKernel;
+use super::pair_kernel::PairKernel;
 use crate::kernel::RankingKernel;
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use knotdock_structures::Knots;

@@ -34,12 +34,12 @@ mod tests;
 pub use lens::lens_volume;
 pub use pairs::peak_score_and_reach;
 
-use super::bump::Bump;
 use super::low_pass::smooth_step_down;
 use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
 use super::table::Table;
-use crate::lifted_axis::Quantity;
+use crate::quantity::Quantity;
+use knotdock_structures::numeric::Bump;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use tail_integral::TailIntegral;

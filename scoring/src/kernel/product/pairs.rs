@@ -3,7 +3,7 @@
 use super::{Band, ProductKernel};
 use crate::kernel::radial_transform::sinc;
 use crate::kernel::table::Table;
-use crate::lifted_axis::Quantity;
+use crate::quantity::Quantity;
 use std::f64::consts::PI;
 
 /// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its peak is left there.

@@ -1,27 +1,22 @@
 //! The tail integral of a bump, from which overlaps are built (see [`super::ProductKernel::overlap`]).
 
-use crate::kernel::bump::Bump;
-use std::f64::consts::PI;
+use knotdock_structures::numeric::Bump;
+use knotdock_structures::numeric::double_exponential::{self, Node};
 
 /// Integral from v to 1 of u psi(u) du by double-exponential quadrature, which takes in the bump's end however steep it is.
 pub(super) struct TailIntegral {
     bump: Bump,
-    /// Distance from the nearer end of the unit interval (negative: from its start), and weight.
-    nodes: Vec<(f64, bool, f64)>,
+    /// Nodes of the unit interval and their weights.
+    nodes: Vec<(Node, f64)>,
 }
 
 impl TailIntegral {
     /// Prepares the nodes.
     pub(super) fn new(bump: Bump) -> Self {
         let step = 1.0 / 32.0;
-        let nodes = (-128..=128)
-            .map(|k| {
-                let t = f64::from(k) * step;
-                let s = 0.5 * PI * t.sinh();
-                let end = 1.0 / (1.0 + (2.0 * s.abs()).exp());
-                (end, s < 0.0, PI * t.cosh() * end * (1.0 - end) * step)
-            })
-            .filter(|&(_, _, weight)| weight > 1e-24)
+        let nodes = double_exponential::nodes(step, 128)
+            .map(|node| (node, node.slope * step))
+            .filter(|&(_, weight)| weight > 1e-24)
             .collect();
         Self { bump, nodes }
     }
@@ -31,11 +26,11 @@ impl TailIntegral {
         let length = 1.0 - v;
         self.nodes
             .iter()
-            .map(|&(end, at_start, weight)| {
-                let u = if at_start {
-                    v + length * end
+            .map(|&(node, weight)| {
+                let u = if node.at_start {
+                    v + length * node.from_end
                 } else {
-                    1.0 - length * end
+                    1.0 - length * node.from_end
                 };
                 length * weight * u * self.bump.value(u)
             })

@@ -1,4 +1,8 @@
-//! The general nufft fast Fourier transform in three or four dimensions, single or double precision.
+//! The nonequispaced fast Fourier transform (NUFFT): both types, three or four dimensions, single or double precision.
+//!
+//! This is the general transform. It takes any points of the period and any number of modes an axis, keeps all modes, and
+//! reports every misuse as an error. The search uses the other one, [`super::pruned_type1`]: type 1 alone, of knots inside
+//! a block of the box, with only the modes of a [`super::modes::ModeSet`], several sets of weights at a time.
 //!
 //! # Conventions
 //!
@@ -10,18 +14,20 @@
 //!   first: <F c, f> = <c, F* f>. Neither is normalised.
 //! - Modes of an axis with n of them are k = -floor(n/2), ..., ceil(n/2) - 1, in this order; any n >= 1. Arrays of modes are
 //!   row-major, the last axis fastest.
-//! - The tolerance is the error in the 2-norm over all modes (or values), relative to the norm of the whole, a root mean
-//!   square: a value at a single point may miss it by a factor of two. What single precision or a
-//!   window of 16 points cannot reach is refused.
+//! - The tolerance is the error in the 2-norm over all modes (or values), relative to the norm of the whole. It is a root
+//!   mean square: a value at a single point may miss it by a factor of two. Tolerances that single precision or a window of
+//!   16 points cannot reach are refused.
 //! - A weight that is not finite makes modes that are not finite; a point that is not finite is an error.
 //!
 //! # How
 //!
-//! Each point is carried onto a window of a finer grid (Kaiser-Bessel, its shape chosen at planning for the least error), the
-//! grid is transformed, and the window's own transform divided out (Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41,
-//! 2019, C479, whose sorting and blocking this follows too). The fine grid never exists as a whole: a ring of planes
-//! along the first axis travels through the sorted points, and each plane is transformed along its own axes while it is still in the
-//! cache, each axis leaving only the modes that are kept. The first axis goes last.
+//! Each point is spread onto a window of a finer grid (Kaiser-Bessel, its shape chosen at planning for the least error). The
+//! grid is transformed, and the window's own transform divided out. Sorting and blocking follow Barnett, Magland and
+//! af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479.
+//!
+//! The fine grid never exists as a whole: a ring of planes along the first axis travels through the sorted points. Each
+//! plane is transformed along its own axes while it is in the cache, and each axis leaves only the modes that are kept. The
+//! first axis goes last.
 //!
 //! ```
 //! use knotdock_scoring::transform::nufft::Plan;
@@ -38,6 +44,7 @@
 
 mod adjoint;
 mod error;
+mod execute;
 mod forward;
 mod interpolate;
 mod plan;

@@ -2,6 +2,7 @@
 
 use super::super::Real;
 use super::super::spreading::{self, MAX_WIDTH};
+use knotdock_structures::numeric::chebyshev;
 use std::f64::consts::PI;
 
 /// A window of a fixed width in grid cells.
@@ -23,8 +24,10 @@ impl<T: Real> Window<T> {
         let mut coefficients = Vec::new();
         for terms in 3..=width + 12 {
             coefficients = vec![[0.0; MAX_WIDTH]; terms];
+            let nodes: Vec<f64> = chebyshev::nodes(terms).collect();
             for point in 0..width {
-                let polynomial = interpolant(terms, |x| value(point, x));
+                let values: Vec<f64> = nodes.iter().map(|&x| value(point, x)).collect();
+                let polynomial = chebyshev::monomials(&nodes, &values);
                 for (row, power) in coefficients.iter_mut().zip(polynomial.iter().rev()) {
                     row[point] = *power;
                 }
@@ -182,34 +185,4 @@ fn profile(shape: f64, width: f64, frequency: f64) -> f64 {
     } else {
         root.sin() / root
     }
-}
-
-/// Monomial coefficients, lowest first, of the polynomial through a function's values at Chebyshev nodes of [-1, 1].
-fn interpolant(terms: usize, function: impl Fn(f64) -> f64) -> Vec<f64> {
-    let angle = |i: usize| PI * (i as f64 + 0.5) / terms as f64;
-    let values: Vec<f64> = (0..terms).map(|i| function(angle(i).cos())).collect();
-    let mut sum = vec![0.0; terms];
-    // T_m by its recurrence, as monomials.
-    let (mut before, mut current) = (vec![0.0; terms], vec![0.0; terms]);
-    current[0] = 1.0;
-    for m in 0..terms {
-        let moment: f64 = values
-            .iter()
-            .enumerate()
-            .map(|(i, v)| v * (m as f64 * angle(i)).cos())
-            .sum();
-        let factor = if m == 0 { 1.0 } else { 2.0 } * moment / terms as f64;
-        for (total, term) in sum.iter_mut().zip(&current) {
-            *total += factor * term;
-        }
-        let step = if m == 0 { 1.0 } else { 2.0 };
-        let next = (0..terms)
-            .map(|power| {
-                let raised = if power == 0 { 0.0 } else { current[power - 1] };
-                step * raised - before[power]
-            })
-            .collect();
-        before = std::mem::replace(&mut current, next);
-    }
-    sum
 }

@@ -12,9 +12,9 @@
 
 use std::collections::HashSet;
 
-use crate::molecule::cells::Cells;
 use crate::molecule::groups::Residue;
 use crate::molecule::{Atom, squared_distance};
+use crate::neighbours::SpatialHash;
 
 /// Fewest residues of several atoms by which values alone tell a prediction.
 const ENOUGH_RESIDUES: usize = 5;
@@ -116,13 +116,14 @@ fn tips(atoms: &[Atom], residues: &[Residue<'_>], scale: f64) -> f64 {
 
 /// Correlation of the atoms' values with the number of atoms about them; 0 where one of the two does not vary.
 fn packing(atoms: &[Atom], values: &[f64]) -> f64 {
-    let cells = Cells::with_at_most(atoms.iter().map(|atom| atom.position), ABOUT, 100);
+    let cells = SpatialHash::of_crowded_points(atoms.iter().map(|atom| atom.position), ABOUT, 100);
     let step = atoms.len().div_ceil(MAX_SAMPLE).max(1);
     let sample = atoms.iter().zip(values).step_by(step);
     let (values, about): (Vec<f64>, Vec<f64>) = sample
         .map(|(atom, value)| {
             let near = cells
                 .around(atom.position)
+                .copied()
                 .filter_map(|index| atoms.get(index));
             let near = near
                 .filter(|other| squared_distance(other.position, atom.position) < ABOUT * ABOUT);

@@ -4,8 +4,8 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 use crate::Conformers;
-use crate::molecule::cells::Cells;
 use crate::molecule::squared_distance;
+use crate::neighbours::SpatialHash;
 
 /// Distance in Å of a CA from the C before or the N after it in the residues beside it, and of two in a row (Engh and Huber, Acta Cryst. A47
 /// (1991) 392-400: bonds of 1.33, 1.46 and 1.52 Å at 122° and 117°).
@@ -38,7 +38,7 @@ const CLOSED: f64 = 2.9;
 /// All atoms of a body, by place.
 pub(super) struct Growth {
     positions: Vec<[f64; 3]>,
-    cells: Cells,
+    cells: SpatialHash<usize>,
 }
 
 /// A course as it grows, and what it must keep clear of.
@@ -55,7 +55,7 @@ struct Course<'a> {
 impl Growth {
     pub fn new(positions: Vec<[f64; 3]>) -> Self {
         Self {
-            cells: Cells::new(positions.iter().copied(), ROOM),
+            cells: SpatialHash::of_points(positions.iter().copied(), ROOM),
             positions,
         }
     }
@@ -136,7 +136,7 @@ impl Course<'_> {
             course.is_empty() || (self.target.is_some() && course.len() + 1 == self.length);
         let at = self.frame.in_file(alpha);
         let growth = self.growth;
-        let free_of_body = growth.cells.around(at).all(|atom| {
+        let free_of_body = growth.cells.around(at).copied().all(|atom| {
             let squared = squared_distance(growth.positions[atom], at);
             squared >= ROOM * ROOM
                 || self.anchors.contains(&atom) && (bonded || squared >= ROOM_BESIDE * ROOM_BESIDE)

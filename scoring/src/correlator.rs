@@ -1,0 +1,312 @@
+//! The front door: one pair of knot sets, correlated over all translations at one rotation at a time.
+//!
+//! [`Correlator::new`] plans the correlation, transforms the receptor, picks the rank of the lifted axis that the tolerance
+//! needs, and allocates the buffers. [`Correlator::correlate`] then allocates nothing. Programs that search many rotations
+//! on many threads use the parts themselves: one [`CpuEngine`] and one [`Workspace`] a thread.
+//!
+//! # Conventions
+//!
+//! A pose takes a ligand knot at y to R y + t in the receptor's frame. Lengths are in Å, a higher score is better. The
+//! grid is (nx, ny, nz) row-major; a voxel stands for one translation.
+
+use crate::effect::Term;
+use crate::engine::{
+    ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
+};
+use crate::exact::ExactScorer;
+use crate::peaks::{Peak, find_peaks};
+use crate::potential_grid::PotentialGrid;
+use crate::quantity::Quantity;
+use crate::se3::{HalfTurn, Pose};
+use crate::so3::rotation_set;
+use crate::transform::Real;
+use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+use nalgebra::UnitQuaternion;
+use std::sync::Arc;
+
+/// Rotations from which the choice of the rank takes its probes.
+const PROBE_SET: usize = 60;
+/// Largest departure of a rotation's norm from 1.
+const NORM_TOLERANCE: f64 = 1e-6;
+
+/// Why a pair cannot be correlated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CorrelatorError {
+    /// No plan can be made of these knots and options.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The tolerance is below what the floating-point type resolves.
+    #[error(
+        "a tolerance of {tolerance:e} is finer than this precision allows; use {finest:e} or more, or Correlator::<f64>"
+    )]
+    Precision {
+        /// The tolerance.
+        tolerance: f64,
+        /// The finest one of this precision.
+        finest: f64,
+    },
+    /// A rotation is no unit quaternion.
+    #[error("a rotation has the norm {0}; it must be a unit quaternion")]
+    Rotation(f64),
+}
+
+/// A pair of knot sets, ready to be correlated: receptor, ligand, plan, spectra, engine and workspace.
+///
+/// In single precision by default, which serves tolerances down to 1e-4; `Correlator::<f64>` serves those down to 1e-8.
+pub struct Correlator<T: Real = f32> {
+    receptor: Knots,
+    ligand: Knots,
+    plan: Arc<Plan>,
+    spectra: ReceptorSpectra<T>,
+    engine: CpuEngine<T>,
+    rank_error: f64,
+    workspace: Workspace<T>,
+}
+
+/// A pose of the translation grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridPose {
+    /// The pose.
+    pub pose: Pose,
+    /// Its score.
+    pub score: f64,
+    /// Its voxel, row-major.
+    pub voxel: usize,
+}
+
+/// The correlation over all translations at one rotation.
+pub struct Correlation<'a, T: Real> {
+    engine: &'a CpuEngine<T>,
+    rotation: UnitQuaternion<f64>,
+    workspace: &'a mut Workspace<T>,
+}
+
+impl Correlator {
+    /// Prepares the correlation of two knot sets by shape, in single precision.
+    ///
+    /// # Errors
+    /// [`CorrelatorError`] on knots or options that cannot be used.
+    pub fn new(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+    ) -> Result<Self, CorrelatorError> {
+        Self::with_terms(receptor, ligand, options, Vec::new())
+    }
+}
+
+impl<T: Real> Correlator<T> {
+    /// Prepares the correlation of two knot sets by shape and further terms, in the precision of `T`.
+    ///
+    /// # Errors
+    /// [`CorrelatorError`] on knots, options or terms that cannot be used.
+    pub fn with_terms(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        terms: Vec<Term>,
+    ) -> Result<Self, CorrelatorError> {
+        let (tolerance, finest) = (options.tolerance, finest_tolerance::<T>());
+        if tolerance < finest {
+            return Err(CorrelatorError::Precision { tolerance, finest });
+        }
+        let plan = Plan::with_effects(receptor, ligand, options, tolerance, terms)?;
+        let plan = Arc::new(plan);
+        let spectra = ReceptorSpectra::new(&plan, receptor, ligand, Quantity::Score);
+        let probes = rotation_set(PROBE_SET);
+        let ChosenRank { engine, error } = choose_rank(&plan, &spectra, ligand, &probes);
+        Ok(Self {
+            receptor: receptor.clone(),
+            ligand: ligand.clone(),
+            workspace: engine.workspace(),
+            plan,
+            spectra,
+            engine,
+            rank_error: error,
+        })
+    }
+
+    /// Correlates over all translations at one rotation.
+    ///
+    /// # Errors
+    /// [`CorrelatorError::Rotation`] on a quaternion that is not of norm 1.
+    pub fn correlate(
+        &mut self,
+        rotation: &UnitQuaternion<f64>,
+    ) -> Result<Correlation<'_, T>, CorrelatorError> {
+        let norm = rotation.as_ref().norm();
+        if norm.is_nan() || (norm - 1.0).abs() > NORM_TOLERANCE {
+            return Err(CorrelatorError::Rotation(norm));
+        }
+        self.engine.correlate(rotation, &mut self.workspace);
+        Ok(Correlation {
+            engine: &self.engine,
+            rotation: *rotation,
+            workspace: &mut self.workspace,
+        })
+    }
+
+    /// The plan: grid, modes and kernel.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Components of the lifted axis and the terms that are in use.
+    pub fn rank(&self) -> usize {
+        self.engine.rank()
+    }
+
+    /// Error of that rank at the best voxels of a few rotations, relative to the best score there.
+    pub fn rank_error(&self) -> f64 {
+        self.rank_error
+    }
+
+    /// The exact pair sum of the same score.
+    ///
+    /// # Errors
+    /// [`KnotsError`] on knots that cannot be summed.
+    pub fn exact_scorer(&self) -> Result<ExactScorer, KnotsError> {
+        let (receptor, ligand) = (&self.receptor, &self.ligand);
+        ExactScorer::with_effects(self.plan.kernel(), receptor, ligand, self.plan.effects())
+    }
+
+    /// The receptor's sampled potentials, which give the score and its gradient between voxels.
+    pub fn potential_grid(&self) -> PotentialGrid {
+        PotentialGrid::new(&self.plan, &self.spectra, &self.ligand)
+    }
+}
+
+impl<T: Real> Correlation<'_, T> {
+    /// Voxels along x, y and z.
+    pub fn size(&self) -> [usize; 3] {
+        self.engine.plan().size()
+    }
+
+    /// Scores of all voxels, (nx, ny, nz) row-major.
+    pub fn scores(&self) -> &[T] {
+        &self.workspace.grid
+    }
+
+    /// The pose of a voxel.
+    pub fn pose(&self, voxel: usize) -> Pose {
+        let plan = self.engine.plan();
+        let place = plan.receptor_center() + self.engine.position_after(HalfTurn::None, voxel);
+        Pose::about(self.rotation, plan.ligand_center(), place)
+    }
+
+    /// The voxel of the best score, the first of equals.
+    pub fn best(&self) -> GridPose {
+        let scores = self.workspace.grid.iter().enumerate();
+        let start = (0, T::neg_infinity());
+        let (voxel, score) = scores.fold(
+            start,
+            |best, (voxel, &score)| {
+                if score > best.1 { (voxel, score) } else { best }
+            },
+        );
+        self.grid_pose(voxel, score.wide())
+    }
+
+    /// Up to `count` of the best voxels, best first, none a neighbour of another ([`crate::peaks`]).
+    ///
+    /// Takes the correlation, whose scores it overwrites.
+    pub fn peaks(self, count: usize) -> Vec<GridPose> {
+        let mut found: Vec<Peak> = Vec::with_capacity(count);
+        let size = self.size();
+        let Workspace { grid, row_best, .. } = &mut *self.workspace;
+        find_peaks(size, grid, row_best, 0, count, &mut found);
+        let pose = |peak: &Peak| self.grid_pose(peak.voxel as usize, peak.score);
+        found.iter().map(pose).collect()
+    }
+
+    fn grid_pose(&self, voxel: usize, score: f64) -> GridPose {
+        let pose = self.pose(voxel);
+        GridPose { pose, score, voxel }
+    }
+}
+
+/// Finest tolerance that a floating-point type serves: single precision loses digits in the transforms below 1e-4.
+fn finest_tolerance<T: Real>() -> f64 {
+    if T::epsilon().wide() > 1e-10 {
+        1e-4
+    } else {
+        1e-8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::Numbers;
+
+    fn cloud(count: usize, spread: f64, seed: u64) -> Knots {
+        let mut numbers = Numbers(seed);
+        let mut center = || std::array::from_fn(|_| spread * (numbers.next() - 0.5));
+        let centers = (0..count).map(|_| center()).collect();
+        let radii = (0..count).map(|i| [1.5, 1.7, 1.9][i % 3]).collect();
+        Knots::new(centers, radii).unwrap()
+    }
+
+    fn some_rotation() -> UnitQuaternion<f64> {
+        Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
+    }
+
+    /// What the front door gives at a voxel is what the exact sum gives at its pose.
+    #[test]
+    fn peaks_have_the_exact_scores_of_their_poses() {
+        let (a, b) = (cloud(80, 14.0, 1), cloud(30, 8.0, 2));
+        for tolerance in [1e-2, 1e-3] {
+            let options = EngineOptions {
+                tolerance,
+                ..EngineOptions::default()
+            };
+            let mut correlator = Correlator::new(&a, &b, options).unwrap();
+            assert!(correlator.rank_error() <= tolerance / 3.0);
+            let scorer = correlator.exact_scorer().unwrap();
+            let potentials = correlator.potential_grid();
+            let correlation = correlator.correlate(&some_rotation()).unwrap();
+            let best = correlation.best();
+            let found = correlation.peaks(20);
+            assert_eq!((found.len(), found[0]), (20, best));
+            for peak in found {
+                let exact = scorer.score_only(&peak.pose);
+                assert!(
+                    (exact - peak.score).abs() <= tolerance * best.score,
+                    "{exact} {peak:?}"
+                );
+                let read = potentials.gradient(&peak.pose).0;
+                assert!((exact - read).abs() <= 1e-2 * best.score, "{exact} {read}");
+            }
+        }
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_correlate() {
+        let (a, b) = (cloud(8, 6.0, 3), cloud(5, 4.0, 4));
+        let with = |tolerance| EngineOptions {
+            tolerance,
+            ..EngineOptions::default()
+        };
+        let single = Correlator::new(&a, &b, with(1e-5)).err();
+        assert!(matches!(single, Some(CorrelatorError::Precision { .. })));
+        assert!(Correlator::<f64>::with_terms(&a, &b, with(1e-5), Vec::new()).is_ok());
+        let mut bad = b.clone();
+        bad.radii[0] = f64::NAN;
+        let plan = Correlator::new(&a, &bad, with(1e-2)).err();
+        assert!(matches!(
+            plan,
+            Some(CorrelatorError::Plan(PlanError::Knots(_)))
+        ));
+        let mut correlator = Correlator::new(&a, &b, with(1e-2)).unwrap();
+        for norm in [f64::NAN, 0.0, 2.0] {
+            let rotation =
+                UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(norm, 0.0, 0.0, 0.0));
+            let refused = correlator.correlate(&rotation).err();
+            assert!(
+                matches!(refused, Some(CorrelatorError::Rotation(_))),
+                "{norm}"
+            );
+        }
+    }
+}

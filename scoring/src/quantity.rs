@@ -1,0 +1,14 @@
+//! What an engine correlates: the score, one slice of it, or their change with the radii.
+
+/// What an engine correlates: one slice, or the score, which is the weighted sum of all three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// The weighted sum of the three slices: G.
+    Score,
+    /// One unweighted slice: 0, 1 or 2 for rho = 0, r0, 2 r0.
+    Slice(usize),
+    /// dG / d rho, all three offsets moved by the same length: the score's change with the knots' radii, per Å.
+    ScoreByOffset,
+    /// dg / d rho of one slice, per Å: -dg / dr on B&I's r axis, which runs the other way.
+    SliceByOffset(usize),
+}

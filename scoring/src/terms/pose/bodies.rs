@@ -1,0 +1,154 @@
+//! Two bodies of typed atoms, and sums over the pairs that come near each other at a pose.
+
+use super::CELL_EDGE;
+use crate::exact::center;
+use crate::se3::Pose;
+use knotdock_structures::Knots;
+use knotdock_structures::neighbours::{CellList, Member};
+use nalgebra::Vector3;
+
+/// The atoms that have a type, each body's relative to its own middle.
+pub(super) struct Bodies {
+    /// By the type of the atom.
+    receptor: CellList<usize>,
+    receptor_center: Vector3<f64>,
+    ligand: Vec<(Vector3<f64>, usize)>,
+    ligand_center: Vector3<f64>,
+}
+
+impl Bodies {
+    /// Takes of both sets of knots the atoms whose type is below `kinds`; `types` reads the types that are meant, one a knot or none at all.
+    pub fn new(
+        receptor: &Knots,
+        ligand: &Knots,
+        types: impl Fn(&Knots) -> &[Option<u8>],
+        kinds: usize,
+    ) -> Self {
+        let (atoms, receptor_center) = typed(receptor, types(receptor), kinds);
+        let atoms = atoms.into_iter().map(|(position, item)| Member {
+            position: position.into(),
+            item,
+        });
+        let (ligand, ligand_center) = typed(ligand, types(ligand), kinds);
+        Self {
+            receptor: CellList::new(atoms.collect(), CELL_EDGE),
+            receptor_center,
+            ligand,
+            ligand_center,
+        }
+    }
+
+    /// Sum at a pose of the ligand of `worth(receptor type, ligand type, distance in Å)` over the pairs nearer than `reach`.
+    #[inline]
+    pub fn sum(&self, pose: &Pose, reach: f64, worth: impl Fn(usize, usize, f64) -> f64) -> f64 {
+        let matrix = pose.rotation.to_rotation_matrix();
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let mut total = 0.0;
+        for &(atom, kind) in &self.ligand {
+            let mut sum = 0.0;
+            let position = matrix * atom + place;
+            self.receptor
+                .visit_within(position.into(), reach, |&other, square| {
+                    sum += worth(other, kind, square.sqrt());
+                });
+            total += sum;
+        }
+        total
+    }
+}
+
+/// The typed atoms of a set of knots relative to its middle, which comes with them.
+fn typed(
+    knots: &Knots,
+    types: &[Option<u8>],
+    kinds: usize,
+) -> (Vec<(Vector3<f64>, usize)>, Vector3<f64>) {
+    let center = center(knots);
+    let atoms = knots.centers.iter().zip(types);
+    let atoms = atoms.filter_map(|(&x, kind)| {
+        let kind = usize::from((*kind)?);
+        (kind < kinds).then(|| (Vector3::from(x) - center, kind))
+    });
+    (atoms.collect(), center)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::Numbers;
+
+    const KINDS: usize = 5;
+    const REACH: f64 = 6.5;
+
+    /// Atoms strewn over a cube, some without a type and some of one that is not asked for.
+    fn cloud(count: usize, size: f64, seed: u64, at: f64) -> Knots {
+        let mut numbers = Numbers(seed);
+        let mut next = || numbers.next();
+        let centers: Vec<[f64; 3]> = (0..count)
+            .map(|_| std::array::from_fn(|_| at + size * (next() - 0.5)))
+            .collect();
+        let types = (0..count)
+            .map(|index| (index % 7 != 0).then_some((index % (KINDS + 1)) as u8))
+            .collect();
+        Knots::new(centers, vec![1.7; count])
+            .unwrap()
+            .with_atom_kinds(types)
+            .unwrap()
+    }
+
+    /// Of both types, not symmetric, and of the distance.
+    fn worth(a: usize, b: usize, distance: f64) -> f64 {
+        (a as f64 - 2.0 * b as f64 + 0.5) * (7.0 - distance)
+    }
+
+    /// The definition, pair by pair.
+    fn direct(a: &Knots, b: &Knots, pose: &Pose) -> f64 {
+        let mut sum = 0.0;
+        for (x, a) in a.centers.iter().zip(&a.atom_kinds) {
+            for (y, b) in b.centers.iter().zip(&b.atom_kinds) {
+                let (Some(a), Some(b)) = (*a, *b) else {
+                    continue;
+                };
+                let distance = (Vector3::from(pose.apply(*y)) - Vector3::from(*x)).norm();
+                let (a, b) = (usize::from(a), usize::from(b));
+                if a < KINDS && b < KINDS && distance < REACH {
+                    sum += worth(a, b, distance);
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn cells_give_the_double_sum() {
+        // The last one's atoms lie far apart, with next to nothing within reach.
+        for (count, size, at) in [(400, 30.0, 0.0), (300, 50.0, 1e6), (60, 200.0, -3.0)] {
+            let mut met = 0;
+            let (a, b) = (cloud(count, size, 1, at), cloud(80, 18.0, 2, 5.0));
+            let bodies = Bodies::new(&a, &b, |knots| &knots.atom_kinds, KINDS);
+            for step in 0..40 {
+                let angle = f64::from(step);
+                let pose = Pose::from_parts(
+                    [angle.cos(), angle.sin(), 0.3, -0.2],
+                    [at + 0.9 * angle - 18.0, at - 5.0, at + 0.3 * angle],
+                );
+                let expected = direct(&a, &b, &pose);
+                let got = bodies.sum(&pose, REACH, worth);
+                met += usize::from(expected != 0.0);
+                // File coordinates of 1e6 Å hold 1e-10 Å.
+                assert!(
+                    (got - expected).abs() < 1e-6 * expected.abs().max(1.0),
+                    "{got} {expected}"
+                );
+            }
+            assert!(met > 20 || size > 100.0, "poses that touch: {met}");
+        }
+    }
+
+    #[test]
+    fn knots_without_types_sum_to_nothing() {
+        let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
+        let bodies = Bodies::new(&bare, &bare, |knots| &knots.atom_kinds, KINDS);
+        assert_eq!(bodies.sum(&Pose::identity(), REACH, worth), 0.0);
+    }
+}

@@ -1,0 +1,71 @@
+//! The rotations that a search samples, in groups that share a transform of the ligand.
+
+use knotdock_scoring::se3::HalfTurn;
+use nalgebra::UnitQuaternion;
+
+/// Rotations of a search: a set, and a finer one about whose best parts a second search may go.
+///
+/// Rotations of the finer set are numbered after those of the first.
+#[derive(Clone, Debug)]
+pub struct RotationSample {
+    /// The set.
+    pub coarse: Vec<UnitQuaternion<f64>>,
+    /// The finer set; empty without a finer search.
+    pub fine: Vec<UnitQuaternion<f64>>,
+    /// Rotations in a row that differ by half-turns: four, or one.
+    pub images: usize,
+    /// Name of the set.
+    pub name: &'static str,
+    /// Largest angle in radians from any rotation (of rings: axis) to the nearest of the set.
+    pub covering_radius: f64,
+}
+
+/// Rotations that differ by half-turns, so that one transform of the ligand serves them all.
+#[derive(Clone, Copy, Debug)]
+pub struct RotationGroup {
+    /// Index of the first.
+    pub first: usize,
+    /// Which of the four are searched.
+    pub wanted: [bool; 4],
+}
+
+impl RotationGroup {
+    /// Number of rotations that are searched.
+    pub fn count(&self) -> usize {
+        self.wanted.iter().filter(|wanted| **wanted).count()
+    }
+}
+
+impl RotationSample {
+    /// A rotation by its index, and which half-turn of the first of its group it is.
+    pub fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
+        let (set, index) = match index.checked_sub(self.coarse.len()) {
+            None => (&self.coarse, index),
+            Some(fine) => (&self.fine, fine),
+        };
+        (set[index], HalfTurn::ALL[index % self.images])
+    }
+
+    /// All groups of the coarse set.
+    pub fn groups(&self) -> Vec<RotationGroup> {
+        let count = self.coarse.len();
+        let group = |first| RotationGroup {
+            first,
+            wanted: std::array::from_fn(|image| image < self.images && first + image < count),
+        };
+        (0..count).step_by(self.images).map(group).collect()
+    }
+
+    /// Groups of the finer set, less the rotations that `is_wanted` (by their place in the finer set) leaves out.
+    pub fn fine_groups(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<RotationGroup> {
+        let count = self.fine.len();
+        let group = |first: usize| RotationGroup {
+            first: self.coarse.len() + first,
+            wanted: std::array::from_fn(|image| {
+                image < self.images && first + image < count && is_wanted(first + image)
+            }),
+        };
+        let groups = (0..count).step_by(self.images).map(group);
+        groups.filter(|group| group.count() > 0).collect()
+    }
+}
