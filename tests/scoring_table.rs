@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
-use knotdock::progress::Progress;
+use knotdock::progress::NoProgress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
@@ -270,13 +270,6 @@ fn scores_terms_slices_and_ranks_of_poses() {
     check("scores.csv", &columns, &found, &tolerance);
 }
 
-struct Silent;
-
-impl Progress for Silent {
-    fn stage(&self, _: &str, _: u64) {}
-    fn advance(&self, _: u64) {}
-}
-
 #[test]
 fn first_poses_of_small_searches() {
     let mut found = Table::new();
@@ -289,7 +282,7 @@ fn first_poses_of_small_searches() {
         });
         let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
         let points = knotdock::dock::run::molecule_points(&ligand);
-        let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
+        let outcome = knotdock::dock::run::dock(&plan, &points, &NoProgress).unwrap();
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),
