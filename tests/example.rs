@@ -65,7 +65,7 @@ fn a_near_native_pose_is_among_the_first_three() {
         .headers()
         .unwrap()
         .iter()
-        .position(|name| name == "score")
+        .position(|name| name == "search_score")
         .unwrap();
     let mut checked = 0;
     for (row, record) in table.rows().iter().zip(scores.records()).step_by(7) {

@@ -286,7 +286,7 @@ fn first_poses_of_small_searches() {
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),
-                Some(row.score),
+                Some(row.search_score),
                 Some(row.score_grid),
                 Some(row.pose_score),
             ];

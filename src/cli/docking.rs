@@ -29,6 +29,7 @@ use crate::cli::messages::dock::{
     assumed, error_warning, few_rotations_warning, regions_text, told,
 };
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::timings::timings_text;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -197,6 +198,7 @@ impl Docking {
         staging.commit()?;
 
         console.say(format!("\n{}", told(&plan, &outcome)));
+        console.detail(format!("\n{}", timings_text(&outcome)));
         if let Some(warning) = error_warning(&plan, &outcome) {
             console.warn(warning);
         }

@@ -99,6 +99,7 @@ mod tests {
         RankedPose {
             pose: Pose::identity(),
             score,
+            search_score: score,
             cluster,
             cluster_score: None,
             cluster_size: cluster.map(|_| 2),
@@ -133,27 +134,28 @@ mod tests {
         };
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  pose score  z-score  cluster size  unfiltered  irmsd\n\
-             \x20    1         9.0                      2         9.0   1.23\n\
-             \x20    4         6.0                      2         6.0   3.50\n\
-             \x20    3         7.0                                7.0\n\
-             \x20    5         5.0                                5.0"
+            "  rank  score  cluster size  pose score  z-score  irmsd\n\
+             \x20    1    9.0             2         9.0            1.23\n\
+             \x20    4    6.0             2         6.0            3.50\n\
+             \x20    3    7.0                       7.0\n\
+             \x20    5    5.0                       5.0"
         );
     }
 
     /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked wrong.
     #[test]
     fn clusters_show_the_score_that_orders_them() {
-        let in_company = |score, cluster, cluster_score| RankedPose {
-            cluster_score: Some(cluster_score),
+        let in_company = |score: f64, cluster, cluster_score: f64| RankedPose {
+            score: cluster_score,
+            pose_score: score,
             ..pose(score, Some(cluster))
         };
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
         assert_eq!(
             best_clusters(&ranking, &[]),
-            "  rank  cluster score  pose score  z-score  cluster size  unfiltered\n\
-             \x20    1           11.0         8.0                      2         8.0\n\
-             \x20    2           10.0         9.0                      2         9.0"
+            "  rank  score  cluster size  pose score  z-score\n\
+             \x20    1   11.0             2         8.0\n\
+             \x20    2   10.0             2         9.0"
         );
     }
 }
