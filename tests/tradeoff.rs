@@ -112,9 +112,7 @@ fn check(folder: &Path, object: &Value) {
     );
     assert!(advice["text"].as_str().unwrap().starts_with("Take "));
     let svg = fs::read_to_string(directory.join("tradeoff.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains(">default</text>"));
-    let png = fs::read(directory.join("tradeoff.png")).unwrap();
-    assert!(png.starts_with(b"\x89PNG"));
+    assert!(svg.starts_with("<svg") && svg.lines().any(|line| line.trim() == "default"));
     assert!(!directory.join(".partial").exists());
 }
 

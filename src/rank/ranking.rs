@@ -231,17 +231,12 @@ impl Candidate {
 mod tests {
     use super::*;
     use crate::pose_space::refine::RefinedPose;
+    use crate::progress::NoProgress;
     use crate::rank::candidates::candidates;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
     use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
-
-    struct Silent;
-    impl Progress for Silent {
-        fn stage(&self, _: &str, _: u64) {}
-        fn advance(&self, _: u64) {}
-    }
 
     fn scorer() -> ExactScorer {
         let options = KernelOptions {
@@ -315,7 +310,7 @@ mod tests {
                 (&[0], &[true]),
                 true,
                 0.0,
-                &Silent,
+                &NoProgress,
             );
             ranking.poses[0].clone()
         };
@@ -368,7 +363,7 @@ mod tests {
                 cluster_temperature: cluster_temperature(unit),
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
-            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &Silent);
+            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &NoProgress);
             let first = &ranking.poses[0];
             (
                 first.cluster_size,

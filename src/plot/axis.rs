@@ -28,9 +28,9 @@ impl Scale {
         }
     }
 
-    /// Place from 0 to 1.
-    pub fn place(self, value: f64) -> f64 {
-        (value.log10() - self.low) / (self.high - self.low)
+    /// From and to, as powers of ten.
+    pub fn range(self) -> std::ops::Range<f64> {
+        self.low..self.high
     }
 
     /// Where numbers stand: at powers of ten, with twos and fives between where few of these are in view.
@@ -43,7 +43,7 @@ impl Scale {
         let powers = self.low.floor() as i32..=self.high.ceil() as i32;
         powers
             .flat_map(|power| digits.iter().map(move |digit| digit * 10f64.powi(power)))
-            .filter(|tick| (0.0..=1.0).contains(&self.place(*tick)))
+            .filter(|tick| (self.low..=self.high).contains(&tick.log10()))
             .collect()
     }
 
