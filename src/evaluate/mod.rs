@@ -27,26 +27,16 @@
 //! [`Evaluator::new`] aligns, superposes and lists contacts once. A pose then costs one eigenvalue problem of a 4 x 4
 //! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules.
 
-mod alignment;
 mod contacts;
-mod copies;
-#[cfg(test)]
-mod copy_tests;
 mod criterion;
 mod dockq;
 mod error;
 mod matching;
 mod native;
-mod placement;
-mod placement_builder;
-mod placements;
 mod report;
-mod residue;
 mod residues;
 mod rmsd;
-mod segments;
 mod shared_chains;
-mod superposition;
 #[cfg(test)]
 mod test_molecules;
 #[cfg(test)]
@@ -65,12 +55,12 @@ pub use native::Native;
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
+use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
 use native::{Groups, Way, check_docked_share};
-use placement::Placement;
 use residues::Residues;
 use rmsd::{RmsdForms, Side, ligand_is_smaller};
-use superposition::MAX_FIT_RMSD;
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
 const MIN_INTERFACE_SHARE: f64 = 0.5;
