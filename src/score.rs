@@ -92,7 +92,7 @@ pub struct Gradient {
     pub torque: [f64; 3],
 }
 
-/// What there is to say about one pose.
+/// The score of one pose, exactly and from its modes.
 #[derive(Clone, Debug, Serialize)]
 pub struct PoseScore {
     /// The exact sum over all pairs, of all effects that are on.
@@ -120,92 +120,134 @@ pub struct PoseScore {
     pub offset_sensitivity: OffsetSensitivity,
 }
 
+/// The engine's plan, with modes for a small error; fewer than the memory holds.
+fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Plan, SearchError> {
+    let kernel_tolerance = options.engine.tolerance;
+    let fine = EngineOptions {
+        tolerance: kernel_tolerance.min(MODE_TOLERANCE),
+        ..options.engine
+    };
+    let (receptor, ligand) = (&scene.receptor, &scene.ligand);
+    let terms = scene.terms.clone();
+    let plan = Plan::with_effects(receptor, ligand, fine, kernel_tolerance, terms)?;
+    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
+    let modes = plan.modes().count;
+    let needed = bytes_a_mode * modes as u64;
+    match options.memory.filter(|&allowed| needed > allowed) {
+        Some(allowed) => Err(SearchError::Modes {
+            modes,
+            needed,
+            allowed,
+        }),
+        None => Ok(plan),
+    }
+}
+
+/// A pose scored from ever more modes.
+struct Ladder<'a> {
+    plan: &'a Plan,
+    spectra: &'a ReceptorSpectra<f64>,
+    ligand: &'a Knots,
+    pose: &'a Pose,
+    /// The exact score.
+    exact: f64,
+    /// Error at which the ladder ends.
+    limit: f64,
+}
+
+impl Ladder<'_> {
+    /// Rungs by rising number of modes, at least to those that the options name; `whole` has all modes.
+    fn rungs(&self, whole: &TruncatedCorrelation, options: &ScoreOptions) -> Vec<Rung> {
+        let modes = self.plan.modes();
+        let mut work = whole.workspace();
+        let spectrum = whole.prepare(&self.pose.rotation, &mut work);
+        let magnitudes = spectrum.magnitudes(modes.count);
+        let last_named = STATED_MODES.max(options.modes.unwrap_or(0));
+        let mut rows = Vec::new();
+        for most in rungs(total(modes), options.modes) {
+            let selection = match options.order {
+                ModeOrder::LowFrequency => Selection::low_frequency(modes, most),
+                ModeOrder::Magnitude => Selection::by_magnitude(modes, &magnitudes, most),
+            };
+            let rung = self.rung(most, &selection, &magnitudes);
+            let ends = rung.error < self.limit && most >= last_named;
+            rows.push(rung);
+            if ends {
+                break;
+            }
+        }
+        rows
+    }
+
+    /// The score from the selected modes, with its error, the bounds of it, and the time that it takes.
+    fn rung(&self, most: usize, selection: &Selection, magnitudes: &[f64]) -> Rung {
+        let Pose {
+            rotation,
+            translation,
+        } = self.pose;
+        let few = TruncatedCorrelation::new(self.plan, self.spectra, self.ligand, selection);
+        let mut work = few.workspace();
+        let spectrum = few.prepare(rotation, &mut work);
+        let (value, _) = spectrum.gradient(translation, &mut work);
+        let tail = Tail::of(self.plan.modes(), selection, magnitudes);
+        Rung {
+            modes: most,
+            modes_kept: few.modes(),
+            value,
+            error: (value - self.exact).abs(),
+            bound: tail.bound,
+            rms: tail.rms,
+            seconds: seconds(|| spectrum.gradient(translation, &mut work).0),
+            seconds_prepare: seconds(|| few.prepare(rotation, &mut work).modes() as f64),
+            seconds_new_rotation: seconds(|| few.gradient(self.pose, &mut work).0),
+        }
+    }
+}
+
 /// Scores one pose.
 ///
 /// # Errors
 /// [`SearchError`] on knots or options that cannot be used.
 pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, SearchError> {
     let (receptor, ligand) = (&scene.receptor, &scene.ligand);
-    let kernel_tolerance = options.engine.tolerance;
-    let fine = EngineOptions {
-        tolerance: kernel_tolerance.min(MODE_TOLERANCE),
-        ..options.engine
-    };
-    let plan = Arc::new(Plan::with_effects(
-        receptor,
-        ligand,
-        fine,
-        kernel_tolerance,
-        scene.terms.clone(),
-    )?);
-    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
-    let needed = bytes_a_mode * plan.modes().count as u64;
-    if let Some(allowed) = options.memory.filter(|&allowed| needed > allowed) {
-        return Err(SearchError::Modes {
-            modes: plan.modes().count,
-            needed,
-            allowed,
-        });
-    }
+    let plan = Arc::new(plan(scene, options)?);
     let scorer = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())?;
     let exact = scorer.score(pose);
-    let folds = [
+    let quantities = [
         Quantity::Score,
         Quantity::SliceByOffset(0),
         Quantity::SliceByOffset(1),
         Quantity::SliceByOffset(2),
     ];
     let all = Selection::all(plan.modes());
-    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = folds
+    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = quantities
         .into_par_iter()
-        .map(|fold| {
-            let folded = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, fold);
-            let configuration = TruncatedCorrelation::new(&plan, &folded, ligand, &all);
-            (folded, configuration)
+        .map(|quantity| {
+            let spectra = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, quantity);
+            let correlation = TruncatedCorrelation::new(&plan, &spectra, ligand, &all);
+            (spectra, correlation)
         })
         .collect();
-    let [(folded, first), by_offset @ ..] = whole.as_slice() else {
-        return Err(SearchError::NoPose);
+    let [(spectra, first), by_offset @ ..] = whole.as_slice() else {
+        unreachable!("there are four quantities");
     };
     let mut work = first.workspace();
-    let magnitudes = first
-        .prepare(&pose.rotation, &mut work)
-        .magnitudes(plan.modes().count);
-    let scale = scale(&plan, folded, ligand, pose);
+    let scale = scale(&plan, spectra, ligand, pose);
     let limit = LADDER_ERROR * exact.score.abs().max(scale);
     let modes_total = total(plan.modes());
-    let last_asked = STATED_MODES.max(options.modes.unwrap_or(0));
-    let mut rows = Vec::new();
-    for most in rungs(modes_total, options.modes) {
-        let selection = match options.order {
-            ModeOrder::LowFrequency => Selection::low_frequency(plan.modes(), most),
-            ModeOrder::Magnitude => Selection::by_magnitude(plan.modes(), &magnitudes, most),
-        };
-        let few = TruncatedCorrelation::new(&plan, folded, ligand, &selection);
-        let mut work = few.workspace();
-        let prepared = few.prepare(&pose.rotation, &mut work);
-        let (value, _) = prepared.gradient(&pose.translation, &mut work);
-        let tail = Tail::of(plan.modes(), &selection, &magnitudes);
-        let error = (value - exact.score).abs();
-        rows.push(Rung {
-            modes: most,
-            modes_kept: few.modes(),
-            value,
-            error,
-            bound: tail.bound,
-            rms: tail.rms,
-            seconds: seconds(|| prepared.gradient(&pose.translation, &mut work).0),
-            seconds_prepare: seconds(|| few.prepare(&pose.rotation, &mut work).modes() as f64),
-            seconds_new_rotation: seconds(|| few.gradient(pose, &mut work).0),
-        });
-        if error < limit && most >= last_asked {
-            break;
-        }
-    }
+    let ladder = Ladder {
+        plan: &plan,
+        spectra,
+        ligand,
+        pose,
+        exact: exact.score,
+        limit,
+    };
+    let rows = ladder.rungs(first, options);
     let reached = rows.last().is_some_and(|row| row.error < limit);
     let mut slices = [0.0; 3];
-    for (slice, (_, configuration)) in slices.iter_mut().zip(by_offset) {
-        *slice = configuration.gradient(pose, &mut work).0;
+    for (slice, (_, correlation)) in slices.iter_mut().zip(by_offset) {
+        *slice = correlation.gradient(pose, &mut work).0;
     }
     let gradient = |(_, gradient): (f64, knotdock_scoring::exact::PoseGradient)| Gradient {
         force: gradient.force.into(),
