@@ -62,6 +62,31 @@ mod tests {
     fn the_dielectric_goes_from_that_of_contact_to_that_of_water() {
         assert!((dielectric(0.0) - 1.3465).abs() < 1e-3);
         assert!((dielectric(1e3) - 78.4).abs() < 1e-9);
+        // Over its whole range: AutoGrid's formula (distdepdiel.cpp) with its constants, evaluated in Python.
+        let published = [
+            (1.0, 4.467335),
+            (2.0, 8.356042),
+            (3.0, 13.066582),
+            (4.0, 18.581067),
+            (5.0, 24.784426),
+            (6.0, 31.457432),
+            (7.0, 38.298952),
+            (8.0, 44.976334),
+            (10.0, 56.712334),
+            (12.0, 65.333405),
+            (15.0, 72.813441),
+            (20.0, 77.183718),
+            (30.0, 78.347371),
+        ];
+        for (distance, value) in published {
+            let ours = dielectric(distance);
+            assert!((ours - value).abs() < 1e-6, "{distance} Å: {ours}");
+        }
+        // Half-way between its limits at ln k / (l B), where the slope is l B^2 / 4.
+        let (rise, middle) = (86.9525f64, 7.7839f64.ln() / (0.003627 * 86.9525));
+        assert!((dielectric(middle) - (-8.5525 + 0.5 * rise)).abs() < 1e-12);
+        let slope = (dielectric(middle + 1e-4) - dielectric(middle - 1e-4)) / 2e-4;
+        assert!((slope - 0.25 * 0.003627 * rise * rise).abs() < 1e-6);
         // Without smoothing and taper it would be Coulomb's law: at 5 Å both are slight.
         let plain = COULOMB / (dielectric(5.0) * 5.0);
         assert!(energy(5.0) < plain && energy(5.0) > 0.75 * plain);
