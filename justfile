@@ -16,6 +16,11 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
 
+# Layout and lints of the scripts; needs ruff (PyPI)
+lint-scripts:
+    ruff format --check scripts
+    ruff check scripts
+
 # Documentation of the crates
 doc:
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
@@ -27,4 +32,4 @@ example:
 # Dock a benchmark folder; options of the script follow
 benchmark dir *options:
     cargo build --release
-    python3 scripts/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}
+    python3 scripts/benchmark/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}

@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ligand,
         rotations: rotation_set(ROTATIONS),
     };
-    let base = DockOptions::default().engine();
+    let base = DockOptions::default().kernel.engine();
     for band in [Band::Whole, Band::LowPass] {
         println!(
             "product kernel, {}:",

@@ -20,7 +20,7 @@ const POSES: usize = 201;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let prepared = Instant::now();
     let scorer = ExactScorer::new(plan.kernel(), &receptor, &ligand)?;

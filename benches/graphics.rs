@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     };
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     let turns: Vec<Turn> = rotation_set(4 * TURNS)

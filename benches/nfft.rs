@@ -4,7 +4,7 @@
 //! and by the thread's own CPU time, with the error against the direct sum at 200 modes.
 //!
 //! With `--serve` it does one thing for each line on standard input and answers with one line, so that
-//! `scripts/finufft_reference.py` can take turns with other programs run by run, on the same numbers:
+//! `scripts/reference/finufft_reference.py` can take turns with other programs run by run, on the same numbers:
 //!
 //! - `plan FOLDER TOLERANCE N1 N2 N3 [N4]`: reads `points.bin` (f64, D to a point, in units of the period) and `weights.bin`
 //!   (f64, re and im) from the folder and plans; answers with grid, window width, and seconds of planning.

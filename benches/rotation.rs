@@ -20,7 +20,7 @@ const ROTATIONS: usize = 101;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let options = knotdock::options::DockOptions::default().engine();
+    let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     for rank in [2, 3] {

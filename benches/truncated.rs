@@ -18,7 +18,7 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
-    let mut options = knotdock::options::DockOptions::default().engine();
+    let mut options = knotdock::options::DockOptions::default().kernel.engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;
     let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);

@@ -5,9 +5,9 @@ shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=${CARGO_TARGET_DIR:-target}
-# Prints the Python that has what scripts/requirements_NAME.txt asks for.
+# Prints the Python that has what scripts/checks/requirements_NAME.txt names.
 python() {
-    local venv=$target/python/$1 requirements=scripts/requirements_$1.txt
+    local venv=$target/python/$1 requirements=scripts/checks/requirements_$1.txt
     if ! cmp --silent "$requirements" "$venv/installed.txt"; then
         rm -rf "$venv"
         python3 -m venv "$venv"
@@ -22,12 +22,13 @@ example=structures/examples/1ppe
 # Either may be called the receptor.
 for sides in "receptor ligand" "ligand receptor"; do
     read -r first second <<<"$sides"
-    "$(python dockq)" scripts/check_dockq.py "$target/debug/knotdock" \
+    "$(python dockq)" scripts/checks/check_dockq.py "$target/debug/knotdock" \
         "${example}_${first}_unbound.pdb" "${example}_${second}_unbound.pdb" \
         "${example}_${first}_bound.pdb" "${example}_${second}_bound.pdb"
 done
-"$(python dockq)" scripts/check_atom_pairs.py
-"$(python rdkit)" scripts/check_rdkit.py "$target/debug/knotdock" structures/examples
+"$(python dockq)" scripts/checks/check_atom_pairs.py
+"$(python dockq)" scripts/reference/pair_sum.py "$target/debug/knotdock"
+"$(python rdkit)" scripts/checks/check_rdkit.py "$target/debug/knotdock" structures/examples
 # The full set of files, five times as many, goes without --few.
-"$(python gemmi)" scripts/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
-"$(python gemmi)" scripts/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few
+"$(python gemmi)" scripts/checks/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
+"$(python gemmi)" scripts/checks/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few

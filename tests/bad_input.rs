@@ -201,7 +201,10 @@ fn options_out_of_range() {
     let place = Place::new();
     for option in [
         ["--rotations", "0"],
-        ["--angle", "0"],
+        ["--rotations", "0deg"],
+        ["--rotations", "0.2deg"],
+        ["--config", "nowhere.toml"],
+        ["--config", "receptor.pdb"],
         ["--spacing", "-1"],
         ["--offset", "nan"],
         ["--effects", "gravity"],
@@ -236,7 +239,7 @@ fn options_out_of_range() {
 #[test]
 fn a_table_of_kinds_that_is_not_whole() {
     let place = Place::new();
-    let whole = include_str!("../scoring/src/rescoring/atom_pair_potential.csv");
+    let whole = include_str!("../scoring/src/terms/pose/atom_pair_potential.csv");
     let lines: Vec<&str> = whole.lines().take(100).collect();
     place.write("short.csv", &lines.join("\n"));
     let error = place.refused(&[
@@ -287,7 +290,7 @@ fn a_negative_number_is_judged_as_the_value_that_it_is() {
     for option in [
         "--lambda",
         "--rotations",
-        "--angle",
+        "--fine-rotations",
         "--resolution",
         "--ph",
         "--threads",

@@ -3,23 +3,23 @@
 //! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose among its case's;
 //! `search.csv` the first poses of a small search. These are regression tables, our own output of the day they were blessed; what
 //! can be known otherwise is tested as such below: closed forms, signs, sums.
+//! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every pose in Python.
 //!
 //! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
-//! The cases are made by `scripts/scoring_cases.py`.
+//! The cases are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
-use knotdock::progress::Progress;
+use knotdock::progress::NoProgress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
-use knotdock_scoring::rescoring::Rescored;
-use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues, Workspace};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
 /// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other processors round
@@ -35,23 +35,8 @@ const SEARCHES: [&str; 4] = ["helices", "charged_helices", "nucleic", BLOCKED];
 /// The helices once more, at the same poses, with residues of both sides blocked.
 const BLOCKED: &str = "blocked_helices";
 
-const COLUMNS: [&str; 15] = [
-    "score",
-    "shape",
-    "electrostatics",
-    "contact",
-    "slice_0",
-    "slice_r0",
-    "slice_2r0",
-    "unfiltered",
-    "fine_contact",
-    "atom_pair",
-    "relaxed",
-    "restraint",
-    "attraction",
-    "missing",
-    "chain_ends",
-];
+/// Columns of `scores.csv` between the effects and the pose terms.
+const SLICES: [&str; 4] = ["slice_0", "slice_r0", "slice_2r0", "unfiltered"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table")
@@ -60,11 +45,10 @@ fn folder() -> PathBuf {
 /// The options that a case is scored and searched with: the defaults but for what is blocked.
 fn options(case: &str) -> DockOptions {
     let blocked = |residues: &str| (case == BLOCKED).then(|| residues.parse().unwrap());
-    DockOptions {
-        block_receptor: blocked("A:1-8"),
-        block_ligand: blocked("A:6"),
-        ..DockOptions::default()
-    }
+    DockOptions::default().changed(|options| {
+        options.restraints.block_receptor = blocked("A:1-8");
+        options.restraints.block_ligand = blocked("A:6");
+    })
 }
 
 fn molecules(case: &str) -> [Molecule; 2] {
@@ -102,11 +86,11 @@ fn poses() -> Vec<(String, Vec<(u32, Pose)>)> {
     cases
 }
 
-/// Which effects were on, the exact score of each pose, and what rescoring adds.
+/// Which effects were on, and the exact score and pose terms of each pose.
 fn scored(
     case: &str,
     poses: &[(u32, Pose)],
-) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<Rescored>) {
+) -> ([bool; Effect::ALL.len()], Vec<ExactScore>, Vec<TermValues>) {
     let options = options(case);
     let [receptor, ligand] = molecules(case);
     let scene = Scene::new(&receptor, &ligand, &options).unwrap();
@@ -126,7 +110,7 @@ fn scored(
         decisions,
         ..
     } = scene;
-    let engine = options.engine();
+    let engine = options.kernel.engine();
     let plan = Plan::with_effects(&receptor, &ligand, engine, engine.tolerance, terms).unwrap();
     let scorer =
         ExactScorer::with_effects(plan.kernel(), &receptor, &ligand, plan.effects()).unwrap();
@@ -248,9 +232,11 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
 }
 
 fn table_columns() -> Vec<&'static str> {
-    ["case", "pose", "rank"]
+    ["case", "pose", "rank", "score"]
         .into_iter()
-        .chain(COLUMNS)
+        .chain(Effect::ALL.map(Effect::name))
+        .chain(SLICES)
+        .chain(POSE_TERMS.iter().map(|term| term.id))
         .collect()
 }
 
@@ -269,18 +255,11 @@ fn scores_terms_slices_and_ranks_of_poses() {
         {
             let better = ranked.iter().filter(|other| *other > by);
             let term = |effect: Effect| on[effect as usize].then_some(exact.terms[effect as usize]);
-            let mut values = vec![
-                Some(1.0 + better.count() as f64),
-                Some(exact.score),
-                term(Effect::Shape),
-                term(Effect::Electrostatics),
-                term(Effect::Contact),
-            ];
+            let mut values = vec![Some(1.0 + better.count() as f64), Some(exact.score)];
+            values.extend(Effect::ALL.map(term));
             values.extend(exact.slices.map(Some));
             values.push(Some(exact.unfiltered));
-            values.extend([rescored.fine_contact, rescored.atom_pair, rescored.relaxed]);
-            values.extend([term(Effect::Restraint), rescored.attraction]);
-            values.extend([rescored.missing, rescored.chain_ends]);
+            values.extend(rescored.iter().map(|(_, value)| value));
             found.insert((case.clone(), *number), values);
         }
     }
@@ -291,31 +270,23 @@ fn scores_terms_slices_and_ranks_of_poses() {
     check("scores.csv", &columns, &found, &tolerance);
 }
 
-struct Silent;
-
-impl Progress for Silent {
-    fn stage(&self, _: &str, _: u64) {}
-    fn advance(&self, _: u64) {}
-}
-
 #[test]
 fn first_poses_of_small_searches() {
     let mut found = Table::new();
     for case in SEARCHES {
         let [receptor, ligand] = molecules(case);
-        let options = DockOptions {
-            rotations: ROTATIONS,
-            every_pose: true,
-            threads: 1,
-            ..options(case)
-        };
+        let options = options(case).changed(|options| {
+            options.search.rotations = ROTATIONS;
+            options.ranking.no_cluster = true;
+            options.machine.threads = 1.into();
+        });
         let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
         let points = knotdock::dock::run::molecule_points(&ligand);
-        let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
+        let outcome = knotdock::dock::run::dock(&plan, &points, &NoProgress).unwrap();
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),
-                Some(row.score),
+                Some(row.search_score),
                 Some(row.score_grid),
                 Some(row.pose_score),
             ];
@@ -343,7 +314,7 @@ fn two_atoms_score_the_closed_form() {
         if x >= 1.0 {
             0.0
         } else {
-            (1.0 / (1.0 - x.powf(-options.alpha))).exp()
+            (1.0 / (1.0 - x.powf(-options.kernel.alpha))).exp()
         }
     };
     let (_, poses) = poses()
@@ -356,8 +327,8 @@ fn two_atoms_score_the_closed_form() {
         // Both atoms stand at the origin of their files, and an aliphatic carbon has 1.88 Å (Tsai et al. 1999).
         let distance = pose.translation.norm();
         let [zero, skin, twice] =
-            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.offset)));
-        let lambda = options.lambda;
+            [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.kernel.offset)));
+        let lambda = options.kernel.lambda;
         let expected = -lambda * lambda * zero + 2.0 * lambda * skin - twice;
         assert!(
             (exact.unfiltered - expected).abs() <= 1e-9 * lambda * lambda,
@@ -373,7 +344,11 @@ fn two_atoms_score_the_closed_form() {
 /// attract; and what is blocked only costs, other terms left as they are.
 #[test]
 fn what_every_row_must_satisfy() {
-    let weights = DockOptions::default().engine().kernel.slice_weights();
+    let weights = DockOptions::default()
+        .kernel
+        .engine()
+        .kernel
+        .slice_weights();
     for (case, poses) in poses() {
         let (on, scores, _) = scored(&case, &poses);
         for ((number, pose), exact) in poses.iter().zip(&scores) {

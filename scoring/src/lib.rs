@@ -23,8 +23,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, the affinity function, score and slices |
-//! | [`effect`] | terms beside shape in the search |
+//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, affinity function, score and slices |
 //! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
 //! | [`transform`] | knots to modes and modes to grids |
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
@@ -33,11 +32,10 @@
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
-//! | [`rescoring`] | terms that only kept poses get |
+//! | [`terms`] | terms beside shape: effects of the search, and pose terms that only kept poses get |
 
 pub mod affinity;
 mod correlator;
-pub mod effect;
 pub mod engine;
 pub mod exact;
 pub mod kernel;
@@ -45,10 +43,10 @@ pub mod lifted_axis;
 pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;
-pub mod rescoring;
 pub mod se3;
 pub mod so3;
 pub mod symmetry;
+pub mod terms;
 #[cfg(test)]
 mod test_support;
 pub mod transform;
@@ -58,3 +56,4 @@ mod vectorized;
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.
 pub use engine::EngineOptions as Options;
+pub use terms::{effect, pose as rescoring};

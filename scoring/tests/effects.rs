@@ -80,8 +80,8 @@ fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
     let mut terms = free_terms(a, b);
     let marks = [&every(a, 4)[..], &every(b, 5)];
     let weights = Weights {
-        blocked: 0.35,
-        attracted: 0.2,
+        excluded: 0.35,
+        active: 0.2,
     };
     terms.push(restraint::term(a, b, marks, weights));
     terms
@@ -480,8 +480,8 @@ fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
         body.centers.iter().map(inside).collect()
     };
     let weights = Weights {
-        blocked: 2.0,
-        attracted: 2.0,
+        excluded: 2.0,
+        active: 2.0,
     };
     let found = |marks: &[ResidueRole]| {
         let by_receptor = restraint::term(&body, &ball, [marks, &[]], weights);

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::options::Threads;
 use knotdock::output::cost_model_file::{default_path, is_ours, read, write};
 use knotdock::output::report::align;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;
 
-use crate::cli::arguments::machine::ThreadArguments;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -22,7 +22,7 @@ pub struct Calibrate {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    threads: ThreadArguments,
+    threads: Threads,
 }
 
 impl Calibrate {

@@ -2,19 +2,16 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use knotdock::options::EngineChoice;
-use knotdock::output::run_options::RunOptions;
+use clap::{Arg, Args, Command, Id};
+use knotdock::options::definition::definition;
+use knotdock::options::values::{above_zero, duration};
+use knotdock::options::{DockOptions, EngineChoice};
 use knotdock::tradeoff::choice::Wanted;
-use knotdock_scoring::symmetry::Symmetry;
 
-use crate::cli::arguments::machine::MachineArguments;
+use crate::cli::arguments::machine::settled;
 use crate::cli::arguments::native::NativeArguments;
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::search::{RANKING, SearchArguments, TRADE_OFFS};
-use crate::cli::arguments::values::{above_zero, duration};
+use crate::cli::arguments::options::{GivenOptions, OfDock, OptionArguments};
 use crate::cli::docking::{Clock, Docking};
-use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -30,13 +27,12 @@ pub struct Dock {
     #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// What moves, likewise and of the same kind.
-    #[arg(required_unless_present_any = ["rerun", "symmetry"], value_name = "LIGAND")]
+    #[arg(
+        required_unless_present_any = ["rerun", "symmetry", "config"],
+        conflicts_with = "symmetry",
+        value_name = "LIGAND"
+    )]
     ligand: Option<String>,
-    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is itself a ring of 2, 3 ...
-    /// copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where the second copy or ring goes. Residues that
-    /// --block-receptor and --active-receptor name are those of every copy, or of both rings.
-    #[arg(long, value_name = "Cn|Dn", conflicts_with_all = NO_RING)]
-    symmetry: Option<Symmetry>,
     /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -44,102 +40,40 @@ pub struct Dock {
     #[arg(long)]
     force: bool,
     /// Repeat the run that wrote this run.json: its inputs, checked by SHA-256, and its options.
-    #[arg(long, value_name = "RUN.JSON", conflicts_with_all = RECORDED)]
+    #[arg(long, value_name = "RUN.JSON")]
     rerun: Option<PathBuf>,
     #[command(flatten)]
-    reading: ReadingArguments,
-    #[command(flatten)]
-    search: SearchArguments,
+    options: OptionArguments<OfDock>,
     /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to be within X: rms over the best
     /// grid poses, as a share of the best score.
-    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], help_heading = TRADE_OFFS)]
+    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry", help_heading = WITHIN)]
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are planned as are
     /// expected to fit, but no more than 56,250; where the machine is slower than expected the search stops earlier, and
     /// run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast this machine is.
-    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "angle"], help_heading = TRADE_OFFS)]
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
-    /// Complexes to write to top/.
-    #[arg(long, value_name = "N", default_value_t = 10, help_heading = RANKING)]
-    write_top: usize,
     #[command(flatten)]
     native: NativeArguments,
-    #[command(flatten)]
-    machine: MachineArguments,
 }
 
-/// What no ring can have.
-const NO_RING: [&str; 6] = [
-    "ligand",
-    "angle",
-    "accuracy",
-    "budget",
-    "block_ligand",
-    "active_ligand",
-];
+/// Heading of the options that choose others.
+const WITHIN: &str = "Within an error or a time";
 
-/// What run.json records, so that none of it goes with --rerun.
-const RECORDED: [&str; 59] = [
-    "receptor",
-    "ligand",
-    "symmetry",
-    "waters",
-    "hetatm",
-    "drop_residue",
-    "hydrogens",
-    "altloc",
-    "model",
-    "assembly",
-    "min_plddt",
-    "rotations",
-    "angle",
-    "fine_rotations",
-    "fine_angle",
-    "fine_share",
-    "resolution",
-    "pass_length",
-    "spacing",
-    "lambda",
-    "offset",
-    "alpha",
-    "core_weight",
-    "sample_grid",
-    "sample_weights",
-    "tolerance",
-    "precision",
-    "engine",
-    "effects",
-    "electrostatics_weight",
-    "contact_weight",
-    "contact_potential",
-    "fine_contact_weight",
-    "fine_contact_potential",
-    "atom_pair_weight",
-    "relaxed_weight",
-    "atom_pair_potential",
-    "restraint_weight",
-    "antibody",
-    "block_receptor",
-    "block_ligand",
-    "active_weight",
-    "peptidase_weight",
-    "unresolved_weight",
-    "termini_weight",
-    "active_receptor",
-    "active_ligand",
-    "ph",
-    "per_rotation",
-    "poses",
-    "refine",
-    "cluster_radius",
-    "no_cluster",
-    "write_top",
-    "native",
-    "native_receptor",
-    "native_ligand",
-    "accuracy",
-    "budget",
-];
+/// Arguments that go with `--rerun` beside the options of the machine: where the new run goes.
+const BESIDE_RERUN: [&str; 3] = ["rerun", "output", "force"];
+
+/// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
+pub fn refusing_recorded(command: Command) -> Command {
+    let of_machine = |name: &str| definition(name).is_some_and(|one| one.subject() == "machine");
+    let recorded: Vec<Id> = command
+        .get_arguments()
+        .map(Arg::get_id)
+        .filter(|id| !BESIDE_RERUN.contains(&id.as_str()) && !of_machine(id.as_str()))
+        .cloned()
+        .collect();
+    command.mut_arg("rerun", |rerun| rerun.conflicts_with_all(recorded))
+}
 
 impl Dock {
     /// Whether options say where the run goes.
@@ -147,51 +81,42 @@ impl Dock {
         self.output.is_some()
     }
 
-    /// What the command line asks for.
-    fn request(&self) -> Result<Request, Failure> {
+    /// The run that the command line describes.
+    fn request(&self, given: GivenOptions) -> Result<Request, Failure> {
+        let given = given.of_rings()?;
+        let symmetry = given.options.search.symmetry;
         // Of a ring the ligand is another copy of the receptor.
-        let ligand = self.ligand.as_ref().or(match self.symmetry {
+        let ligand = match symmetry {
+            Some(_) if self.ligand.is_some() => {
+                return Err(Failure::input("a ring is made of copies of one molecule")
+                    .remedy("leave LIGAND out, or `symmetry` of the file of options"));
+            }
             Some(_) => self.receptor.as_ref(),
-            None => None,
-        });
+            None => self.ligand.as_ref(),
+        };
         let (Some(receptor), Some(ligand)) = (&self.receptor, ligand) else {
             return Err(Failure::input("a receptor and a ligand are needed"));
         };
-        let reading = self.reading.options();
-        Ok(Request {
-            bodies: Bodies::read(receptor, ligand, &reading)?,
-            native: self.native.read()?,
-            options: RunOptions {
-                reading,
-                dock: match self.symmetry {
-                    Some(symmetry) => self.search.ring_options(symmetry)?,
-                    None => self.search.options()?,
-                },
-                write_top: self.write_top,
-            },
-            offset: self.search.offset(),
-            given: self.search.given_lengths(),
-        })
+        Request::read([receptor, ligand], self.native.read()?, given)
     }
 
     /// Reads and plans.
     pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
         let clock = Clock::start();
+        let given = self.options.given()?;
+        let machine = settled(&given.options.machine);
         let mut request = match &self.rerun {
             Some(path) => Request::recorded(path, console)?,
-            None => self.request()?,
+            None => self.request(given)?,
         };
-        self.machine.apply(&mut request.options.dock);
+        request.options.machine = machine;
         let directory = self.output.unwrap_or_else(|| request.directory());
         let wanted = Wanted {
             accuracy: self.accuracy,
             budget: self.budget,
         };
-        if wanted != Wanted::default() && request.options.dock.engine == EngineChoice::Gpu {
-            let error =
-                "--accuracy and --budget rest on what the CPU takes, and --engine gpu is asked for";
-            return Err(Failure::input(error)
-                .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
+        if wanted != Wanted::default() {
+            check_wanted(&request.options)?;
         }
         Docking::prepare(request, wanted, (directory, self.force), clock, console)
     }
@@ -201,5 +126,68 @@ impl Dock {
         let done = self.prepare(console)?.run(console)?;
         console.result(&done)?;
         Ok(())
+    }
+}
+
+/// Refuses options for which nothing can be chosen by an error or a time.
+fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
+    if options.search.engine == EngineChoice::Gpu {
+        let error = "--accuracy and --budget rest on what the CPU takes, and --engine gpu is given";
+        return Err(Failure::input(error)
+            .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
+    }
+    if options.search.symmetry.is_some() {
+        return Err(
+            Failure::input("--accuracy and --budget know nothing of rings")
+                .remedy("set --rotations, --tolerance and --spacing"),
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock::options::definition::definitions;
+
+    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the machine are not.
+    #[test]
+    fn rerun_goes_with_nothing_that_is_recorded() {
+        let run = |word: &str| {
+            let command = refusing_recorded(Dock::augment_args(Command::new("dock")));
+            let words = ["dock", "--rerun=run.json", "-o", "out", "--force", word];
+            command.try_get_matches_from(words).map(drop)
+        };
+        for option in definitions() {
+            let value = match option.name() {
+                "sample_weights" => "unit",
+                "precision" => "double",
+                "antibody" => "whole",
+                "waters" | "hetatm" | "hydrogens" => "keep",
+                "effects" => "shape",
+                "symmetry" => "C3",
+                "fine_share" => "0.5",
+                "engine" => "gpu",
+                "sample_grid" => "2^12",
+                _ => "1",
+            };
+            let word = if option.is_flag() {
+                format!("--{}", option.long())
+            } else if option.names_file() {
+                continue;
+            } else {
+                option.word(value)
+            };
+            let refused = run(&word).is_err();
+            assert_eq!(refused, option.subject() != "machine", "{word}");
+        }
+        for word in [
+            "receptor.pdb",
+            "--native=a.pdb",
+            "--budget=5s",
+            "--config=a.toml",
+        ] {
+            assert!(run(word).is_err(), "{word}");
+        }
     }
 }

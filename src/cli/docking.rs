@@ -25,8 +25,11 @@ use crate::cli::arguments::native::{NativeFiles, announce, measure};
 use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{assumed, error_warning, few_rotations_warning, loose_told, told};
+use crate::cli::messages::dock::{
+    assumed, error_warning, few_rotations_warning, regions_text, told,
+};
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::timings::timings_text;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -79,11 +82,11 @@ impl Docking {
             if count > 0 {
                 console.warn(format!(
                     "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
-                    request.options.dock.resolution, plan.unit
+                    request.options.kernel.resolution, plan.unit
                 ));
             }
         }
-        for text in loose_told(sides, &plan.loose) {
+        for text in regions_text(sides, &plan.regions) {
             console.say(text);
         }
         for (side, labels) in sides.iter().zip(&plan.labels) {
@@ -118,7 +121,7 @@ impl Docking {
         let mut options = self.request.options.clone();
         if self.deadline.is_some() {
             // Where that run stopped is what this one's time would say.
-            options.dock.stopped = run.options.dock.stopped;
+            options.stopped = run.options.stopped;
         }
         let inputs = self.request.bodies.records();
         self.directory.join("poses.csv").is_file()
@@ -150,9 +153,9 @@ impl Docking {
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.
-        request.options.dock.stopped = outcome.stopped;
+        request.options.stopped = outcome.stopped;
 
-        let mut table = PoseTable::new(&outcome.poses);
+        let mut table = PoseTable::new(&outcome.poses, request.options.output.diagnostics);
         let quality = match &evaluator {
             Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
             None => Vec::new(),
@@ -163,7 +166,7 @@ impl Docking {
         table.write(&staging.folder().join("poses.csv"))?;
         let top = table
             .rows()
-            .get(..request.options.write_top)
+            .get(..request.options.output.write_top)
             .unwrap_or(table.rows());
         let top_folder = staging.folder().join("top");
         let written = request
@@ -195,6 +198,7 @@ impl Docking {
         staging.commit()?;
 
         console.say(format!("\n{}", told(&plan, &outcome)));
+        console.detail(format!("\n{}", timings_text(&outcome)));
         if let Some(warning) = error_warning(&plan, &outcome) {
             console.warn(warning);
         }
@@ -242,12 +246,12 @@ fn plan_within(
     request: &mut Request,
     console: Console,
 ) -> Result<(PreparedPair, Chosen), Failure> {
-    let rotations = request.options.dock.rotations;
+    let rotations = request.options.search.rotations;
     // A first plan fills in the lengths of meshes; its rotations are not used.
-    request.options.dock.rotations = 4;
+    request.options.search.rotations = 4;
     let first = request.plan(console)?;
-    request.options.dock.rotations = rotations;
-    let options = &mut request.options.dock;
+    request.options.search.rotations = rotations;
+    let options = &mut request.options;
     let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
     let chosen = choose(wanted, (model, source), options, &mut preparer)
         .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
@@ -259,9 +263,9 @@ fn plan_within(
         .map(|error| format!(" and an error of {error:.1e} of the best score"));
     console.say(format!(
         "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
-        options.rotations,
-        options.tolerance,
-        match options.precision {
+        options.search.rotations,
+        options.kernel.tolerance,
+        match options.search.precision {
             Precision::Single => "",
             Precision::Double => " --precision double",
         },

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::evaluate::{Capri, PoseQuality};
+use knotdock::evaluate::{Capri, Criterion, PoseQuality};
+use knotdock::options::InputOptions;
+use knotdock::options::definition::definitions;
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::{quality, report};
-use knotdock_structures::molecule::ReadOptions;
 use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::arguments::reading::{READING_OPTIONS, ReadingArguments};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -32,7 +32,7 @@ pub struct Evaluate {
     #[arg(long, value_name = "FILE")]
     ligand: Option<String>,
     #[command(flatten)]
-    reading: ReadingArguments,
+    input: InputOptions,
     #[command(flatten)]
     native: NativeArguments,
     /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
@@ -86,6 +86,8 @@ impl Evaluate {
                 "fnat": quality.fnat,
                 "dockq": quality.dockq,
                 "capri": quality.capri.name(),
+                "acceptable": Criterion::Acceptable.is_met(quality),
+                "near_native": Criterion::NearNative.is_met(quality),
             })
         });
         let matched = serde_json::to_value(evaluator.report()).map_err(Failure::other)?;
@@ -95,13 +97,17 @@ impl Evaluate {
 
     /// The molecules docked and the known complex: those named, or else those of the run.
     fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Failure> {
-        let reading = self.reading.options();
-        if self.receptor.is_none() && self.ligand.is_none() && reading != ReadOptions::default() {
+        if self.receptor.is_none() && self.ligand.is_none() && self.input != InputOptions::default()
+        {
+            let input = definitions().iter().filter(|one| one.subject() == "input");
+            let names: Vec<String> = input.map(|one| format!("--{}", one.long())).collect();
+            let names = names.join(", ");
             return Err(Failure::input(format!(
-                "{READING_OPTIONS} are for molecules named by --receptor and --ligand; those of a run are read as it read them"
+                "{names} are for molecules named by --receptor and --ligand; those of a run are read as it read them"
             ))
             .remedy("leave them out, or name the molecules"));
         }
+        let reading = self.input.reading();
         let native = match (&self.receptor, &self.ligand, self.native.read()?) {
             (Some(receptor), Some(ligand), Some(native)) => {
                 let [receptor, ligand] = Input::read_all([receptor, ligand], &reading)?;
@@ -119,15 +125,15 @@ impl Evaluate {
                 Ok(input)
             }
             // Whether B values were taken for pLDDT hangs on both.
-            None if run.options.reading.min_plddt.is_some() => {
+            None if run.options.input.min_plddt.is_some() => {
                 let records = [&run.receptor, &run.ligand];
                 let [receptor, ligand] =
-                    Input::recorded_all(records, run_path, &run.options.reading)?;
+                    Input::recorded_all(records, run_path, &run.options.input.reading())?;
                 Ok(if place == 0 { receptor } else { ligand })
             }
             None => {
                 let record = [&run.receptor, &run.ligand][place];
-                Input::recorded(record, run_path, &run.options.reading)
+                Input::recorded(record, run_path, &run.options.input.reading())
             }
         };
         let native = match (native, &run.native) {

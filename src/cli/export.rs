@@ -50,7 +50,7 @@ impl Export {
             })
         });
         let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
-        let arrangement = Arrangement::from(run.options.dock.symmetry);
+        let arrangement = Arrangement::from(run.options.search.symmetry);
         let is_no_ring = |row: &&PoseRow| arrangement.images(&row.pose).is_none();
         if let Some(PoseRow { rank, .. }) = rows.iter().find(is_no_ring) {
             let suffix = arrangement.suffix();
@@ -60,11 +60,7 @@ impl Export {
             .at(&table_path)
             .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
         }
-        let bodies = Bodies::recorded(
-            [&run.receptor, &run.ligand],
-            &run_path,
-            &run.options.reading,
-        )?;
+        let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
         let own = self.run.join("top");
         let folder = self.output.unwrap_or_else(|| own.clone());
         // What the run itself wrote there is what would be written again.

@@ -3,20 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
-use knotdock::options::DockOptions;
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
-use knotdock::priors::active_residues::sites_told;
-use knotdock::priors::restraints::domains_told;
+use knotdock::priors::{Findings, PRIORS};
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ActiveSite, Antibody, ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
 };
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
+use crate::cli::arguments::options::{OfInspect, OptionArguments};
 use crate::cli::arguments::output_file::{check_output, is_same};
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::values::not_negative;
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::metal_bound;
@@ -40,10 +37,7 @@ pub struct Inspect {
     #[arg(long, requires = "written")]
     force: bool,
     #[command(flatten)]
-    reading: ReadingArguments,
-    /// pH at which charges are assigned.
-    #[arg(long, value_name = "PH", value_parser = not_negative, default_value_t = DockOptions::default().ph)]
-    ph: f64,
+    options: OptionArguments<OfInspect>,
 }
 
 /// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about 0.3% of the total.
@@ -54,13 +48,9 @@ fn surface_points(atoms: usize) -> usize {
 impl Inspect {
     /// Inspects.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        if self.ph > 14.0 {
-            return Err(Failure::input(format!(
-                "--ph is {}; it must be between 0 and 14",
-                self.ph
-            )));
-        }
-        let reading = self.reading.options();
+        let options = self.options.given()?.options;
+        let reading = options.input.reading();
+        let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
         if let Some(file) = &self.atoms {
             check_output(file, [structure.as_path()], self.force)?;
@@ -96,28 +86,19 @@ impl Inspect {
                     .remedy("give the file a name that ends in .cif")
             })?;
         }
-        let labels = molecule.labels(self.ph).report;
+        let labels = molecule.labels(ph).report;
         let area: f64 = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))
             .iter()
             .sum();
-        let antibody = molecule.antibody();
-        let active_sites = molecule.active_sites();
+        let findings = PRIORS.map(|prior| prior.findings(molecule));
         let missing = molecule.missing_residues();
         let ends = molecule.chain_ends();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
             molecule.report,
-            told(
-                &labels,
-                (&missing, &ends),
-                self.ph,
-                area,
-                volume,
-                antibody.as_ref(),
-                &active_sites
-            )
+            told(&labels, (&missing, &ends), ph, area, volume, &findings)
         ));
         if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;
@@ -131,17 +112,22 @@ impl Inspect {
                 path.display()
             ));
         }
-        console.result(&json!({
-            "input": input.entry()?,
-            "labels": labels,
-            "antibody": antibody.map(|antibody| antibody.domains),
-            "active_sites": active_sites,
-            "missing_residues": missing,
-            "chain_end_residues": ends,
-            "accessible_area": area,
-            "volume": volume.value,
-            "volume_error": volume.error,
-        }))?;
+        let mut entries = Map::new();
+        entries.insert("input".to_owned(), json!(input.entry()?));
+        entries.insert("labels".to_owned(), json!(labels));
+        for (prior, found) in PRIORS.iter().zip(findings) {
+            entries.insert(prior.entry_name().to_owned(), found.entry);
+        }
+        for (name, entry) in [
+            ("missing_residues", json!(missing)),
+            ("chain_end_residues", json!(ends)),
+            ("accessible_area", json!(area)),
+            ("volume", json!(volume.value)),
+            ("volume_error", json!(volume.error)),
+        ] {
+            entries.insert(name.to_owned(), entry);
+        }
+        console.result(&Value::Object(entries))?;
         Ok(())
     }
 }
@@ -162,8 +148,7 @@ fn told(
     ph: f64,
     area: f64,
     volume: Volume,
-    antibody: Option<&Antibody>,
-    active_sites: &[ActiveSite],
+    findings: &[Findings],
 ) -> String {
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
@@ -192,28 +177,11 @@ fn told(
             volume.value, volume.error
         ),
     ];
-    if let Some(antibody) = antibody {
-        lines.push(format!(
-            "Variable domains of an antibody: {}",
-            domains_told(antibody)
-        ));
-        for domain in &antibody.domains {
-            let cdrs = domain.cdrs.iter().map(|cdr| match cdr.as_slice() {
-                [] => "none".to_owned(),
-                [only] => only.clone(),
-                [first, .., last] => format!("{first}-{last}"),
-            });
-            lines.push(format!(
-                "CDRs of {} {}: {}",
-                domain.kind.name(),
-                domain.chain,
-                cdrs.collect::<Vec<_>>().join(", ")
-            ));
-        }
-    }
-    if !active_sites.is_empty() {
-        lines.push(format!("A peptidase, {}", sites_told(active_sites)));
-    }
+    lines.extend(
+        findings
+            .iter()
+            .flat_map(|found| found.lines.iter().cloned()),
+    );
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(
             "No charges known, counted as none: {}",

@@ -15,15 +15,18 @@ mod sample;
 mod score;
 mod tradeoff;
 
+use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use knotdock::options::PotentialFileError;
+use knotdock::options::text::first_paragraph;
 use messages::console::Console;
 use messages::failure::Failure;
 use messages::suggestions;
-use messages::usage::{message, with_negative_numbers};
+use messages::usage::with_negative_numbers;
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
@@ -38,8 +41,11 @@ struct Cli {
     #[arg(long, global = true)]
     json: bool,
     /// Write no words but errors.
-    #[arg(long, global = true)]
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
+    /// Say more: the times of a run's stages and effects.
+    #[arg(short, long, global = true)]
+    verbose: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -65,6 +71,7 @@ pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
     let parsed = Cli::command()
         .mut_subcommands(with_negative_numbers)
+        .mut_subcommand("dock", dock::refusing_recorded)
         .try_get_matches_from(&arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
         .map_err(suggestions::explained);
@@ -75,6 +82,7 @@ pub fn main() -> ExitCode {
     let console = Console {
         json: cli.json,
         quiet: cli.quiet,
+        verbose: cli.verbose,
     };
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
@@ -110,11 +118,18 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
         .iter()
         .take_while(|argument| *argument != "--")
         .any(|argument| argument == "--json");
-    if json && !asked {
+    let console = Console {
+        json,
+        ..Console::default()
+    };
+    let source = error.source();
+    let of_file = source.and_then(|source| source.downcast_ref::<PotentialFileError>());
+    if let Some(error) = of_file {
+        console.fail(&error.clone().into());
+    } else if json && !asked {
         let remedy = suggestions::suggested(error)
             .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
-        let failure = Failure::input(message(error)).remedy(remedy);
-        let console = Console { json, quiet: false };
+        let failure = Failure::input(first_paragraph(error)).remedy(remedy);
         console.fail(&failure);
     } else {
         // Nobody to tell when the terminal is gone.

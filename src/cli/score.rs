@@ -3,20 +3,19 @@
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::error::SearchError;
+use knotdock::options::values::at_least_one;
 use knotdock::output::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
-use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::memory;
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::search::KernelArguments;
-use crate::cli::arguments::values::at_least_one;
+use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{loose_told, site_told};
+use crate::cli::messages::dock::{regions_text, site_told};
 use crate::cli::messages::failure::Failure;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
@@ -42,9 +41,7 @@ pub struct Score {
     #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
     order: Order,
     #[command(flatten)]
-    reading: ReadingArguments,
-    #[command(flatten)]
-    kernel: KernelArguments,
+    options: OptionArguments<OfScore>,
 }
 
 /// [`ModeOrder`] by its name.
@@ -63,9 +60,9 @@ impl Score {
     /// Scores.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
-        let dock = self.kernel.options()?;
+        let dock = self.options.given()?.options;
         let options = ScoreOptions {
-            engine: dock.engine(),
+            engine: dock.kernel.engine(),
             modes: self.modes,
             order: match self.order {
                 Order::LowFrequency => ModeOrder::LowFrequency,
@@ -73,7 +70,7 @@ impl Score {
             },
             memory: memory::default_limit(),
         };
-        let reading = self.reading.options();
+        let reading = dock.input.reading();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
         let [receptor, ligand] = inputs.map(|input| input.molecule);
@@ -82,31 +79,22 @@ impl Score {
         let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
         let scored = score::score(&scene, &pose, &options).map_err(refused)?;
         let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
-        let rescorer = scene.rescorer(&dock);
-        let rescored = rescorer.map(|rescorer| rescorer.score(&pose, &mut Workspace::default()));
-        let pose_score = scored.exact + rescored.map_or(0.0, |rescored| rescored.sum());
+        let pose_terms = scene
+            .rescorer(&dock)
+            .map_or_else(TermValues::default, |rescorer| {
+                rescorer.score(&pose, &mut Workspace::default())
+            });
+        let pose_score = scored.exact + pose_terms.sum();
         console.say(format!("\n{}", told(&scored)));
-        for text in loose_told(&["receptor", "ligand"], &scene.loose) {
+        for text in regions_text(&["receptor", "ligand"], &scene.regions) {
             console.say(text);
         }
         if let Some(site) = scene.active_site() {
             console.say(site_told(site));
         }
-        if let Some(rescored) = rescored {
-            let terms = [
-                ("Fine contacts", rescored.fine_contact),
-                ("atom pairs", rescored.atom_pair),
-                ("relaxed", rescored.relaxed),
-                ("attraction", rescored.attraction),
-                ("missing residues", rescored.missing),
-                ("ends of chains", rescored.chain_ends),
-            ];
-            let told = terms
-                .iter()
-                .filter_map(|(name, value)| Some(format!("{name} {:.3}", (*value)?)));
+        if let Some(terms) = pose_terms_text(&pose_terms) {
             console.say(format!(
-                "{}: `dock` ranks this pose of a pair by {pose_score:.3}",
-                told.collect::<Vec<_>>().join(", ")
+                "{terms}: `dock` ranks this pose of a pair by {pose_score:.3}"
             ));
         }
         console.say(told_geometry(&geometry));
@@ -121,40 +109,31 @@ impl Score {
             object.insert("geometry".to_owned(), geometry);
             let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
             object.insert("active_site".to_owned(), site);
-            for (name, loose) in [
-                (
-                    "missing_residues",
-                    serde_json::to_value(&scene.loose.missing_residues),
-                ),
-                (
-                    "chain_end_residues",
-                    serde_json::to_value(&scene.loose.chain_end_residues),
-                ),
-            ] {
-                object.insert(name.to_owned(), loose.map_err(Failure::other)?);
-            }
+            let regions = serde_json::to_value(&scene.regions).map_err(Failure::other)?;
+            object.extend(regions.as_object().cloned().unwrap_or_default());
             let [qw, qx, qy, qz] = pose.quaternion();
             let [tx, ty, tz]: [f64; 3] = pose.translation.into();
             object.insert(
                 "pose".to_owned(),
                 serde_json::json!([qw, qx, qy, qz, tx, ty, tz]),
             );
-            let rescored = rescored.unwrap_or_default();
-            for (name, value) in [
-                ("fine_contact", rescored.fine_contact),
-                ("atom_pair", rescored.atom_pair),
-                ("relaxed", rescored.relaxed),
-                ("attraction", rescored.attraction),
-                ("missing", rescored.missing),
-                ("chain_ends", rescored.chain_ends),
-            ] {
-                object.insert(name.to_owned(), serde_json::json!(value));
+            for (term, value) in pose_terms.iter() {
+                object.insert(term.id.to_owned(), serde_json::json!(value));
             }
             object.insert("pose_score".to_owned(), serde_json::json!(pose_score));
         }
         console.result(&object)?;
         Ok(())
     }
+}
+
+/// Values of the pose terms that act; `None` if no term acts.
+fn pose_terms_text(values: &TermValues) -> Option<String> {
+    let acting = values
+        .iter()
+        .filter_map(|(term, value)| Some(format!("{} {:.3}", term.label, value?)));
+    let terms = acting.collect::<Vec<_>>().join(", ");
+    (!terms.is_empty()).then(|| format!("Pose terms: {terms}"))
 }
 
 /// A pose from seven numbers.
@@ -266,6 +245,24 @@ fn told(scored: &PoseScore) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use knotdock_scoring::terms::pose::POSE_TERMS;
+
+    /// Every acting term stands in the line of terms once, by its label.
+    #[test]
+    fn the_line_of_pose_terms_is_that_of_the_registry() {
+        assert_eq!(pose_terms_text(&TermValues::default()), None);
+        let values = POSE_TERMS
+            .iter()
+            .fold(TermValues::default(), |values, term| {
+                values.with(term.id, 1.5)
+            });
+        let text = pose_terms_text(&values).unwrap();
+        let expected = POSE_TERMS
+            .iter()
+            .map(|term| format!("{} 1.500", term.label));
+        let found = text.strip_prefix("Pose terms: ").unwrap().split(", ");
+        assert!(found.eq(expected), "{text}");
+    }
 
     #[test]
     fn poses_are_normalised_when_they_nearly_are() {

@@ -5,29 +5,27 @@ use std::path::PathBuf;
 use clap::Args;
 use knotdock::dock::pair::PairError;
 use knotdock::options::EngineChoice;
+use knotdock::options::definition::Scope;
 use knotdock::output::report::align;
-use knotdock::output::run_options::RunOptions;
 use knotdock::output::staging::{Staging, TRADEOFF};
 use knotdock::output::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::whole_file::write_whole;
 use knotdock::progress::Progress;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
-use knotdock::tradeoff::{Knob, Measured, Refused, Setting, SweepProgress, Tradeoff, sweep};
+use knotdock::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
-use crate::cli::arguments::machine::{MachineArguments, machine};
+use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
-use crate::cli::arguments::reading::ReadingArguments;
-use crate::cli::arguments::search::SearchArguments;
-use crate::cli::inputs::bodies::Bodies;
+use crate::cli::arguments::options::{OfTradeoff, OptionArguments};
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 
-/// Measure what accuracy costs in time: docks a pair with each knob moved by itself around the options given, and with combinations.
+/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given, and with combinations.
 ///
-/// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and tradeoff.png into a directory, and says which setting to take.
+/// Writes tradeoff.csv, tradeoff.json and tradeoff.svg into a directory, and says which setting to take.
 #[derive(Args, Debug)]
 pub struct TradeoffCommand {
     /// What stays, as for `knotdock dock`.
@@ -42,46 +40,51 @@ pub struct TradeoffCommand {
     /// Replace the sweep in the directory, once the new one is done.
     #[arg(long)]
     force: bool,
-    /// Knobs to move: any of tolerance, precision, spacing, resolution, rotations, coarse-to-fine, per-rotation, refine, sample-grid (of meshes) and combination, with
-    /// commas between them [default: all].
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    knobs: Option<Vec<Knob>>,
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help = parameters_help())]
+    parameters: Option<Vec<Parameter>>,
     #[command(flatten)]
-    reading: ReadingArguments,
-    #[command(flatten)]
-    search: SearchArguments,
+    options: OptionArguments<OfTradeoff>,
     #[command(flatten)]
     native: NativeArguments,
-    #[command(flatten)]
-    machine: MachineArguments,
+}
+
+fn parameters_help() -> String {
+    let names: Vec<&str> = Parameter::all().into_iter().map(Parameter::name).collect();
+    let names = names.join(", ");
+    format!(
+        "Parameters to move, with commas between them, of {names} (several at once) [default: all]"
+    )
 }
 
 impl TradeoffCommand {
     /// Sweeps.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let reading = self.reading.options();
-        let mut request = Request {
-            bodies: Bodies::read(&self.receptor, &self.ligand, &reading)?,
-            native: self.native.read()?,
-            options: RunOptions {
-                reading,
-                dock: self.search.options()?,
-                write_top: 0,
-            },
-            offset: self.search.offset(),
-            given: self.search.given_lengths(),
-        };
-        if request.options.dock.engine == EngineChoice::Gpu {
+        let given = self.options.given()?;
+        if given.options.search.symmetry.is_some() {
+            return Err(
+                Failure::input("settings of a search for rings are not swept")
+                    .remedy("leave `symmetry` out of the file of options"),
+            );
+        }
+        let pair = [&self.receptor, &self.ligand];
+        let mut request = Request::read(pair, self.native.read()?, given)?;
+        if request.options.search.engine == EngineChoice::Gpu {
             let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
             return Err(Failure::input(error).remedy("leave out --engine gpu"));
         }
-        let asked = self.knobs.as_deref().unwrap_or_default();
-        if asked.contains(&Knob::SampleGrid) && !request.bodies.are_meshes() {
-            let error = "molecules are not sampled, so that the knob sample-grid moves nothing";
-            return Err(Failure::input(error).remedy("name other knobs, or two meshes"));
+        let other = if request.bodies.are_meshes() {
+            Scope::Molecules
+        } else {
+            Scope::Meshes
+        };
+        let named = self.parameters.as_deref().unwrap_or_default();
+        if let Some(idle) = named.iter().find(|one| one.scope() == other) {
+            let name = idle.name();
+            let error = format!("the option {name} has no effect on such inputs");
+            return Err(Failure::input(error).remedy("name other parameters"));
         }
-        let knobs = self.knobs.unwrap_or_else(|| Knob::SWEPT.to_vec());
-        self.machine.apply(&mut request.options.dock);
+        let parameters = self.parameters.unwrap_or_else(Parameter::all);
+        request.options.machine = settled(&request.options.machine);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
@@ -103,8 +106,8 @@ impl TradeoffCommand {
         let tradeoff = sweep(
             request.bodies.pair(),
             first,
-            &request.options.dock,
-            &knobs,
+            &request.options,
+            &parameters,
             evaluator.as_ref(),
             &progress,
         )
@@ -121,16 +124,11 @@ impl TradeoffCommand {
             machine,
         })
         .map_err(Failure::other)?;
-        let drawing = plot(&tradeoff);
-        let svg = drawing.svg();
-        let png = drawing
-            .png()
-            .ok_or_else(|| Failure::other("the picture cannot be put into a PNG file"))?;
+        let svg = plot(&tradeoff).map_err(Failure::other)?;
         let folder = staging.folder();
         write_whole(&folder.join("tradeoff.svg"), |file| {
             file.write_all(svg.as_bytes())
         })?;
-        write_whole(&folder.join("tradeoff.png"), |file| file.write_all(&png))?;
         write_table(&tradeoff, &folder.join("tradeoff.csv"))?;
         record.write(&folder.join("tradeoff.json"))?;
         staging.commit()?;
@@ -139,13 +137,13 @@ impl TradeoffCommand {
         if let Some(advice) = &advice {
             console.say(format!("\n{}", advice.text));
         }
-        let names = ["tradeoff.csv", "tradeoff.svg", "tradeoff.png"];
-        let [csv, svg, png] = names.map(|name| directory.join(name).display().to_string());
+        let names = ["tradeoff.csv", "tradeoff.svg"];
+        let [csv, svg] = names.map(|name| directory.join(name).display().to_string());
         console.say(format!("\nThe table is in {csv}, the picture in {svg}"));
         console.result(&json!({
             "directory": directory.display().to_string(),
             "table": csv,
-            "pictures": [svg, png],
+            "picture": svg,
             "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
         }))?;
         Ok(())
@@ -238,9 +236,9 @@ impl SweepProgress for Told {
 
     fn runs(&self, number: usize, setting: &Setting) {
         self.line.clear();
-        let text = match setting.knob {
-            Knob::Default => setting.name.clone(),
-            Knob::Reference | Knob::Combination => {
+        let text = match setting.parameter {
+            Parameter::Default => setting.name.clone(),
+            Parameter::Reference | Parameter::Combination => {
                 format!("{}: {}", setting.name, setting.arguments)
             }
             _ => setting.arguments.clone(),

@@ -1,8 +1,8 @@
 //! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and without it.
 
+use crate::dock::effect_decisions::Decision;
 use crate::dock::outcome::EffectCost;
 use crate::dock::plan::DockPlan;
-use crate::dock::scene::Decision;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra, choose_rank};

@@ -2,7 +2,7 @@
 
 use crate::dock::scene::Scene;
 use crate::error::SearchError;
-use crate::options::{DockOptions, EngineChoice, Precision};
+use crate::options::{DockOptions, EngineChoice, KernelOptions, Precision};
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
@@ -34,16 +34,19 @@ impl MemoryPlan {
     /// [`SearchError::Memory`] where not one rotation fits, with the finest grid that would.
     pub fn new(scene: &Scene, engine: &Plan, options: &DockOptions) -> Result<Self, SearchError> {
         let (fixed, per_rotation) = needs(scene, engine, options);
-        let in_flight = most_in_flight(options, fixed, per_rotation).min(options.rotations);
-        if let (0, Some(allowed)) = (in_flight, options.memory) {
+        let in_flight = most_in_flight(options, fixed, per_rotation).min(options.search.rotations);
+        if let (0, Some(allowed)) = (in_flight, options.machine.memory) {
             let needed = fixed + per_rotation;
             return Err(too_little(scene, options, (needed, allowed)));
         }
-        let graphics = match options.engine {
+        let graphics = match options.search.engine {
             EngineChoice::Cpu => 0,
             EngineChoice::Gpu => {
                 let taken = fixed + in_flight as u64 * per_rotation;
-                let left = options.memory.map(|allowed| allowed.saturating_sub(taken));
+                let left = options
+                    .machine
+                    .memory
+                    .map(|allowed| allowed.saturating_sub(taken));
                 left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
             }
         };
@@ -58,11 +61,11 @@ impl MemoryPlan {
 
 /// Bytes of everything but rotations in flight, and of one of them.
 fn needs(scene: &Scene, engine: &Plan, options: &DockOptions) -> (u64, u64) {
-    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) = match options.precision
-    {
-        Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
-        Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
-    };
+    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) =
+        match options.search.precision {
+            Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
+            Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
+        };
     let functions = engine.functions();
     let rank = functions.min(EXPECTED_RANK);
     let per_rotation = workspace_estimate(engine, rank) as u64;
@@ -71,10 +74,10 @@ fn needs(scene: &Scene, engine: &Plan, options: &DockOptions) -> (u64, u64) {
         2 * real_bytes * engine.modes().count as u64 * (functions + 1 + 5 * rank / 2) as u64
             + PotentialGrid::bytes(engine) as u64
             + 200 * (scene.receptor.len() + scene.ligand.len()) as u64
-            + 64 * options.rotations as u64
+            + 64 * options.search.rotations as u64
             + fine_bytes(options)
-            + BYTES_RELAXED * options.rotations.min(MAX_RELAXED) as u64
-            + 400 * options.poses as u64
+            + BYTES_RELAXED * options.search.rotations.min(MAX_RELAXED) as u64
+            + 400 * options.search.poses as u64
             + (16 << 20);
     (fixed, per_rotation)
 }
@@ -86,9 +89,9 @@ fn too_little(scene: &Scene, options: &DockOptions, (needed, allowed): (u64, u64
         let plan = scene.engine_plan(&coarser).ok()?;
         let spacing = rounded_up(plan.spacing(), scene.angstrom);
         let (fixed, per_rotation) = needs(scene, &plan.with_spacing(spacing).ok()?, options);
-        (fixed + per_rotation <= allowed).then_some(DockOptions {
+        (fixed + per_rotation <= allowed).then(|| KernelOptions {
             spacing: Some(spacing),
-            ..coarser
+            ..coarser.kernel
         })
     });
     SearchError::Memory {
@@ -97,24 +100,21 @@ fn too_little(scene: &Scene, options: &DockOptions, (needed, allowed): (u64, u64
         spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
         shows_little: fits
             .as_ref()
-            .is_some_and(|coarser| coarser.resolution > 3.0 * options.resolution),
+            .is_some_and(|coarser| coarser.resolution > 3.0 * options.kernel.resolution),
         resolution: fits
             .as_ref()
             .map(|coarser| coarser.resolution)
-            .filter(|&resolution| resolution > options.resolution),
+            .filter(|&resolution| resolution > options.kernel.resolution),
         pass_length: fits
             .and_then(|coarser| coarser.pass_length)
-            .filter(|&length| Some(length) > options.pass_length),
+            .filter(|&length| Some(length) > options.kernel.pass_length),
     }
 }
 
 /// Number of rotations in flight: as many as threads, where memory has room for them.
 pub(super) fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u64) -> usize {
-    let threads = match options.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
-    };
-    let room = options.memory.map_or(u64::MAX, |allowed| {
+    let threads = options.machine.threads.count();
+    let room = options.machine.memory.map_or(u64::MAX, |allowed| {
         allowed.saturating_sub(fixed) / per_rotation.max(1)
     });
     threads.min(usize::try_from(room).unwrap_or(usize::MAX))
@@ -122,9 +122,9 @@ pub(super) fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u6
 
 /// Bytes of a finer search: its rotations with their cells, and the peaks found, as found and as sorted.
 fn fine_bytes(options: &DockOptions) -> u64 {
-    let finer = options.fine_rotations.unwrap_or(0);
-    let searched = (options.fine_share * finer as f64).ceil() as u64;
-    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.per_rotation as u64
+    let finer = options.search.fine_rotations.unwrap_or(0);
+    let searched = (options.search.fine_share * finer as f64).ceil() as u64;
+    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.search.per_rotation as u64
 }
 
 /// The first of 60 ever coarser steps that fits, found by halving.
@@ -148,22 +148,18 @@ fn least_coarse<T>(at: impl Fn(i32) -> Option<T>) -> Option<T> {
 /// a step. A grid too coarse for its resolution would be small, too, but its scores would be wrong.
 fn coarser(options: &DockOptions, step: i32, angstrom: f64) -> DockOptions {
     let resolution = match step {
-        0 => options.resolution,
-        _ => rounded_up(options.resolution * 1.1f64.powi(step), angstrom),
+        0 => options.kernel.resolution,
+        _ => rounded_up(options.kernel.resolution * 1.1f64.powi(step), angstrom),
     };
-    let scale = resolution / options.resolution;
-    DockOptions {
-        resolution,
-        pass_length: options.pass_length.map(|length| {
-            if step == 0 {
-                length
-            } else {
-                rounded_up(scale * length, angstrom)
-            }
-        }),
-        spacing: None,
-        ..options.clone()
-    }
+    let scale = resolution / options.kernel.resolution;
+    options.changed(|options| {
+        options.kernel.resolution = resolution;
+        if step > 0 {
+            let length = &mut options.kernel.pass_length;
+            *length = length.map(|length| rounded_up(scale * length, angstrom));
+        }
+        options.kernel.spacing = None;
+    })
 }
 
 /// A spacing rounded up to hundredths of an Ångström, or of the power of ten below its counterpart.

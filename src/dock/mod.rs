@@ -1,7 +1,8 @@
 //! A docking run: from the scene and the options to ranked poses.
 
+pub mod effect_decisions;
 mod effect_timings;
-pub mod loose;
+pub mod flexible_regions;
 mod memory;
 pub mod outcome;
 pub mod pair;

@@ -7,6 +7,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::TermValues;
 use serde::Serialize;
 
 /// One row of `poses.csv`.
@@ -14,8 +15,10 @@ use serde::Serialize;
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    /// What orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
     pub score: f64,
+    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    pub search_score: f64,
     /// 1-based cluster number, best cluster first.
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
@@ -30,25 +33,15 @@ pub struct RankedPose {
     pub score_grid: f64,
     /// B&I's own sum (no low-pass) at `pose`.
     pub score_unfiltered: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `score`; `None` where the effect is off.
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],
-    /// Weighted fine contact potential at `pose`, [`knotdock_scoring::rescoring`]; `None` where poses are not rescored.
-    pub fine_contact: Option<f64>,
-    /// Weighted atom pair potential there; `None` likewise.
-    pub atom_pair: Option<f64>,
-    /// Weighted energy there once the pose has given way; `None` likewise.
-    pub relaxed: Option<f64>,
-    /// What the residues earn that touch of those that are attracted, or of a peptidase's active site; `None` where there are none.
-    pub attraction: Option<f64>,
-    /// What atoms cost that lie where residues of the other side are missing; `None` where none are.
-    pub missing: Option<f64>,
-    /// What atoms near ends of chains cost that touch; `None` where none are.
-    pub chain_ends: Option<f64>,
+    /// Weighted values of the pose terms at `pose`, by id.
+    pub pose_terms: TermValues,
     /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
     pub other_copies: Option<f64>,
-    /// What rows are ranked by: `score`, where poses are rescored `fine_contact`, `atom_pair`, `relaxed`, `attraction`, `missing` and `chain_ends` besides, and `other_copies`.
+    /// Sum that ranks poses: `score`, the pose terms and `other_copies`.
     pub pose_score: f64,
     /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not differ.
     pub z_score: Option<f64>,

@@ -12,8 +12,8 @@ use crate::dock::plan::{DockPlan, plan, plan_scene};
 use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::error::SearchError;
-use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, PER_AXIS, SampleWeights, sample_pair};
-use crate::options::DockOptions;
+use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
+use crate::options::{DockOptions, SampleWeights};
 
 /// Two bodies, the receptor first.
 #[derive(Clone, Copy)]
@@ -127,8 +127,8 @@ type SamplingKey = (usize, SampleWeights);
 
 fn key(options: &DockOptions) -> SamplingKey {
     (
-        options.sample_grid.unwrap_or(PER_AXIS),
-        options.sample_weights.unwrap_or_default(),
+        options.sampling.sample_grid.unwrap_or_default().per_axis,
+        options.sampling.sample_weights.unwrap_or_default(),
     )
 }
 
@@ -173,9 +173,9 @@ impl<'a> Preparer<'a> {
             solids,
             &MeshOptions {
                 per_axis,
-                offset: Some(options.offset),
+                offset: Some(options.kernel.offset),
                 weights,
-                alpha: options.alpha,
+                alpha: options.kernel.alpha,
             },
         )?);
         self.sampled.push((wanted, Arc::clone(&sampling)));

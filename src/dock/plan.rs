@@ -1,18 +1,19 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
-use crate::dock::loose::Loose;
+use crate::dock::effect_decisions::Decision;
+use crate::dock::flexible_regions::FlexibleRegions;
 use crate::dock::memory::{MemoryPlan, most_in_flight};
-use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::dock::scene::{LengthUnit, Scene};
 use crate::error::SearchError;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
-use crate::rank::rescoring::Asked;
+use crate::rank::rescoring::Rescoring;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::lifted_axis::RadiusBasis;
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use serde::Serialize;
@@ -62,14 +63,14 @@ pub struct DockPlan {
     /// Which effects are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
-    /// What poses should touch.
+    /// Residues that should be in contact.
     #[serde(skip)]
-    pub(crate) attracted: ActiveResidues,
+    pub(crate) active: ActiveResidues,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
-    /// Residues that are missing, and those near ends of chains, of receptor and ligand.
+    /// Unresolved segments and residues near termini, of receptor and ligand.
     #[serde(flatten)]
-    pub loose: Loose,
+    pub regions: FlexibleRegions,
     /// What is searched, and how.
     #[serde(skip)]
     pub(crate) search: SearchPlan,
@@ -100,7 +101,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     options.check()?;
     let engine = scene.engine_plan(options)?;
     let memory = MemoryPlan::new(&scene, &engine, options)?;
-    let space = PoseSpace::new(options.symmetry, scene.ring_axis);
+    let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
     let limits = (memory.in_flight, memory.graphics);
     let search = SearchPlan::new(Arc::new(engine), space, options, limits);
     let engine = &search.engine;
@@ -111,7 +112,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     Ok(DockPlan {
         unit: scene.unit,
         angstrom: scene.angstrom,
-        rotations: options.rotations,
+        rotations: options.search.rotations,
         rotation_set: search.rotations.name,
         covering_radius_degrees: search.rotations.covering_radius.to_degrees(),
         grid: engine.size(),
@@ -127,9 +128,9 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         fixed_bytes: memory.fixed,
         bytes_in_flight: memory.per_rotation,
         decisions: scene.decisions,
-        attracted: scene.attracted,
+        active: scene.active,
         labels: scene.labels,
-        loose: scene.loose,
+        regions: scene.regions,
         options: options.clone(),
         receptor: scene.receptor,
         ligand: scene.ligand,
@@ -169,32 +170,32 @@ impl DockPlan {
     /// Number of poses to refine: all where none lies on the grid, as of rings.
     pub fn refined(&self) -> usize {
         if !self.search.space.is_on_grid() {
-            return self.options.poses;
+            return self.options.search.poses;
         }
         let alone = self
             .decisions
             .iter()
             .all(|decision| decision.effect == Effect::Shape || !decision.on);
         self.options
+            .search
             .refine
             .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
     }
 
-    /// What poses are rescored with; `None` where there is nothing to ask.
+    /// The pose terms prepared for rescoring; `None` if no term acts.
     pub(crate) fn rescorer(&self) -> Option<Rescorer> {
-        let bodies = [&self.receptor, &self.ligand];
-        self.asked()
-            .rescorer(bodies, &self.attracted, &self.loose, &self.options)
+        self.rescoring().rescorer()
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.
     pub fn active_site(&self) -> Option<&AssumedSite> {
-        self.attracted.assumed.as_ref()
+        self.active.assumed.as_ref()
     }
 
-    /// What poses are asked beside their score.
-    pub(crate) fn asked(&self) -> Asked {
-        Asked::of(&self.decisions, &self.attracted, &self.loose, &self.options)
+    /// Inputs and weights of the pose terms.
+    pub(crate) fn rescoring(&self) -> Rescoring<'_> {
+        let bodies = [&self.receptor, &self.ligand];
+        Rescoring::new(bodies, &self.active, &self.regions, &self.options)
     }
 
     /// Rotations that would be in flight if there were more than enough of them.

@@ -32,17 +32,17 @@ impl std::fmt::Display for DockPlan {
             digits = digits,
             finer = finer,
         )?;
-        if self.options.precision == Precision::Double {
+        if self.options.search.precision == Precision::Double {
             write!(f, "; in double precision")?;
         }
-        if self.options.engine == EngineChoice::Gpu {
+        if self.options.search.engine == EngineChoice::Gpu {
             write!(f, "; on a graphics processor")?;
         }
-        if let Some(finer) = self.options.fine_rotations {
+        if let Some(finer) = self.options.search.fine_rotations {
             write!(
                 f,
                 "; then about {:.0}% of {finer} finer rotations, about the best",
-                100.0 * self.options.fine_share
+                100.0 * self.options.search.fine_share
             )?;
         }
         Ok(())

@@ -24,8 +24,8 @@ use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::rescoring::Rescorer;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_scoring::transform::Real;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
@@ -96,7 +96,7 @@ pub fn dock_until(
         .num_threads(plan.in_flight())
         .build()
         .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| match plan.options.precision {
+    pool.install(|| match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
     })
@@ -138,7 +138,7 @@ fn dock_in<T: Real>(
     let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
     clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
-    let clusters = clusters_of(&candidates, &body, plan.options.cluster_radius);
+    let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
     // Poses closer than neighbouring samples of the search are one place to it.
     let step = body.step(plan.spacing, plan.search.rotation_step());
     let listed = deduplicated(&candidates, &clusters, &body, step);
@@ -157,8 +157,8 @@ fn dock_in<T: Real>(
         pose_scorer,
         &candidates,
         (&clusters, &listed),
-        plan.options.every_pose,
-        2.0 * plan.options.tolerance * best_peak.abs(),
+        plan.options.ranking.no_cluster,
+        2.0 * plan.options.kernel.tolerance * best_peak.abs(),
         progress,
     );
     let error = check.error(plan, &found.peaks, &ranking);
@@ -331,7 +331,7 @@ impl Check {
     fn error(&self, plan: &DockPlan, peaks: &[Peak], ranking: &Ranking) -> MeasuredError {
         // Rows stand for clusters by their pose scores; the best score may be another pose's.
         let at_start = self.at_start(plan).iter().map(|exact| exact.score);
-        let rows = ranking.poses.iter().map(|row| row.score);
+        let rows = ranking.poses.iter().map(|row| row.search_score);
         let best = error_scale(rows.chain(at_start), 0.0);
         MeasuredError::over(peaks, &self.at_grid, best)
     }

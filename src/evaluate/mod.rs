@@ -32,6 +32,7 @@ mod contacts;
 mod copies;
 #[cfg(test)]
 mod copy_tests;
+mod criterion;
 mod dockq;
 mod error;
 mod matching;
@@ -57,6 +58,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
+pub use criterion::Criterion;
 pub use dockq::{Capri, dockq};
 pub use error::EvaluateError;
 pub use native::Native;

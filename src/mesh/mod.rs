@@ -3,7 +3,7 @@
 //! # Conventions
 //!
 //! Lengths are in the unit of the mesh files, which must be one. h is the spacing of a part's grid, eps = sqrt(3) h / 2 the bound within which
-//! the sampler knows its surface ([`knotdock_structures::sampler::grid`]); A is the receptor, B the ligand.
+//! the sampler knows its surface ([`knotdock_structures::sampling::grid`]); A is the receptor, B the ligand.
 //!
 //! # Why balls of one radius
 //!
@@ -25,15 +25,15 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
-use knotdock_structures::sampler::feature_size::feature_size;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::lattice::lattice;
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{SampleError, knots};
-use serde::{Deserialize, Serialize};
+use knotdock_structures::sampling::feature_size::feature_size;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::lattice::lattice;
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{SampleError, knots};
+use serde::Serialize;
 
-use crate::options::DockOptions;
+use crate::options::{DockOptions, SampleWeights};
 
 /// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
@@ -45,30 +45,8 @@ pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 const CELL: f64 = 0.5 * RESOLUTION;
 /// What plays the part of an Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
-/// Nodes along each edge of a part's grid by default: m = 2^18.
-pub const PER_AXIS: usize = 64;
-
-/// Most nodes an axis that a grid may have: beyond it the depths alone take a gibibyte.
-pub const MAX_PER_AXIS: usize = 512;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
-
-/// What the balls of a mesh weigh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SampleWeights {
-    /// Such that the summed bumps come closest to one inside and to zero outside.
-    #[default]
-    Fitted,
-    /// One each.
-    Unit,
-}
-
-impl SampleWeights {
-    fn are_fitted(self) -> bool {
-        self == Self::Fitted
-    }
-}
 
 /// How two meshes are sampled. Lengths in the files' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -279,9 +257,7 @@ pub fn sample_pair(
             true => solid.mesh().volume(),
             false => HausdorffMeter::new(solid, field).volume(),
         };
-        let fitted = options
-            .weights
-            .are_fitted()
+        let fitted = (options.weights == SampleWeights::Fitted)
             .then(|| Bump::new(options.alpha))
             .transpose()?
             .map(|bump| weights::fit(field, &balls, bump, volume()));
@@ -319,12 +295,12 @@ impl MeshPair {
 
     /// The defaults of options that are lengths, for what was not given.
     pub fn defaults(&self, options: &mut DockOptions, given: GivenLengths) {
-        options.offset = self.offset;
+        options.kernel.offset = self.offset;
         if !given.resolution {
-            options.resolution = RESOLUTION * self.offset;
+            options.kernel.resolution = RESOLUTION * self.offset;
         }
         if !given.cluster_radius {
-            options.cluster_radius = CLUSTER_RADIUS * self.offset;
+            options.ranking.cluster_radius = CLUSTER_RADIUS * self.offset;
         }
     }
 }

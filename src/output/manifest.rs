@@ -7,17 +7,17 @@ use std::path::Path;
 
 use knotdock_structures::molecule::ChainMap;
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::input_record::{InputRecord, NativeRecord};
 use super::program::Program;
-use super::run_options::RunOptions;
 use super::whole_file::{FileError, write_json};
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::{DockOutcome, EffectCost, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
+use crate::options::DockOptions;
 use crate::priors::active_residues::AssumedSite;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
@@ -25,7 +25,7 @@ use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::effect::Effect;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// An input with what its reader made of it.
 #[derive(Clone, Debug, Serialize)]
@@ -143,7 +143,7 @@ pub struct Manifest<'a> {
     #[serde(flatten)]
     program: Program,
     inputs: &'a Inputs,
-    options: Map<String, Value>,
+    options: &'a DockOptions,
     plan: &'a DockPlan,
     rank: usize,
     effects: &'a [EffectCost],
@@ -163,7 +163,7 @@ pub struct ManifestParts<'a> {
     /// The input files.
     pub inputs: &'a Inputs,
     /// What was asked for.
-    pub options: &'a RunOptions,
+    pub options: &'a DockOptions,
     /// What was planned.
     pub plan: &'a DockPlan,
     /// What came out.
@@ -190,7 +190,7 @@ impl<'a> Manifest<'a> {
             schema: SCHEMA,
             program: Program::this(),
             inputs: parts.inputs,
-            options: parts.options.record()?,
+            options: parts.options,
             plan: parts.plan,
             rank: parts.outcome.rank,
             effects: &parts.outcome.effects,

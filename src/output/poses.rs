@@ -1,6 +1,6 @@
 //! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
 //!
-//! Columns are found by name, and later ones are appended after those of [`COLUMNS`]. Quaternions are Hamilton's, active,
+//! Columns are found by name: those of [`pose_columns`](super::pose_columns), and whatever is appended. Quaternions are Hamilton's, active,
 //! right-handed, unit, `qw >= 0`; a ligand atom at x in its own file goes to R(q) x + t, in Å, in the receptor's file
 //! frame. Numbers are in the shortest digits that read back to the same f64; a missing value is an empty field.
 
@@ -8,114 +8,15 @@ use std::io;
 use std::path::Path;
 
 use csv::StringRecord;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
+use super::fields::Column;
+use super::pose_columns::columns;
 use super::whole_file::{FileError, write_whole};
 use crate::dock::outcome::RankedPose;
 
-/// The columns that every run writes, in order.
-pub const COLUMNS: [&str; 32] = [
-    "rank",
-    "score",
-    "cluster",
-    "cluster_size",
-    "qw",
-    "qx",
-    "qy",
-    "qz",
-    "tx",
-    "ty",
-    "tz",
-    "refined",
-    "rotation",
-    "score_grid",
-    "score_unfiltered",
-    "shape",
-    "slice_0",
-    "slice_r0",
-    "slice_2r0",
-    "electrostatics",
-    "contact",
-    "cluster_score",
-    "fine_contact",
-    "pose_score",
-    "z_score",
-    "atom_pair",
-    "relaxed",
-    "restraint",
-    "attraction",
-    "other_copies",
-    "missing",
-    "chain_ends",
-];
-
-/// A column to append: its name and one field a row.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// Name in the header.
-    pub name: String,
-    /// The fields, in the order of the rows.
-    pub fields: Vec<String>,
-}
-
-/// A number as a field: the shortest digits that read back to the same f64, empty when it is not a finite number.
-pub fn number(value: f64) -> String {
-    if value.is_finite() {
-        (value + 0.0).to_string() // + 0.0 prints a negative zero as 0
-    } else {
-        String::new()
-    }
-}
-
-fn count(value: Option<usize>) -> String {
-    value.map(|value| value.to_string()).unwrap_or_default()
-}
-
-/// The fields of a pose under [`COLUMNS`].
-fn fields(rank: usize, row: &RankedPose) -> [String; COLUMNS.len()] {
-    let [qw, qx, qy, qz] = row.pose.quaternion();
-    let translation = row.pose.translation;
-    let [slice_0, slice_r0, slice_2r0] = row.slices;
-    let term = |effect: Effect| row.terms[effect as usize].map_or(String::new(), number);
-    [
-        rank.to_string(),
-        number(row.score),
-        count(row.cluster),
-        count(row.cluster_size),
-        number(qw),
-        number(qx),
-        number(qy),
-        number(qz),
-        number(translation.x),
-        number(translation.y),
-        number(translation.z),
-        row.refined.to_string(),
-        row.rotation.to_string(),
-        number(row.score_grid),
-        number(row.score_unfiltered),
-        term(Effect::Shape),
-        number(slice_0),
-        number(slice_r0),
-        number(slice_2r0),
-        term(Effect::Electrostatics),
-        term(Effect::Contact),
-        row.cluster_score.map_or(String::new(), number),
-        row.fine_contact.map_or(String::new(), number),
-        number(row.pose_score),
-        row.z_score.map_or(String::new(), number),
-        row.atom_pair.map_or(String::new(), number),
-        row.relaxed.map_or(String::new(), number),
-        term(Effect::Restraint),
-        row.attraction.map_or(String::new(), number),
-        row.other_copies.map_or(String::new(), number),
-        row.missing.map_or(String::new(), number),
-        row.chain_ends.map_or(String::new(), number),
-    ]
-}
-
-/// A table of poses as text, with the pose of each row made out: what `evaluate` and `complex` read.
+/// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTable {
     pub(super) header: StringRecord,
@@ -123,7 +24,7 @@ pub struct PoseTable {
     pub(super) rows: Vec<PoseRow>,
 }
 
-/// What a row says of where the ligand goes.
+/// Rank and pose of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseRow {
     /// 1-based rank.
@@ -133,18 +34,23 @@ pub struct PoseRow {
 }
 
 impl PoseTable {
-    /// The table of a search's poses in the order given, ranked from 1.
-    pub fn new(poses: &[RankedPose]) -> Self {
+    /// The table of a search's poses in the order given, ranked from 1; with columns for diagnosis if they are wanted.
+    pub fn new(poses: &[RankedPose], diagnostics: bool) -> Self {
+        let columns = columns(diagnostics);
         let rows = poses.iter().enumerate().map(|(index, row)| PoseRow {
             rank: index + 1,
             pose: row.pose,
         });
-        let records = poses.iter().enumerate();
+        let record = |(index, row): (usize, &RankedPose)| {
+            let fields = columns.iter().map(|column| (column.field)(row));
+            std::iter::once((index + 1).to_string())
+                .chain(fields)
+                .collect()
+        };
+        let names = columns.iter().map(|column| column.name);
         Self {
-            header: StringRecord::from(COLUMNS.to_vec()),
-            records: records
-                .map(|(index, row)| StringRecord::from(fields(index + 1, row).to_vec()))
-                .collect(),
+            header: std::iter::once("rank").chain(names).collect(),
+            records: poses.iter().enumerate().map(record).collect(),
             rows: rows.collect(),
         }
     }
@@ -231,11 +137,13 @@ fn value(field: &str) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues};
 
     fn pose(quaternion: [f64; 4], translation: [f64; 3]) -> RankedPose {
         RankedPose {
             pose: Pose::from_parts(quaternion, translation),
             score: 1.0 / 3.0,
+            search_score: 0.25,
             cluster: None,
             cluster_size: Some(4),
             cluster_score: None,
@@ -245,12 +153,9 @@ mod tests {
             score_unfiltered: 1e-7,
             terms: [Some(0.1), None, Some(-3.0), None],
             slices: [-0.0, 2.0, 1e21],
-            fine_contact: None,
-            atom_pair: Some(-7.0),
-            relaxed: Some(2.5),
-            attraction: None,
-            missing: None,
-            chain_ends: None,
+            pose_terms: TermValues::default()
+                .with("atom_pair", -7.0)
+                .with("relaxed", 2.5),
             other_copies: None,
             pose_score: 1.0 / 3.0,
             z_score: Some(2.5),
@@ -265,20 +170,46 @@ mod tests {
 
     #[test]
     fn numbers_are_shortest_and_missing_ones_empty() {
-        let table = PoseTable::new(&[pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])]);
+        let table = PoseTable::new(&[pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])], true);
         assert_eq!(
             text(&table),
-            "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
-             fine_contact,pose_score,z_score,atom_pair,relaxed,restraint,attraction,other_copies,missing,chain_ends\n\
-             1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,,,0.3333333333333333,2.5,-7,2.5,,,,,\n"
+            "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
+             fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,z_score,\
+             qw,qx,qy,qz,tx,ty,tz,cluster_score,refined,rotation,score_grid,score_unfiltered,\
+             slice_0,slice_r0,slice_2r0\n\
+             1,0.3333333333333333,,4,0.3333333333333333,0.25,0.1,,-3,,,-7,2.5,,,,,2.5,\
+             0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,,true,17,,0.0000001,0,2,1000000000000000000000\n"
         );
+    }
+
+    /// Every pose term has one column and one JSON key, which is its id.
+    #[test]
+    fn columns_of_pose_terms_are_those_of_the_registry() {
+        let values = POSE_TERMS
+            .iter()
+            .zip(1..)
+            .fold(TermValues::default(), |values, (term, number)| {
+                values.with(term.id, f64::from(number))
+            });
+        let row = RankedPose {
+            pose_terms: values,
+            ..pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])
+        };
+        let objects = PoseTable::new(&[row], false).objects([0]);
+        let object = objects[0].as_object().unwrap();
+        for (term, number) in POSE_TERMS.iter().zip(1..) {
+            assert_eq!(object[term.id], number, "{}", term.id);
+        }
+        let record = serde_json::to_value(values).unwrap();
+        let keys: Vec<&str> = POSE_TERMS.iter().map(|term| term.id).collect();
+        assert_eq!(record.as_object().unwrap().len(), keys.len());
+        let same = |key: &&str| record[*key].as_f64() == object[*key].as_f64();
+        assert!(keys.iter().all(same), "{record}");
     }
 
     #[test]
     fn rows_as_objects_carry_types() {
-        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])]);
+        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])], true);
         let objects = table.objects([0, 7]);
         assert_eq!(objects.len(), 1);
         assert_eq!(objects[0]["rank"], 1);
@@ -295,7 +226,7 @@ mod tests {
             pose([0.1, 0.2, -0.3, 0.4], [1e6 + 0.1, -1.0 / 3.0, 5e-324]),
             pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
         ];
-        PoseTable::new(&poses).write(&path).unwrap();
+        PoseTable::new(&poses, false).write(&path).unwrap();
         let read = PoseTable::read(&path).unwrap();
         for (row, expected) in read.rows().iter().zip(&poses) {
             assert_eq!(row.pose.translation, expected.pose.translation);

@@ -5,12 +5,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use serde_json::{Map, Value};
 
 use super::input_record::{InputRecord, NativeRecord};
 use super::manifest::SCHEMA;
 use super::program::{COMMIT, VERSION};
-use super::run_options::RunOptions;
+use crate::options::{DockOptions, MachineOptions};
 
 /// What later commands take from a `run.json`.
 #[derive(Debug)]
@@ -28,7 +27,7 @@ pub struct RecordedRun {
     /// The native's files, if there was one.
     pub native: Option<NativeRecord>,
     /// The options.
-    pub options: RunOptions,
+    pub options: DockOptions,
 }
 
 /// Why a `run.json` cannot be used.
@@ -78,14 +77,17 @@ impl RecordedRun {
     /// [`RecordedRunError`].
     pub fn read(path: &Path) -> Result<Self, RecordedRunError> {
         #[derive(Deserialize)]
-        struct File {
+        struct Header {
             schema: u32,
             program: String,
+        }
+        #[derive(Deserialize)]
+        struct File {
             version: String,
             commit: String,
             cpu_features: String,
             inputs: FileInputs,
-            options: Map<String, Value>,
+            options: DockOptions,
         }
         #[derive(Deserialize)]
         struct FileInputs {
@@ -102,19 +104,24 @@ impl RecordedRun {
             line,
             message,
         };
-        let file: File = serde_json::from_slice(&text).map_err(|error| {
+        let wrong = |error: serde_json::Error| {
             let line = u64::try_from(error.line()).ok().filter(|&line| line > 0);
             content(line, error.to_string())
-        })?;
-        if file.program != "knotdock" {
-            return Err(content(None, format!("it was written by {}", file.program)));
+        };
+        // What else a record of another schema holds may be anything.
+        let header: Header = serde_json::from_slice(&text).map_err(wrong)?;
+        if header.program != "knotdock" {
+            let message = format!("it was written by {}", header.program);
+            return Err(content(None, message));
         }
-        if file.schema != SCHEMA {
-            return Err(content(
-                None,
-                format!("its schema is {}, this version's is {SCHEMA}", file.schema),
-            ));
+        if header.schema != SCHEMA {
+            let message = format!(
+                "its schema is {}, this version's is {SCHEMA}",
+                header.schema
+            );
+            return Err(content(None, message));
         }
+        let file: File = serde_json::from_slice(&text).map_err(wrong)?;
         Ok(Self {
             version: file.version,
             commit: file.commit,
@@ -122,8 +129,7 @@ impl RecordedRun {
             receptor: file.inputs.receptor,
             ligand: file.inputs.ligand,
             native: file.inputs.native,
-            options: RunOptions::from_record(&file.options)
-                .map_err(|message| content(None, message))?,
+            options: file.options,
         })
     }
 
@@ -138,7 +144,7 @@ impl RecordedRun {
         &self,
         [receptor, ligand]: [&InputRecord; 2],
         native: Option<&NativeRecord>,
-        options: &RunOptions,
+        options: &DockOptions,
     ) -> bool {
         let own = self.native.as_ref().map(NativeRecord::files);
         let other = native.map(NativeRecord::files);
@@ -151,6 +157,7 @@ impl RecordedRun {
         self.receptor.is_like(receptor)
             && self.ligand.is_like(ligand)
             && natives
-            && self.options == options.less_machine()
+            && self.options
+                == options.changed(|options| options.machine = MachineOptions::default())
     }
 }

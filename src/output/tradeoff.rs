@@ -5,12 +5,13 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
+use super::fields::number;
 use super::manifest::{Inputs, Machine};
-use super::poses::number;
 use super::program::Program;
-use super::run_options::RunOptions;
 use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;
+use crate::options::DockOptions;
+use crate::options::check::name_of;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
 
@@ -32,26 +33,37 @@ pub fn columns(run: &Measured) -> Vec<(String, Value)> {
     let [nx, ny, nz] = run.grid;
     let mut columns: Vec<(String, Value)> = [
         ("setting", Value::from(run.setting.name.as_str())),
-        ("knob", run.setting.knob.name().into()),
+        ("parameter", run.setting.parameter.name().into()),
         ("options", run.setting.arguments.as_str().into()),
-        ("resolution", real(options.resolution)),
+        ("resolution", real(options.kernel.resolution)),
         ("spacing", real(run.spacing)),
-        ("tolerance", real(options.tolerance)),
-        ("precision", options.precision.name().into()),
-        ("rotations", options.rotations.into()),
+        ("tolerance", real(options.kernel.tolerance)),
+        ("precision", name_of(options.search.precision).into()),
+        ("rotations", options.search.rotations.into()),
         (
             "fine_rotations",
-            options.fine_rotations.map_or(Value::Null, Value::from),
+            options
+                .search
+                .fine_rotations
+                .map_or(Value::Null, Value::from),
         ),
         (
             "fine_share",
-            optional(options.fine_rotations.map(|_| options.fine_share)),
+            optional(
+                options
+                    .search
+                    .fine_rotations
+                    .map(|_| options.search.fine_share),
+            ),
         ),
-        ("per_rotation", options.per_rotation.into()),
+        ("per_rotation", options.search.per_rotation.into()),
         ("refined", run.refined.into()),
         (
             "sample_grid",
-            options.sample_grid.map_or(Value::Null, Value::from),
+            options
+                .sampling
+                .sample_grid
+                .map_or(Value::Null, |grid| grid.per_axis.into()),
         ),
         ("grid_x", nx.into()),
         ("grid_y", ny.into()),
@@ -143,7 +155,7 @@ pub struct TradeoffRecord<'a> {
     #[serde(flatten)]
     program: Program,
     inputs: &'a Inputs,
-    options: Map<String, Value>,
+    options: Value,
     agreement_radius: f64,
     settings: Vec<Map<String, Value>>,
     refused: &'a [Refused],
@@ -158,7 +170,7 @@ pub struct TradeoffParts<'a> {
     /// The input files.
     pub inputs: &'a Inputs,
     /// The default's options.
-    pub options: &'a RunOptions,
+    pub options: &'a DockOptions,
     /// What was measured.
     pub tradeoff: &'a Tradeoff,
     /// What to take.
@@ -175,9 +187,11 @@ impl<'a> TradeoffRecord<'a> {
     /// # Errors
     /// When a part cannot be put into JSON, which would be a fault of this program.
     pub fn new(parts: TradeoffParts<'a>) -> serde_json::Result<Self> {
-        let mut options = parts.options.record()?;
-        // A sweep writes no complexes.
-        options.remove("write_top");
+        let mut options = serde_json::to_value(parts.options)?;
+        // A sweep writes no run.
+        if let Some(options) = options.as_object_mut() {
+            options.remove("output");
+        }
         Ok(Self {
             schema: SCHEMA,
             program: Program::this(),

@@ -75,7 +75,7 @@ mod tests {
     use crate::pose_space::PoseSpace;
     use crate::pose_space::refine::RefinedPose;
     use crate::priors::restraints::tests::peptide;
-    use crate::progress::Progress;
+    use crate::progress::NoProgress;
     use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra, choose_rank};
@@ -96,7 +96,7 @@ mod tests {
             [0.8, -2.5, 2.0],
         ];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
-        let engine = DockOptions::default().engine();
+        let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &folded, &knots);
@@ -149,12 +149,6 @@ mod tests {
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
     }
 
-    struct Silent;
-    impl Progress for Silent {
-        fn stage(&self, _: &str, _: u64) {}
-        fn advance(&self, _: u64) {}
-    }
-
     /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
     /// shift along it gains anything by the exact sum.
     #[test]
@@ -174,12 +168,11 @@ mod tests {
         let ring = Molecule::new(atoms, Format::Pdb);
         // Off the file's origin.
         let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
-        let options = DockOptions {
-            symmetry: Some("D2".parse().unwrap()),
-            rotations: 12,
-            threads: 1,
-            ..DockOptions::default()
-        };
+        let options = DockOptions::default().changed(|options| {
+            options.search.symmetry = Some("D2".parse().unwrap());
+            options.search.rotations = 12;
+            options.machine.threads = 1.into();
+        });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
         let folded = ReceptorSpectra::<f32>::new(
@@ -197,7 +190,7 @@ mod tests {
         );
         let engine = ScanEngine::new(search, chosen.engine).unwrap();
         let groups = search.rotations.groups();
-        let peaks = scan(search, &engine, &groups, 20, None, &Silent)
+        let peaks = scan(search, &engine, &groups, 20, None, &NoProgress)
             .unwrap()
             .peaks;
         assert_eq!(peaks.len(), 20);

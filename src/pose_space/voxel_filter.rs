@@ -124,7 +124,8 @@ mod tests {
     fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
         let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
+        let plan =
+            Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let voxels = VoxelFilter::new(&engine, None);
@@ -176,7 +177,8 @@ mod tests {
         });
         let axis = RingAxis::of(&copies).unwrap();
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
-        let plan = Arc::new(Plan::new(&knots, &knots, DockOptions::default().engine()).unwrap());
+        let plan =
+            Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
         let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
         let [nx, ny, nz] = plan.size();

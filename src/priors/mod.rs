@@ -1,4 +1,120 @@
-//! Knowledge of where molecules touch: residues that a user names, and those of active sites and of antibodies.
+//! Priors: what is known of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
+//!
+//! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in [`PRIORS`]; the
+//! scene of a docking run and `knotdock inspect` walk the registry.
 
 pub mod active_residues;
+pub mod antibody;
+pub mod peptidase;
+mod peptidase_families;
 pub mod restraints;
+#[cfg(test)]
+mod test_chains;
+
+pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
+pub use peptidase::ActiveSite;
+
+use knotdock_structures::molecule::Molecule;
+
+/// How a site enters the score of a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SiteRole {
+    /// The molecule binds here alone: contacts of its other atoms take off the score.
+    Exclusive,
+    /// A pose earns the share of the residues that touches. Of several sites of a molecule any may be the one.
+    Favoured,
+}
+
+/// A part of a molecule that mostly binds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Site {
+    /// How it enters the score.
+    pub role: SiteRole,
+    /// Its residues in file order, each by the indices of those atoms that belong to the site.
+    pub residues: Vec<Vec<usize>>,
+    /// Score at the default options: of a contact elsewhere (exclusive), or of touching all residues (favoured).
+    pub weight: f64,
+    /// What the molecule is and where it binds, in words that follow "the receptor is".
+    pub reason: String,
+    /// Entry of `run.json`.
+    pub record: serde_json::Value,
+}
+
+/// The sites of a molecule that all priors find.
+pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
+    let sites = PRIORS.iter().map(|prior| prior.sites(molecule));
+    sites.flatten().collect()
+}
+
+/// What `knotdock inspect` reports of a molecule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Findings {
+    /// The entry in JSON.
+    pub entry: serde_json::Value,
+    /// Lines for people; none where nothing was found.
+    pub lines: Vec<String>,
+}
+
+/// Knowledge of one kind of proteins.
+pub trait Prior: Sync {
+    /// Name of the kind, in words.
+    fn name(&self) -> &'static str;
+
+    /// The sites of a molecule; none where it is not of the kind.
+    fn sites(&self, molecule: &Molecule) -> Vec<Site>;
+
+    /// Name of the entry that [`Prior::findings`] give in JSON.
+    fn entry_name(&self) -> &'static str;
+
+    /// What is found in a molecule, for `knotdock inspect`.
+    fn findings(&self, molecule: &Molecule) -> Findings;
+}
+
+/// All kinds of proteins that are known.
+pub const PRIORS: [&dyn Prior; 2] = [&antibody::AntibodyPrior, &peptidase::PeptidasePrior];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_structures::molecule::{Format, InputSpec, ReadOptions, read};
+
+    #[test]
+    fn trypsin_is_a_peptidase_and_no_antibody() {
+        let root = env!("CARGO_MANIFEST_DIR");
+        let path = format!("{root}/structures/examples/1ppe_receptor_unbound.pdb");
+        let trypsin = read(&InputSpec::whole(path), &ReadOptions::default()).unwrap();
+        let found: Vec<&str> = PRIORS
+            .iter()
+            .filter(|prior| !prior.sites(&trypsin).is_empty())
+            .map(|prior| prior.name())
+            .collect();
+        assert_eq!(found, ["peptidase"]);
+        for prior in PRIORS {
+            let has_site = !prior.sites(&trypsin).is_empty();
+            assert_eq!(!prior.findings(&trypsin).lines.is_empty(), has_site);
+            for site in prior.sites(&trypsin) {
+                assert!(site.weight > 0.0 && !site.residues.is_empty() && !site.reason.is_empty());
+                assert!(
+                    site.residues
+                        .iter()
+                        .flatten()
+                        .all(|&atom| atom < trypsin.atoms.len())
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_distinct_and_nothing_is_found_in_nothing() {
+        let empty = Molecule::new(Vec::new(), Format::Pdb);
+        let mut names: Vec<&str> = PRIORS
+            .iter()
+            .flat_map(|p| [p.name(), p.entry_name()])
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        // The antibody's entry is called as its kind.
+        assert_eq!(names, ["active_sites", "antibody", "peptidase"]);
+        assert!(PRIORS.iter().all(|prior| prior.sites(&empty).is_empty()));
+    }
+}

@@ -4,8 +4,8 @@ use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::peaks::Peak;
-use knotdock_scoring::rescoring::{Rescored, Rescorer, Workspace};
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
 /// A pose in the running.
@@ -13,10 +13,10 @@ use rayon::prelude::*;
 pub(crate) struct Candidate {
     /// The pose.
     pub pose: Pose,
-    /// The fast path's score at `pose`, and what rescoring adds there.
+    /// The fast path's score at `pose` plus the pose terms there.
     pub score: f64,
-    /// What rescoring says of `pose`.
-    pub rescored: Rescored,
+    /// Values of the pose terms at `pose`.
+    pub pose_terms: TermValues,
     /// The pose that it was refined from.
     pub start: Pose,
     /// All terms at `start`, where they are known already.
@@ -41,13 +41,13 @@ pub(crate) fn candidates(
         .zip(placed)
         .enumerate()
         .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
-            let rescored = rescorer
+            let pose_terms = rescorer
                 .map(|rescorer| rescorer.score(&placed.pose, workspace))
                 .unwrap_or_default();
             Candidate {
                 pose: placed.pose,
-                score: placed.score + rescored.sum(),
-                rescored,
+                score: placed.score + pose_terms.sum(),
+                pose_terms,
                 start: placed.start,
                 terms: at_start.get(index).copied(),
                 refined: placed.refined,

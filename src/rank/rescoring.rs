@@ -1,95 +1,53 @@
-//! What poses are rescored by: the terms that the scene's effects make possible and whose weights ask for them.
+//! Rescoring of one docking: the inputs and weights of its pose terms.
 
-use crate::dock::loose::Loose;
-use crate::dock::scene::Decision;
+use crate::dock::flexible_regions::FlexibleRegions;
 use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
-use knotdock_scoring::effect::Effect;
-use knotdock_scoring::rescoring::{
-    AtomPairs, Attraction, ChainEndContacts, FineContacts, MissingContacts, Relaxation, Rescorer,
-};
+use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;
 
-/// Weights of the terms that poses are rescored by; 0 for those that are not asked.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asked {
-    fine_contact: f64,
-    atom_pair: f64,
-    relaxed: f64,
-    attraction: f64,
-    missing: f64,
-    chain_ends: f64,
+/// Inputs and weights of the pose terms between two bodies.
+pub(crate) struct Rescoring<'a> {
+    inputs: TermInputs<'a>,
+    weights: [f64; POSE_TERMS.len()],
 }
 
-impl Asked {
-    /// Potentials where the contact effect is on, what should be touched where there is something, and what is loose where anything is.
-    pub fn of(
-        decisions: &[Decision],
-        attracted: &ActiveResidues,
-        loose: &Loose,
-        options: &DockOptions,
+impl<'a> Rescoring<'a> {
+    /// The inputs that two labelled bodies and the priors provide, with the weights of the options.
+    ///
+    /// Active residues carry a weight of their own, which depends on the prior that names them.
+    pub fn new(
+        bodies: [&'a Knots; 2],
+        active: &'a ActiveResidues,
+        regions: &'a FlexibleRegions,
+        options: &'a DockOptions,
     ) -> Self {
-        let contact = |decision: &Decision| decision.effect == Effect::Contact && decision.on;
-        let typed = decisions.iter().any(contact);
-        let when = |asked: bool, weight: f64| if asked { weight } else { 0.0 };
+        let weights = &options.terms.weights;
         Self {
-            fine_contact: when(typed, options.fine_contact_weight),
-            atom_pair: when(typed, options.atom_pair_weight),
-            relaxed: when(typed, options.relaxed_weight),
-            attraction: when(attracted.any(), attracted.weight),
-            missing: when(loose.any_missing(), options.unresolved_weight),
-            chain_ends: when(loose.any_ends(), options.termini_weight),
+            inputs: TermInputs {
+                bodies,
+                fine_contact_potential: options.terms.fine_contact_potential.as_ref(),
+                atom_pair_potential: options.terms.atom_pair_potential.as_ref(),
+                active_residues: &active.sets,
+                unresolved: regions
+                    .unresolved
+                    .each_ref()
+                    .map(|side| side.stretches.as_slice()),
+                termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
+            },
+            weights: *weights.clone().with("active_residues", active.weight).all(),
         }
     }
 
-    /// Whether poses give way, which is most of what rescoring costs.
-    pub fn relaxes(&self) -> bool {
-        self.relaxed > 0.0
+    /// The terms prepared for scoring poses; `None` if no term acts.
+    pub fn rescorer(&self) -> Option<Rescorer> {
+        Rescorer::new(&self.inputs, &self.weights)
     }
 
-    /// Whether anything is asked.
-    pub fn any(&self) -> bool {
-        let stands = [
-            self.fine_contact,
-            self.atom_pair,
-            self.attraction,
-            self.missing,
-            self.chain_ends,
-        ];
-        stands.into_iter().any(|weight| weight > 0.0) || self.relaxes()
-    }
-
-    /// The terms of two labelled bodies; `None` where nothing is asked.
-    pub fn rescorer(
-        &self,
-        [receptor, ligand]: [&Knots; 2],
-        attracted: &ActiveResidues,
-        loose: &Loose,
-        options: &DockOptions,
-    ) -> Option<Rescorer> {
-        let asked = |weight: f64| (weight > 0.0).then_some(weight);
-        let pair_potential = || options.atom_pair_potential.clone().unwrap_or_default();
-        self.any().then(|| Rescorer {
-            fine_contacts: asked(self.fine_contact).map(|weight| {
-                let potential = options.fine_contact_potential.clone().unwrap_or_default();
-                FineContacts::new(receptor, ligand, &potential, weight)
-            }),
-            atom_pairs: asked(self.atom_pair)
-                .map(|weight| AtomPairs::new(receptor, ligand, &pair_potential(), weight)),
-            relaxation: asked(self.relaxed)
-                .map(|weight| Relaxation::new(receptor, ligand, &pair_potential(), weight)),
-            attraction: asked(self.attraction)
-                .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
-            missing: asked(self.missing).map(|weight| {
-                let missing = loose.missing_residues.each_ref();
-                let stretches = missing.map(|side| side.stretches.as_slice());
-                MissingContacts::new(receptor, ligand, stretches, weight)
-            }),
-            chain_ends: asked(self.chain_ends).map(|weight| {
-                let ends = loose.chain_end_residues.each_ref();
-                let ends = ends.map(|side| side.atoms.as_slice());
-                ChainEndContacts::new(receptor, ligand, ends, weight)
-            }),
-        })
+    /// Time to rescore a pose, as a share of the time with every term; 0 if no term acts.
+    pub fn time_share(&self) -> f64 {
+        let terms = POSE_TERMS.iter().zip(self.weights);
+        let acting = terms.filter(|(term, weight)| term.acts(&self.inputs, *weight));
+        acting.fold(0.0, |share, (term, _)| share.max(term.time_share))
     }
 }

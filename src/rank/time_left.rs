@@ -9,7 +9,7 @@ use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
 use crate::search::deadline::Deadline;
 use knotdock_scoring::peaks::Peak;
-use knotdock_scoring::rescoring::Rescorer;
+use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
 /// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
@@ -39,11 +39,11 @@ pub(crate) fn poses_in_time(
         begun.elapsed().as_secs_f64() / probed.max(1) as f64
     });
     // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
-    let scored = if options.every_pose {
+    let scored = if options.ranking.no_cluster {
         1.0
     } else {
         let unscored = candidates(peaks, placed, &[], None);
-        let clusters = clusters_of(&unscored, body, options.cluster_radius);
+        let clusters = clusters_of(&unscored, body, options.ranking.cluster_radius);
         let count = clusters.iter().max().map_or(0, |last| last + 1);
         count as f64 / unscored.len().max(1) as f64
     };

@@ -40,15 +40,15 @@ impl SearchPlan {
         (in_flight, graphics_bytes): (usize, u64),
     ) -> Self {
         Self {
-            rotations: space.rotations(options.rotations, options.fine_rotations),
+            rotations: space.rotations(options.search.rotations, options.search.fine_rotations),
             engine,
             space,
-            fine_share: options.fine_share,
-            per_rotation: options.per_rotation,
-            kept: options.poses,
+            fine_share: options.search.fine_share,
+            per_rotation: options.search.per_rotation,
+            kept: options.search.poses,
             stop_after: options.stopped.map(|stopped| stopped.rotations),
             in_flight,
-            device: options.engine,
+            device: options.search.engine,
             graphics_bytes,
         }
     }

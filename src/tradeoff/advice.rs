@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
-use crate::tradeoff::settings::Knob;
+use crate::tradeoff::settings::Parameter;
 
 /// Share of the reference's rows that a doubling of the time must find for it to be worth its price.
 const DOUBLING: f64 = 0.1;
@@ -30,10 +30,10 @@ pub struct Advice {
 /// fewer poses at no larger an error.
 pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let default = tradeoff.measured.first()?;
-    let tolerance = default.setting.options.tolerance;
+    let tolerance = default.setting.options.kernel.tolerance;
     let runs = || {
         let runs = tradeoff.measured.iter();
-        runs.filter(|run| run.setting.knob != Knob::Reference)
+        runs.filter(|run| run.setting.parameter != Parameter::Reference)
     };
     let serves = |run: &&Measured| run.error.rms <= tolerance.max(default.error.rms);
     let keeps = |run: &&Measured| run.agreement >= default.agreement - KEEPS;
@@ -59,7 +59,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     if !take.same_score(&default.setting.options) {
         text += " It ranks by another score than the default's.";
     }
-    if take.setting.knob != Knob::Default {
+    if take.setting.parameter != Parameter::Default {
         text += &format!(
             " The default takes {} and has {:.1e} and {}.",
             seconds(default.cost()),
@@ -125,22 +125,22 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
 
 /// Rotations of the reference over the default's.
 fn rotations_ratio(tradeoff: &Tradeoff) -> usize {
-    let rotations = |knob: Knob| {
+    let rotations = |parameter: Parameter| {
         let run = tradeoff
             .measured
             .iter()
-            .find(|run| run.setting.knob == knob);
-        run.map_or(1, |run| run.setting.options.rotations)
+            .find(|run| run.setting.parameter == parameter);
+        run.map_or(1, |run| run.setting.options.search.rotations)
     };
-    rotations(Knob::Reference) / rotations(Knob::Default).max(1)
+    rotations(Parameter::Reference) / rotations(Parameter::Default).max(1)
 }
 
 /// A setting by its name, and its options where the name is not all of them.
 fn told(run: &Measured) -> String {
     let setting = &run.setting;
-    match setting.knob {
-        Knob::Default => "the default".to_owned(),
-        Knob::Combination => format!("{} ({})", setting.name, setting.arguments),
+    match setting.parameter {
+        Parameter::Default => "the default".to_owned(),
+        Parameter::Combination => format!("{} ({})", setting.name, setting.arguments),
         _ => setting.arguments.clone(),
     }
 }
@@ -163,11 +163,15 @@ mod tests {
     use crate::options::DockOptions;
     use crate::tradeoff::settings::Setting;
 
-    fn measured(knob: Knob, rotations: usize, cost: f64, rms: f64, agreement: f64) -> Measured {
-        let options = DockOptions {
-            rotations,
-            ..DockOptions::default()
-        };
+    fn measured(
+        parameter: Parameter,
+        rotations: usize,
+        cost: f64,
+        rms: f64,
+        agreement: f64,
+    ) -> Measured {
+        let options =
+            DockOptions::default().changed(|options| options.search.rotations = rotations);
         let stage = StageTime {
             name: "search",
             wall_seconds: cost,
@@ -175,8 +179,8 @@ mod tests {
         };
         Measured {
             setting: Setting {
-                knob,
-                name: format!("{} {rotations}", knob.name()),
+                parameter,
+                name: format!("{} {rotations}", parameter.name()),
                 arguments: format!("--rotations {rotations}"),
                 options,
             },
@@ -204,8 +208,8 @@ mod tests {
 
     fn text(rest: &[Measured]) -> String {
         let mut runs = vec![
-            measured(Knob::Default, 3600, 4.0, 1.2e-3, 0.85),
-            measured(Knob::Reference, 14_400, 16.0, 1.1e-3, 1.0),
+            measured(Parameter::Default, 3600, 4.0, 1.2e-3, 0.85),
+            measured(Parameter::Reference, 14_400, 16.0, 1.1e-3, 1.0),
         ];
         runs.extend_from_slice(rest);
         let tradeoff = Tradeoff {
@@ -221,7 +225,7 @@ mod tests {
     /// while they found 56% of the reference's rows.
     #[test]
     fn what_loses_the_answer_is_not_advised() {
-        let few = measured(Knob::Rotations, 600, 1.5, 5e-4, 0.56);
+        let few = measured(Parameter::Option("rotations"), 600, 1.5, 5e-4, 0.56);
         let said = text(std::slice::from_ref(&few));
         assert!(said.starts_with("Take the default"), "{said}");
         assert!(!said.contains("Where the error matters"), "{said}");
@@ -230,14 +234,20 @@ mod tests {
             "{said}"
         );
         // Nor where it costs next to nothing.
-        let said = text(&[measured(Knob::Rotations, 600, 0.01, 5e-4, 0.56)]);
+        let said = text(&[measured(
+            Parameter::Option("rotations"),
+            600,
+            0.01,
+            5e-4,
+            0.56,
+        )]);
         assert!(said.starts_with("Take the default"), "{said}");
     }
 
     #[test]
     fn what_keeps_the_answer_is() {
-        let sharp = measured(Knob::Spacing, 3600, 6.0, 4e-4, 0.84);
-        let quick = measured(Knob::Resolution, 3600, 1.9, 1.3e-3, 0.81);
+        let sharp = measured(Parameter::Option("spacing"), 3600, 6.0, 4e-4, 0.84);
+        let quick = measured(Parameter::Option("resolution"), 3600, 1.9, 1.3e-3, 0.81);
         let said = text(&[sharp, quick]);
         assert!(said.contains("Where the error matters"), "{said}");
         assert!(

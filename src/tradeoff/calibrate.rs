@@ -1,14 +1,15 @@
 //! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are timed.
 
 use knotdock_scoring::effect::{Effect, contact, electrostatics};
-use knotdock_scoring::rescoring;
+use knotdock_scoring::terms::pose;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 
+use crate::dock::effect_decisions::Decision;
 use crate::dock::outcome::StageTime;
 use crate::dock::plan::{DockPlan, plan_scene};
 use crate::dock::run::dock;
-use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::dock::scene::{LengthUnit, Scene};
 use crate::error::SearchError;
 use crate::options::DockOptions;
 use crate::progress::Progress;
@@ -32,26 +33,18 @@ const RADII: [f64; 7] = [1.4, 1.5, 1.6, 1.65, 1.7, 1.8, 1.9];
 /// # Errors
 /// [`SearchError`], which would be a fault of this program.
 pub fn calibrate(threads: usize, progress: &dyn Progress) -> Result<CostModel, SearchError> {
-    let base = DockOptions {
-        rotations: 480,
-        poses: 400,
-        threads,
-        ..DockOptions::default()
-    };
+    let base = DockOptions::default().changed(|options| {
+        options.search.rotations = 480;
+        options.search.poses = 400;
+        options.machine.threads = threads.into();
+    });
     let settings = [
-        DockOptions {
-            refine: Some(100),
-            ..base.clone()
-        },
-        DockOptions {
-            tolerance: 0.1,
-            ..base.clone()
-        },
-        DockOptions {
-            spacing: Some(1.6),
-            rotations: 240,
-            ..base
-        },
+        base.changed(|options| options.search.refine = Some(100)),
+        base.changed(|options| options.kernel.tolerance = 0.1),
+        base.changed(|options| {
+            options.kernel.spacing = Some(1.6);
+            options.search.rotations = 240;
+        }),
     ];
     // Memory is touched and the processor awake after one run.
     run(&settings[1], progress)?;
@@ -138,11 +131,11 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     let [receptor, ligand] = BODIES.map(body);
     let (receptor, ligand) = (receptor?, ligand?);
     let terms = vec![
-        electrostatics::term(&receptor, &ligand, options.electrostatics_weight),
+        electrostatics::term(&receptor, &ligand, options.terms.electrostatics_weight),
         contact::term(
             &receptor,
             &ligand,
-            options.contact_weight,
+            options.terms.contact_weight,
             &contact::Potential::default(),
         ),
     ];
@@ -159,8 +152,8 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         terms,
         decisions: decisions.to_vec(),
         labels: [LabelReport::default(), LabelReport::default()],
-        attracted: Default::default(),
-        loose: Default::default(),
+        active: Default::default(),
+        regions: Default::default(),
         ring_axis: None,
     })
 }
@@ -183,7 +176,7 @@ fn body(radius: f64) -> Result<Knots, KnotsError> {
     let radii = (0..count).map(|index| RADII[index % RADII.len()]);
     let charges = (0..count).map(|index| if index % 2 == 0 { 0.3 } else { -0.3 });
     let types = (0..count).map(|index| Some((index % contact::TYPES.len()) as u8));
-    let kinds = (0..count).map(|index| Some((index % rescoring::atom_kinds().len()) as u8));
+    let kinds = (0..count).map(|index| Some((index % pose::atom_kinds().len()) as u8));
     Knots::new(centers, radii.collect())?
         .with_labels(charges.collect(), types.collect())?
         .with_atom_kinds(kinds.collect())
@@ -285,10 +278,8 @@ mod tests {
     #[test]
     fn no_rung_costs_more_than_a_finer_one() {
         let seconds = LADDER.map(|rung| {
-            let mut options = DockOptions {
-                rotations: 4,
-                ..DockOptions::default()
-            };
+            let mut options =
+                DockOptions::default().changed(|options| options.search.rotations = 4);
             rung.apply(&mut options);
             let plan = plan_scene(scene(&options).unwrap(), &options).unwrap();
             CostModel::BUILT_IN.seconds(&Workload::of(&plan), 3600, 1)

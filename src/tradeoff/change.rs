@@ -1,74 +1,69 @@
 //! Changes of single options: what settings of a sweep are made of.
 
+use crate::error::SearchError;
 use crate::options::DockOptions;
-use crate::options::Precision;
+use crate::options::definition::{Definition, definition};
 
 /// A change of one option.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Change {
-    Tolerance(f64),
-    Precision(Precision),
-    Spacing(f64),
-    Resolution(f64),
-    Rotations(usize),
-    FineRotations(usize),
-    PerRotation(usize),
-    Refine(usize),
-    SampleGrid(usize),
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Change {
+    /// The option's name.
+    option: &'static str,
+    /// Its value as it is typed.
+    value: String,
 }
 
 impl Change {
-    /// Makes it.
-    pub fn apply(self, options: &mut DockOptions) {
-        match self {
-            Self::Tolerance(value) => options.tolerance = value,
-            Self::Precision(value) => options.precision = value,
-            Self::Spacing(value) => options.spacing = Some(value),
-            Self::Resolution(value) => {
-                // A pass length that was given goes along with the resolution, as the default one does.
-                options.pass_length = options
-                    .pass_length
-                    .map(|length| length * value / options.resolution);
-                options.resolution = value;
-            }
-            Self::Rotations(value) => {
-                options.rotations = value;
-                // A finer set is no coarser.
-                options.fine_rotations = options.fine_rotations.map(|finer| finer.max(value));
-            }
-            Self::FineRotations(value) => options.fine_rotations = Some(value),
-            Self::PerRotation(value) => options.per_rotation = value,
-            Self::Refine(value) => options.refine = Some(value),
-            Self::SampleGrid(value) => options.sample_grid = Some(value),
+    /// The change of an option to a value.
+    pub fn new(option: &'static str, value: impl ToString) -> Self {
+        Self {
+            option,
+            value: value.to_string(),
         }
     }
 
-    /// What else is typed for `changed` options of a run with `default` ones to have the change: lengths of molecules and meshes that would follow from
-    /// it otherwise, and a finer set of rotations that it has made finer still.
+    /// The options with the change.
+    ///
+    /// # Errors
+    /// [`SearchError::Option`] for a value out of range.
+    pub fn apply(&self, options: &DockOptions) -> Result<DockOptions, SearchError> {
+        let mut changed = options.with(self.option, &self.value)?;
+        match self.option {
+            // A pass length that was given goes along with the resolution, as the default one does.
+            "resolution" => {
+                let scale = changed.kernel.resolution / options.kernel.resolution;
+                let length = &mut changed.kernel.pass_length;
+                *length = length.map(|length| length * scale);
+            }
+            // A finer set is no coarser.
+            "rotations" => {
+                let rotations = changed.search.rotations;
+                let finer = &mut changed.search.fine_rotations;
+                *finer = finer.map(|finer| finer.max(rotations));
+            }
+            _ => {}
+        }
+        Ok(changed)
+    }
+
+    /// What else is typed for `changed` options of a run with `default` ones to have the change: lengths of molecules and meshes that
+    /// would follow from it otherwise, and a finer set of rotations that it has made finer still.
     pub fn companions(&self, default: &DockOptions, changed: &DockOptions) -> String {
-        match (self, changed.pass_length, changed.fine_rotations) {
-            (Self::Resolution(_), Some(length), _) => format!(" --pass-length {length}"),
-            (Self::Rotations(_), _, Some(finer)) if default.fine_rotations != Some(finer) => {
+        let (pass_length, finer) = (changed.kernel.pass_length, changed.search.fine_rotations);
+        match (self.option, pass_length, finer) {
+            ("resolution", Some(length), _) => format!(" --pass-length {length}"),
+            ("rotations", _, Some(finer)) if default.search.fine_rotations != Some(finer) => {
                 format!(" --fine-rotations {finer}")
             }
-            (Self::SampleGrid(_), ..) => format!(" --offset {}", changed.offset),
+            ("sample_grid", ..) => format!(" --offset {}", changed.kernel.offset),
             _ => String::new(),
         }
     }
 
     /// As it is typed.
     pub fn argument(&self) -> String {
-        match self {
-            Self::Tolerance(value) => format!("--tolerance {value}"),
-            Self::Precision(value) => format!("--precision {}", value.name()),
-            Self::Spacing(value) => format!("--spacing {value}"),
-            Self::Resolution(value) => format!("--resolution {value}"),
-            Self::Rotations(value) => format!("--rotations {value}"),
-            Self::FineRotations(value) => format!("--fine-rotations {value}"),
-            Self::PerRotation(value) => format!("--per-rotation {value}"),
-            Self::Refine(value) => format!("--refine {value}"),
-            Self::SampleGrid(value) => format!("--sample-grid {value}^3"),
-        }
+        let long = definition(self.option).map_or(self.option, Definition::long);
+        format!("--{long} {}", self.value)
     }
 }
 

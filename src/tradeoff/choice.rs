@@ -115,16 +115,13 @@ pub fn choose(
         predicted_error = Some(rung.error);
     }
     // The rotations are left open: few are quickly planned.
-    let draft = preparer.prepare(&DockOptions {
-        rotations: 4,
-        ..options.clone()
-    })?;
+    let draft = preparer.prepare(&options.changed(|options| options.search.rotations = 4))?;
     let work = Workload::of(&draft.plan);
     let threads = draft.plan.most_in_flight();
     if let Some(budget) = wanted.budget {
-        let most = options.fine_rotations.unwrap_or(MAX_ROTATIONS);
+        let most = options.search.fine_rotations.unwrap_or(MAX_ROTATIONS);
         let range = MIN_ROTATIONS..=most.clamp(MIN_ROTATIONS, MAX_ROTATIONS);
-        options.rotations = model
+        options.search.rotations = model
             .rotations_within(&work, budget, threads, range)
             .map_err(|needed| ChoiceError::Budget {
                 budget,
@@ -136,7 +133,7 @@ pub fn choose(
         accuracy: wanted.accuracy,
         budget_seconds: wanted.budget,
         cost_model: source.to_owned(),
-        predicted_seconds: model.seconds(&work, options.rotations, threads),
+        predicted_seconds: model.seconds(&work, options.search.rotations, threads),
         predicted_error,
     })
 }

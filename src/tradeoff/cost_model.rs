@@ -58,8 +58,6 @@ const CROWDING: f64 = 0.7;
 const TOUCHING: f64 = 15.0;
 /// Share of the poses that are scored for each unit of the tolerance, likewise.
 const DOUBTFUL: f64 = 5.0;
-/// Time that rescoring a pose takes where it is not relaxed, as a share of the time where it is: as timed on the example pair.
-const UNRELAXED: f64 = 0.25;
 /// A rotation, or preparing, in double precision against single. As measured on the example pair.
 pub const DOUBLE: f64 = 2.1;
 /// A finer rotation in rotations: it shares the ligand's transform with no other. As measured on the example pair.
@@ -177,7 +175,7 @@ pub struct Workload {
     pub per_rotation: f64,
     /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is listed.
     pub doubtful: f64,
-    /// Poses rescored, one that is not relaxed counted in part.
+    /// Poses rescored, each times the share of the pose terms' time that the acting terms take.
     pub rescored: f64,
     /// Poses refined.
     pub refined: f64,
@@ -204,36 +202,30 @@ impl Workload {
             probed += 1;
         }
         let on = |effect: Effect| f64::from(u8::from(plan.is_on(effect)));
-        let poses = options.poses as f64;
-        let asked = plan.asked();
+        let poses = options.search.poses as f64;
         Self {
             grid: points * points.log2(),
             rank: expected_rank(plan),
-            precision: match options.precision {
+            precision: match options.search.precision {
                 Precision::Single => 1.0,
                 Precision::Double => DOUBLE,
             },
             fine: options
+                .search
                 .fine_rotations
-                .map_or(0.0, |finer| options.fine_share * finer as f64),
+                .map_or(0.0, |finer| options.search.fine_share * finer as f64),
             modes: plan.modes as f64,
             effects: Effect::ALL.into_iter().map(on).sum(),
             pairs: TOUCHING * (ligand.len() as f64).sqrt() * near as f64 / probed.max(1) as f64,
             ligand: ligand.len() as f64,
             poses,
-            per_rotation: options.per_rotation as f64,
-            doubtful: if options.every_pose {
+            per_rotation: options.search.per_rotation as f64,
+            doubtful: if options.ranking.no_cluster {
                 1.0
             } else {
-                DOUBTFUL * options.tolerance
+                DOUBTFUL * options.kernel.tolerance
             },
-            rescored: if asked.relaxes() {
-                poses
-            } else if asked.any() {
-                UNRELAXED * poses
-            } else {
-                0.0
-            },
+            rescored: plan.rescoring().time_share() * poses,
             refined: (plan.refined() as f64).min(poses),
         }
     }
@@ -248,10 +240,11 @@ impl Workload {
     }
 }
 
-/// Fields that a tolerance needs: two of shape, two of electrostatics, three of the contact potential at 1e-2, fewer where more error is
-/// allowed, and where all balls are alike one.
+/// Number of components that a tolerance needs.
+///
+/// At 1e-2 each effect needs those of its definition, and shape one where all balls are alike. Where more error is allowed, fewer do.
 fn expected_rank(plan: &DockPlan) -> f64 {
-    let tolerance = plan.options.tolerance;
+    let tolerance = plan.options.kernel.tolerance;
     let share = match tolerance {
         tolerance if tolerance >= 0.1 => 0.6,
         tolerance if tolerance >= 0.03 => 0.85,
@@ -259,18 +252,13 @@ fn expected_rank(plan: &DockPlan) -> f64 {
         _ => 1.15,
     };
     let alike = plan.radii == [1, 1];
-    let at_default = [
-        (Effect::Shape, if alike { 1.0 } else { 2.0 }),
-        (Effect::Electrostatics, 2.0),
-        (Effect::Contact, 3.0),
-        (Effect::Restraint, 1.0),
-    ];
-    let fields: f64 = at_default
-        .into_iter()
-        .filter(|(effect, _)| plan.is_on(*effect))
-        .map(|(_, fields)| fields)
-        .sum();
-    (share * fields).max(1.0)
+    let components = |effect: Effect| match effect {
+        Effect::Shape if alike => 1.0,
+        _ => effect.definition().components,
+    };
+    let on = Effect::ALL.into_iter().filter(|effect| plan.is_on(*effect));
+    let components: f64 = on.map(components).sum();
+    (share * components).max(1.0)
 }
 
 /// A setting of the fast path with the error that it makes.
@@ -324,10 +312,10 @@ impl Rung {
 
     /// Options with this setting.
     pub fn apply(self, options: &mut DockOptions) {
-        options.tolerance = self.tolerance;
-        options.spacing = Some(self.spacing * options.resolution);
+        options.kernel.tolerance = self.tolerance;
+        options.kernel.spacing = Some(self.spacing * options.kernel.resolution);
         if self.precision == Precision::Double {
-            options.precision = Precision::Double;
+            options.search.precision = Precision::Double;
         }
     }
 }
@@ -385,7 +373,7 @@ mod tests {
         let default = DockOptions::default();
         let mut first = default.clone();
         LADDER[0].apply(&mut first);
-        assert_eq!(first.tolerance, default.tolerance);
+        assert_eq!(first.kernel.tolerance, default.kernel.tolerance);
         assert_eq!(Rung::within(1e-9), None);
     }
 }

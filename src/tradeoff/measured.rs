@@ -13,23 +13,21 @@ use serde::Serialize;
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::StageTime;
 use crate::options::DockOptions;
-use crate::tradeoff::settings::Setting;
+use crate::tradeoff::settings::{Refused, Setting};
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
-/// Interface RMSD in Å up to which a pose is near-native.
-pub const NEAR_NATIVE: f64 = 2.5;
 
 /// How a setting ranks poses near the known complex, by rows of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NativeRanks {
-    /// Rank of the first pose that CAPRI calls acceptable or better.
+    /// Rank of the first acceptable pose ([`Criterion`](crate::evaluate::Criterion)).
     pub first_acceptable: Option<usize>,
-    /// Rank of the first pose whose interface RMSD is at most [`NEAR_NATIVE`].
+    /// Rank of the first near-native pose.
     pub first_near_native: Option<usize>,
-    /// Acceptable or better ones among the first 100.
+    /// Acceptable poses among the first 100.
     pub acceptable: usize,
-    /// Near-native ones among the first 100.
+    /// Near-native poses among the first 100.
     pub near_native: usize,
 }
 
@@ -88,18 +86,16 @@ impl Measured {
     /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
     pub fn same_score(&self, default: &DockOptions) -> bool {
         let options = &self.setting.options;
-        (options.resolution, options.pass_length, options.sample_grid)
-            == (default.resolution, default.pass_length, default.sample_grid)
+        (
+            options.kernel.resolution,
+            options.kernel.pass_length,
+            options.sampling.sample_grid,
+        ) == (
+            default.kernel.resolution,
+            default.kernel.pass_length,
+            default.sampling.sample_grid,
+        )
     }
-}
-
-/// A setting that could not be run.
-#[derive(Clone, Debug, Serialize)]
-pub struct Refused {
-    /// Its name.
-    pub setting: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// All that a sweep measured.

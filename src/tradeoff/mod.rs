@@ -7,21 +7,16 @@
 
 pub mod advice;
 mod agreement;
-mod axis;
 pub mod calibrate;
 mod change;
-pub mod chart;
 pub mod choice;
 pub mod cost_model;
-pub mod drawing;
-mod frame;
 mod front;
 pub mod measured;
 pub mod plot;
-mod raster;
 pub mod settings;
 pub mod sweep;
 
-pub use measured::{Measured, Refused, Tradeoff};
-pub use settings::{Knob, Setting};
+pub use measured::{Measured, Tradeoff};
+pub use settings::{Parameter, Refused, Setting};
 pub use sweep::{SweepProgress, sweep};

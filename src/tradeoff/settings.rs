@@ -1,84 +1,191 @@
-//! The settings of a sweep: each knob on its own around a default, and combinations.
+//! The settings of a sweep: each parameter on its own around a default, and combinations.
 
+use crate::error::SearchError;
+use crate::options::DockOptions;
+use crate::options::SampleGrid;
+use crate::options::definition::{Definition, Scope, definition};
+use crate::options::{MAX_PER_AXIS, check::name_of};
+use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
+use clap::ValueEnum;
 use serde::Serialize;
 
-use crate::mesh::MAX_PER_AXIS;
-use crate::options::DockOptions;
-use crate::options::Precision;
-use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
-
 /// What a setting changes of the default.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Knob {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
     /// Nothing.
     Default,
     /// What agreement is measured by: the default with the most rotations of the sweep.
     Reference,
-    /// Error allowed to the fast path, from which the rank of the lifted axis, the spreading width, the kernel's window and the spacing follow.
-    Tolerance,
-    /// Precision of the fast path.
-    Precision,
-    /// Spacing of the translation grid, and so the modes kept.
-    Spacing,
-    /// Resolution of the score, and with it the spacing: another score rather than a better or worse one.
-    Resolution,
-    /// Rotations.
-    Rotations,
-    /// A finer search about the best rotations.
-    CoarseToFine,
-    /// Peaks kept of each rotation.
-    PerRotation,
-    /// Poses refined off the grid.
-    Refine,
-    /// Nodes of the grid that meshes are sampled on.
-    SampleGrid,
+    /// The option of this name.
+    Option(&'static str),
     /// Several at once.
     Combination,
 }
 
-impl Knob {
-    /// The knobs that a sweep can be limited to.
-    pub const SWEPT: [Self; 10] = [
-        Self::Tolerance,
-        Self::Precision,
-        Self::Spacing,
-        Self::Resolution,
-        Self::Rotations,
-        Self::CoarseToFine,
-        Self::PerRotation,
-        Self::Refine,
-        Self::SampleGrid,
-        Self::Combination,
+/// An option that a sweep moves.
+struct Swept {
+    option: &'static str,
+    /// Its values around a default, each with what goes along with it.
+    values: fn(&DockOptions, Planned) -> Vec<Vec<Change>>,
+}
+
+/// The options that a sweep moves, in its order.
+const SWEPT: [Swept; 9] = [
+    // From it follow the rank of the lifted axis, the spreading width, the kernel's window and the spacing.
+    Swept {
+        option: "tolerance",
+        values: |_, _| each("tolerance", [0.1, 3e-2, 1e-2, 1e-3]),
+    },
+    Swept {
+        option: "precision",
+        values: |_, _| {
+            let precisions = crate::options::Precision::value_variants();
+            each("precision", precisions.iter().map(|&one| name_of(one)))
+        },
+    },
+    // And so the modes kept.
+    Swept {
+        option: "spacing",
+        values: |_, planned| {
+            let spacings = [1.15, 0.85, 0.7].map(|factor| spacing(planned, factor));
+            spacings.map(|change| vec![change]).into()
+        },
+    },
+    // And with it the spacing: another score rather than a better or worse one.
+    Swept {
+        option: "resolution",
+        values: |default, _| {
+            let factors = [7.0 / 9.0, 11.0 / 9.0, 4.0 / 3.0];
+            factors.map(|factor| resolution(default, factor)).into()
+        },
+    },
+    Swept {
+        option: "rotations",
+        values: |default, _| {
+            let factors = [1.0 / 6.0, 1.0 / 3.0, 2.0];
+            let counts = factors.map(|factor| rotations(default, factor));
+            counts.map(|change| vec![change]).into()
+        },
+    },
+    Swept {
+        option: "fine_rotations",
+        values: |default, _| {
+            let finer = |factor| rounded_to_fours(factor * default.search.rotations as f64);
+            each("fine_rotations", [4.0, 16.0].map(finer))
+        },
+    },
+    Swept {
+        option: "per_rotation",
+        values: |_, _| each("per_rotation", [1, 10]),
+    },
+    Swept {
+        option: "refine",
+        values: |_, planned| {
+            let poses = [0, 300].into_iter();
+            each("refine", poses.filter(|&poses| poses != planned.refined))
+        },
+    },
+    // Molecules are balls as they come.
+    Swept {
+        option: "sample_grid",
+        values: |default, _| {
+            let finer = |grid: SampleGrid, factor: f64| {
+                let nodes = (grid.per_axis as f64 * factor).round() as usize;
+                let per_axis = nodes.min(MAX_PER_AXIS);
+                SampleGrid { per_axis }
+            };
+            default.sampling.sample_grid.map_or_else(Vec::new, |grid| {
+                each("sample_grid", [0.75, 1.5].map(|factor| finer(grid, factor)))
+            })
+        },
+    },
+];
+
+/// A change of an option to each of some values.
+fn each(option: &'static str, values: impl IntoIterator<Item = impl ToString>) -> Vec<Vec<Change>> {
+    let values = values.into_iter();
+    values
+        .map(|value| vec![Change::new(option, value)])
+        .collect()
+}
+
+/// So many times the default's rotations.
+fn rotations(default: &DockOptions, factor: f64) -> Change {
+    let rotations = rounded_to_fours(factor * default.search.rotations as f64);
+    Change::new("rotations", rotations)
+}
+
+/// So many times the planned spacing.
+fn spacing(planned: Planned, factor: f64) -> Change {
+    Change::new("spacing", three_digits(factor * planned.spacing))
+}
+
+/// So many times the default's resolution; a spacing that was given goes along.
+fn resolution(default: &DockOptions, factor: f64) -> Vec<Change> {
+    let kernel = &default.kernel;
+    let resolution = three_digits(factor * kernel.resolution);
+    let mut changes = vec![Change::new("resolution", resolution)];
+    if let Some(spacing) = kernel.spacing {
+        changes.push(Change::new("spacing", three_digits(factor * spacing)));
+    }
+    changes
+}
+
+/// Several changes at once, each with the setting's name.
+fn combinations(default: &DockOptions, planned: Planned) -> [(&'static str, Vec<Change>); 3] {
+    let tolerance = |value: f64| Change::new("tolerance", value);
+    let mut coarsest = resolution(default, 4.0 / 3.0);
+    coarsest.extend([
+        rotations(default, 1.0 / 6.0),
+        tolerance(0.1),
+        Change::new("per_rotation", 1),
+    ]);
+    let coarse = vec![rotations(default, 1.0 / 3.0), tolerance(3e-2)];
+    let fine = vec![
+        rotations(default, 2.0),
+        tolerance(1e-3),
+        spacing(planned, 0.85),
     ];
+    [("coarsest", coarsest), ("coarse", coarse), ("fine", fine)]
+}
+
+impl Parameter {
+    /// The parameters that a sweep can be limited to.
+    pub fn all() -> Vec<Self> {
+        let options = SWEPT.iter().map(|swept| Self::Option(swept.option));
+        options.chain([Self::Combination]).collect()
+    }
 
     /// Name as on the command line and in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Default => "default",
             Self::Reference => "reference",
-            Self::Tolerance => "tolerance",
-            Self::Precision => "precision",
-            Self::Spacing => "spacing",
-            Self::Resolution => "resolution",
-            Self::Rotations => "rotations",
-            Self::CoarseToFine => "coarse-to-fine",
-            Self::PerRotation => "per-rotation",
-            Self::Refine => "refine",
-            Self::SampleGrid => "sample-grid",
+            Self::Option(name) => definition(name).map_or(name, Definition::long),
             Self::Combination => "combination",
         }
     }
 }
 
-impl std::str::FromStr for Knob {
+impl Parameter {
+    /// The inputs that it has an effect on.
+    pub fn scope(self) -> Scope {
+        match self {
+            Self::Option(name) => definition(name).map_or(Scope::Both, Definition::scope),
+            _ => Scope::Both,
+        }
+    }
+}
+
+impl std::str::FromStr for Parameter {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let known = Self::SWEPT.into_iter().find(|knob| knob.name() == text);
+        let known = Self::all().into_iter().find(|known| known.name() == text);
         known.ok_or_else(|| {
-            let names = Self::SWEPT.map(Self::name).join(", ");
-            format!("there is no knob '{text}'; there are {names}")
+            let names: Vec<&str> = Self::all().into_iter().map(Self::name).collect();
+            let names = names.join(", ");
+            format!("there is no parameter '{text}'; there are {names}")
         })
     }
 }
@@ -89,11 +196,50 @@ pub struct Setting {
     /// What it is called.
     pub name: String,
     /// What it changes.
-    pub knob: Knob,
+    pub parameter: Parameter,
     /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the default.
     pub arguments: String,
     /// All options.
     pub options: DockOptions,
+}
+
+/// A setting that could not be run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    /// Its name.
+    pub setting: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What changes are typed as, without dashes.
+fn typed(changes: &[Change]) -> String {
+    let typed: Vec<String> = changes.iter().map(Change::argument).collect();
+    typed.join(" ").replace("--", "")
+}
+
+impl Setting {
+    /// The default with some changes.
+    fn new(
+        parameter: Parameter,
+        name: &str,
+        changes: &[Change],
+        default: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        let mut options = default.clone();
+        for change in changes {
+            options = change.apply(&options)?;
+        }
+        let arguments = changes
+            .iter()
+            .map(|change| change.argument() + &change.companions(default, &options));
+        Ok(Self {
+            name: name.to_owned(),
+            parameter,
+            arguments: arguments.collect::<Vec<_>>().join(" "),
+            options,
+        })
+    }
 }
 
 /// Rotations of the reference, as a multiple of the default's.
@@ -108,119 +254,44 @@ pub struct Planned {
     pub refined: usize,
 }
 
-/// The settings of a sweep of `knobs` around `default`, which comes first, and the reference second.
-pub fn settings(default: &DockOptions, planned: Planned, knobs: &[Knob]) -> Vec<Setting> {
-    let mut settings: Vec<Setting> = Vec::new();
-    let mut add = |knob: Knob, name: Option<&str>, changes: &[Change]| {
-        let mut options = default.clone();
-        for change in changes {
-            change.apply(&mut options);
+/// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and settings out of range.
+///
+/// # Errors
+/// [`SearchError::Option`] when the reference is out of range.
+pub fn settings(
+    default: &DockOptions,
+    planned: Planned,
+    parameters: &[Parameter],
+) -> Result<(Vec<Setting>, Vec<Refused>), SearchError> {
+    let most = REFERENCE_ROTATIONS * default.search.rotations;
+    let most = [Change::new("rotations", most)];
+    let mut settings = vec![
+        Setting::new(Parameter::Default, "default", &[], default)?,
+        Setting::new(Parameter::Reference, "reference", &most, default)?,
+    ];
+    let mut refused = Vec::new();
+    let mut add = |parameter, name: &str, changes: &[Change]| {
+        if !parameters.contains(&parameter) {
+            return;
         }
-        let typed: Vec<String> = changes.iter().map(Change::argument).collect();
-        let companions = |change: &Change| change.companions(default, &options);
-        let arguments = changes
-            .iter()
-            .zip(&typed)
-            .map(|(change, own)| own.clone() + &companions(change));
-        let setting = Setting {
-            name: name.map_or_else(|| typed.join(" ").replace("--", ""), str::to_owned),
-            knob,
-            arguments: arguments.collect::<Vec<_>>().join(" "),
-            options,
-        };
-        let known = settings
-            .iter()
-            .any(|other| other.options == setting.options);
-        if !known {
-            settings.push(setting);
+        match Setting::new(parameter, name, changes, default) {
+            Ok(new) if settings.iter().any(|known| known.options == new.options) => {}
+            Ok(new) => settings.push(new),
+            Err(error) => refused.push(Refused {
+                setting: name.to_owned(),
+                reason: error.to_string(),
+            }),
         }
     };
-    let rotations =
-        |factor: f64| Change::Rotations(rounded_to_fours(factor * default.rotations as f64));
-    let resolution = |factor: f64| {
-        let mut changes = vec![Change::Resolution(three_digits(
-            factor * default.resolution,
-        ))];
-        if let Some(spacing) = default.spacing {
-            changes.push(Change::Spacing(three_digits(factor * spacing)));
-        }
-        changes
-    };
-    let spacing = |factor: f64| Change::Spacing(three_digits(factor * planned.spacing));
-    add(Knob::Default, Some("default"), &[]);
-    let most = Change::Rotations(REFERENCE_ROTATIONS * default.rotations);
-    add(Knob::Reference, Some("reference"), &[most]);
-    for knob in Knob::SWEPT.into_iter().filter(|knob| knobs.contains(knob)) {
-        match knob {
-            Knob::Tolerance => {
-                for tolerance in [0.1, 3e-2, 1e-2, 1e-3] {
-                    add(knob, None, &[Change::Tolerance(tolerance)]);
-                }
-            }
-            Knob::Precision => {
-                for precision in Precision::ALL {
-                    add(knob, None, &[Change::Precision(precision)]);
-                }
-            }
-            Knob::Spacing => {
-                for factor in [1.15, 0.85, 0.7] {
-                    add(knob, None, &[spacing(factor)]);
-                }
-            }
-            Knob::Resolution => {
-                for factor in [7.0 / 9.0, 11.0 / 9.0, 4.0 / 3.0] {
-                    add(knob, None, &resolution(factor));
-                }
-            }
-            Knob::Rotations => {
-                for factor in [1.0 / 6.0, 1.0 / 3.0, 2.0] {
-                    add(knob, None, &[rotations(factor)]);
-                }
-            }
-            Knob::CoarseToFine => {
-                for factor in [4.0, 16.0] {
-                    let finer = rounded_to_fours(factor * default.rotations as f64);
-                    add(knob, None, &[Change::FineRotations(finer)]);
-                }
-            }
-            Knob::PerRotation => {
-                for peaks in [1, 10] {
-                    add(knob, None, &[Change::PerRotation(peaks)]);
-                }
-            }
-            Knob::Refine => {
-                for poses in [0, 300]
-                    .into_iter()
-                    .filter(|&poses| poses != planned.refined)
-                {
-                    add(knob, None, &[Change::Refine(poses)]);
-                }
-            }
-            Knob::SampleGrid => {
-                // Molecules are balls as they come.
-                for factor in default.sample_grid.map_or(&[][..], |_| &[0.75, 1.5]) {
-                    let nodes = default.sample_grid.unwrap_or(1) as f64 * factor;
-                    let nodes = (nodes.round() as usize).min(MAX_PER_AXIS);
-                    add(knob, None, &[Change::SampleGrid(nodes)]);
-                }
-            }
-            Knob::Combination => {
-                let mut coarsest = resolution(4.0 / 3.0);
-                coarsest.extend([
-                    rotations(1.0 / 6.0),
-                    Change::Tolerance(0.1),
-                    Change::PerRotation(1),
-                ]);
-                add(knob, Some("coarsest"), &coarsest);
-                let coarse = [rotations(1.0 / 3.0), Change::Tolerance(3e-2)];
-                add(knob, Some("coarse"), &coarse);
-                let fine = [rotations(2.0), Change::Tolerance(1e-3), spacing(0.85)];
-                add(knob, Some("fine"), &fine);
-            }
-            Knob::Default | Knob::Reference => {}
+    for swept in &SWEPT {
+        for changes in (swept.values)(default, planned) {
+            add(Parameter::Option(swept.option), &typed(&changes), &changes);
         }
     }
-    settings
+    for (name, changes) in combinations(default, planned) {
+        add(Parameter::Combination, name, &changes);
+    }
+    Ok((settings, refused))
 }
 
 #[cfg(test)]
@@ -232,7 +303,7 @@ mod tests {
             spacing: 2.25,
             refined: 0,
         };
-        settings(default, planned, &Knob::SWEPT)
+        settings(default, planned, &Parameter::all()).unwrap().0
     }
 
     #[test]
@@ -246,20 +317,58 @@ mod tests {
             assert!(!settings[..index].iter().any(same), "{}", setting.name);
         }
         let named = |name: &str| settings.iter().find(|setting| setting.name == name);
-        assert_eq!(named("resolution 3.5").unwrap().options.spacing, None);
-        assert_eq!(named("rotations 600").unwrap().options.rotations, 600);
+        assert_eq!(
+            named("resolution 3.5").unwrap().options.kernel.spacing,
+            None
+        );
+        assert_eq!(
+            named("rotations 600").unwrap().options.search.rotations,
+            600
+        );
         assert!(named("tolerance 0.01").is_none(), "that is the default");
-        assert!(settings.iter().all(|s| s.knob != Knob::SampleGrid));
+        assert!(
+            settings
+                .iter()
+                .all(|s| s.parameter != Parameter::Option("sample_grid"))
+        );
+    }
+
+    /// Each name of a parameter is one of an option's.
+    #[test]
+    fn what_is_swept_is_an_option() {
+        for parameter in Parameter::all() {
+            if let Parameter::Option(name) = parameter {
+                assert!(definition(name).is_some(), "{name}");
+            }
+            assert_eq!(parameter.name().parse(), Ok(parameter));
+        }
+        assert!("skill".parse::<Parameter>().is_err());
+    }
+
+    /// A value that no option can have is left out, and a reference that there cannot be is an error.
+    #[test]
+    fn settings_out_of_range_are_refused() {
+        let planned = Planned {
+            spacing: 2.25,
+            refined: 0,
+        };
+        let of = |rotations| {
+            let default =
+                DockOptions::default().changed(|options| options.search.rotations = rotations);
+            settings(&default, planned, &Parameter::all())
+        };
+        let (_, refused) = of(2_000_000).unwrap();
+        assert_eq!(refused[0].setting, "fine-rotations 32000000");
+        assert!(of(9_000_000).is_err());
     }
 
     /// What is typed for a setting is all that it changes.
     #[test]
     fn arguments_name_what_else_changes() {
-        let settings = swept(&DockOptions {
-            pass_length: Some(9.0),
-            fine_rotations: Some(7200),
-            ..DockOptions::default()
-        });
+        let settings = swept(&DockOptions::default().changed(|options| {
+            options.kernel.pass_length = Some(9.0);
+            options.search.fine_rotations = Some(7200);
+        }));
         let typed = |name: &str| {
             let mut all = settings.iter();
             all.find(|s| s.name == name).unwrap().arguments.clone()
@@ -276,11 +385,10 @@ mod tests {
     #[test]
     fn precision_moves_either_way() {
         for (default, other) in [("single", "double"), ("double", "single")] {
-            let settings = swept(&DockOptions {
-                precision: default.parse().unwrap(),
-                ..DockOptions::default()
-            });
-            let moved = settings.iter().filter(|s| s.knob == Knob::Precision);
+            let settings = swept(&DockOptions::default().with("precision", default).unwrap());
+            let moved = settings
+                .iter()
+                .filter(|s| s.parameter == Parameter::Option("precision"));
             let moved: Vec<&str> = moved.map(|s| s.arguments.as_str()).collect();
             assert_eq!(moved, [format!("--precision {other}")]);
         }
@@ -288,24 +396,28 @@ mod tests {
 
     #[test]
     fn given_lengths_go_along_with_the_resolution_and_meshes_have_a_grid() {
-        let settings = swept(&DockOptions {
-            spacing: Some(2.0),
-            pass_length: Some(9.0),
-            sample_grid: Some(64),
-            resolution: 4.5,
-            ..DockOptions::default()
-        });
+        let settings = swept(&DockOptions::default().changed(|options| {
+            options.kernel.spacing = Some(2.0);
+            options.kernel.pass_length = Some(9.0);
+            options.sampling.sample_grid = Some(SampleGrid { per_axis: 64 });
+            options.kernel.resolution = 4.5;
+        }));
         let finer = settings
             .iter()
-            .find(|s| s.knob == Knob::Resolution)
+            .find(|s| s.parameter == Parameter::Option("resolution"))
             .unwrap();
         assert_eq!(
             finer.arguments,
             "--resolution 3.5 --pass-length 7 --spacing 1.56"
         );
-        assert_eq!(finer.options.pass_length, Some(7.0));
-        let grids = settings.iter().filter(|s| s.knob == Knob::SampleGrid);
-        let grids: Vec<_> = grids.map(|s| s.options.sample_grid).collect();
-        assert_eq!(grids, [Some(48), Some(96)]);
+        assert_eq!(finer.options.kernel.pass_length, Some(7.0));
+        let grids = settings
+            .iter()
+            .filter(|s| s.parameter == Parameter::Option("sample_grid"));
+        let grids: Vec<_> = grids.map(|s| s.options.sampling.sample_grid).collect();
+        assert_eq!(
+            grids,
+            [48, 96].map(|per_axis| Some(SampleGrid { per_axis }))
+        );
     }
 }

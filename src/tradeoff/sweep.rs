@@ -9,15 +9,15 @@ use crate::dock::pair::{Pair, PairError, PreparedPair, Preparer};
 use crate::dock::plan::DockPlan;
 use crate::dock::run::dock;
 use crate::error::SearchError;
-use crate::evaluate::{Capri, Evaluator};
+use crate::evaluate::{Criterion, Evaluator};
 use crate::options::DockOptions;
 use crate::options::Precision;
 use crate::progress::Progress;
 use crate::rank::cluster::RigidBody;
 use crate::tradeoff::agreement::{agreement, compare};
 use crate::tradeoff::front::front;
-use crate::tradeoff::measured::{FIRST, Measured, NEAR_NATIVE, NativeRanks, Refused, Tradeoff};
-use crate::tradeoff::settings::{Knob, Planned, Setting, settings};
+use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Tradeoff};
+use crate::tradeoff::settings::{Parameter, Planned, Refused, Setting, settings};
 
 /// Who is told how far a sweep has come.
 pub trait SweepProgress: Progress {
@@ -31,7 +31,7 @@ pub trait SweepProgress: Progress {
     fn refused(&self, refused: &Refused);
 }
 
-/// Sweeps `knobs` around `default`, whose lengths, of meshes, are all filled in, and which `first` is prepared with.
+/// Sweeps `parameters` around `default`, whose lengths, of meshes, are all filled in, and which `first` is prepared with.
 ///
 /// # Errors
 /// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are listed with the reason.
@@ -39,7 +39,7 @@ pub fn sweep(
     pair: Pair,
     first: PreparedPair,
     default: &DockOptions,
-    knobs: &[Knob],
+    parameters: &[Parameter],
     evaluator: Option<&Evaluator>,
     progress: &dyn SweepProgress,
 ) -> Result<Tradeoff, PairError> {
@@ -51,12 +51,17 @@ pub fn sweep(
     let body = RigidBody::new(&first.points);
     let mut refused: Vec<Refused> = Vec::new();
     let mut ready: Vec<(Setting, PreparedPair)> = Vec::new();
-    let mut settings = settings(default, planned, knobs).into_iter();
+    let (settings, out_of_range) = settings(default, planned, parameters)?;
+    for left_out in out_of_range {
+        progress.refused(&left_out);
+        refused.push(left_out);
+    }
+    let mut settings = settings.into_iter();
     ready.extend(settings.next().map(|default| (default, first)));
     for setting in settings {
         match preparer.prepare(&setting.options) {
             Ok(prepared) => ready.push((setting, prepared)),
-            Err(error) if setting.knob == Knob::Reference => return Err(error),
+            Err(error) if setting.parameter == Parameter::Reference => return Err(error),
             Err(error) => {
                 let left_out = Refused {
                     setting: setting.name,
@@ -68,18 +73,20 @@ pub fn sweep(
         }
     }
     // Nothing is searched with it, so it needs no memory for that.
-    let exact = preparer.prepare(&DockOptions {
-        tolerance: default.tolerance.min(Precision::Single.finest_tolerance()),
-        memory: None,
-        ..default.clone()
-    })?;
+    let exact = preparer.prepare(&default.changed(|options| {
+        let tolerance = &mut options.kernel.tolerance;
+        *tolerance = tolerance.min(Precision::Single.finest_tolerance());
+        options.machine.memory = None;
+    }))?;
     let mut reference: Option<Reference> = None;
     let mut runs: Vec<Run> = Vec::new();
     for (index, (setting, prepared)) in ready.iter().enumerate() {
         progress.runs(index + 1, setting);
         let (measured, poses) = match run(setting, prepared, evaluator, progress) {
             Ok(run) => run,
-            Err(error) if matches!(setting.knob, Knob::Default | Knob::Reference) => {
+            Err(error)
+                if matches!(setting.parameter, Parameter::Default | Parameter::Reference) =>
+            {
                 return Err(error.into());
             }
             Err(error) => {
@@ -92,9 +99,9 @@ pub fn sweep(
                 continue;
             }
         };
-        match setting.knob {
-            Knob::Default => progress.begins(ready.len(), estimate(&measured, &ready)),
-            Knob::Reference => {
+        match setting.parameter {
+            Parameter::Default => progress.begins(ready.len(), estimate(&measured, &ready)),
+            Parameter::Reference => {
                 reference = Some(Reference {
                     scores: exact_scores(&exact.plan, &poses)?,
                     poses: poses.clone(),
@@ -111,13 +118,13 @@ pub fn sweep(
             continue;
         };
         // The default ran before there was a reference to compare it with.
-        let new = if setting.knob == Knob::Reference {
+        let new = if setting.parameter == Parameter::Reference {
             0
         } else {
             runs.len() - 1
         };
         for run in &mut runs[new..] {
-            run.set_against(reference, &body, default.cluster_radius)?;
+            run.set_against(reference, &body, default.ranking.cluster_radius)?;
             progress.ran(&run.measured);
         }
     }
@@ -126,7 +133,7 @@ pub fn sweep(
     Ok(Tradeoff {
         measured,
         refused,
-        radius: default.cluster_radius,
+        radius: default.ranking.cluster_radius,
         with_native: evaluator.is_some(),
     })
 }
@@ -207,25 +214,20 @@ fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, SearchError
 }
 
 fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
-    let qualities: Vec<(bool, bool)> = outcome
-        .poses
-        .par_iter()
-        .map(|row| {
-            let quality = evaluator.evaluate(&row.pose);
-            (
-                quality.capri != Capri::Incorrect,
-                quality.irmsd <= NEAR_NATIVE,
-            )
-        })
-        .collect();
-    let rank = |near: fn(&(bool, bool)) -> bool| qualities.iter().position(near).map(|at| at + 1);
-    let count =
-        |near: fn(&&(bool, bool)) -> bool| qualities.iter().take(FIRST).filter(near).count();
+    let poses = outcome.poses.par_iter();
+    let qualities: Vec<_> = poses.map(|row| evaluator.evaluate(&row.pose)).collect();
+    let met = |criterion: Criterion| {
+        qualities
+            .iter()
+            .map(move |quality| criterion.is_met(quality))
+    };
+    let rank = |criterion| met(criterion).position(|met| met).map(|place| place + 1);
+    let count = |criterion| met(criterion).take(FIRST).filter(|met| *met).count();
     NativeRanks {
-        first_acceptable: rank(|near| near.0),
-        first_near_native: rank(|near| near.1),
-        acceptable: count(|near| near.0),
-        near_native: count(|near| near.1),
+        first_acceptable: rank(Criterion::Acceptable),
+        first_near_native: rank(Criterion::NearNative),
+        acceptable: count(Criterion::Acceptable),
+        near_native: count(Criterion::NearNative),
     }
 }
 
@@ -255,7 +257,7 @@ fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
 /// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among all. The
 /// reference agrees with itself, so it is on neither and beats nothing.
 fn mark_fronts(measured: &mut [Measured], default: &DockOptions) {
-    let other = |run: &Measured| run.setting.knob != Knob::Reference;
+    let other = |run: &Measured| run.setting.parameter != Parameter::Reference;
     let errors: Vec<(f64, Option<f64>)> = measured
         .iter()
         .map(|run| {

@@ -59,15 +59,15 @@ fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
     let tables = [
         (
             "contact",
-            include_str!("../../scoring/src/effect/contact_potential.csv"),
+            include_str!("../../scoring/src/terms/effect/contact_potential.csv"),
         ),
         (
             "fine-contact",
-            include_str!("../../scoring/src/rescoring/fine_contact_potential.csv"),
+            include_str!("../../scoring/src/terms/pose/fine_contact_potential.csv"),
         ),
         (
             "atom-pair",
-            include_str!("../../scoring/src/rescoring/atom_pair_potential.csv"),
+            include_str!("../../scoring/src/terms/pose/atom_pair_potential.csv"),
         ),
     ];
     let options: Vec<String> = tables

@@ -16,16 +16,14 @@ fn named_residues_are_kept_free_or_touched() {
     let number = |value: &Value| value.as_f64().unwrap();
     // Trypsin's loops about its active site, where the inhibitor goes: what they cost an interface if it touches them.
     let sites = "A:57,A:95-99,A:189-195,A:214-220";
-    let options = DockOptions {
-        block_receptor: Some(sites.parse().unwrap()),
-        ..DockOptions::default()
-    };
+    let options = DockOptions::default()
+        .changed(|options| options.restraints.block_receptor = Some(sites.parse().unwrap()));
     let [own, other] = [&receptor, &ligand].map(|path| {
         let input = InputSpec::parse(path).unwrap();
         read(&input, &ReadOptions::default()).unwrap()
     });
     let scene = Scene::new(&own, &other, &options).unwrap();
-    let (engine, terms) = (options.engine(), scene.terms.clone());
+    let (engine, terms) = (options.kernel.engine(), scene.terms.clone());
     let plan = Plan::with_effects(
         &scene.receptor,
         &scene.ligand,
@@ -54,7 +52,7 @@ fn named_residues_are_kept_free_or_touched() {
     assert!(free.iter().all(|row| row["restraint"].is_null()));
     for row in &blocked {
         let own = number(&row["restraint"]);
-        assert!((cost(row) - own).abs() < 1e-6 * number(&row["score"]).abs());
+        assert!((cost(row) - own).abs() < 1e-6 * number(&row["search_score"]).abs());
     }
     let mean = |rows: &[Value]| rows.iter().map(&cost).sum::<f64>() / rows.len() as f64;
     let (before, after) = (mean(&free), mean(&blocked));
@@ -62,22 +60,21 @@ fn named_residues_are_kept_free_or_touched() {
 
     // Fourteen residues attract, which the inhibitor cannot all reach.
     let drawn = rows(&["--active-receptor", sites, "--active-weight", "4000"]);
-    let attracting = DockOptions {
-        active_receptor: options.block_receptor.clone(),
-        active_weight: 1.0,
-        ..DockOptions::default()
-    };
+    let attracting = DockOptions::default().changed(|attracting| {
+        attracting.restraints.active_receptor = options.restraints.block_receptor.clone();
+        attracting.terms.weights.set("active_residues", 1.0);
+    });
     let scene = Scene::new(&own, &other, &attracting).unwrap();
     let rescorer = scene.rescorer(&attracting).unwrap();
     let met = |row: &Value| {
         let rescored = rescorer.score(&pose(row), &mut Workspace::default());
-        rescored.attraction.unwrap()
+        rescored.get("active_residues").unwrap()
     };
     for row in &drawn {
-        assert!((4000.0 * met(row) - number(&row["attraction"])).abs() < 1e-9);
+        assert!((4000.0 * met(row) - number(&row["active_residues"])).abs() < 1e-9);
         assert!(number(&row["restraint"]) > 0.0);
     }
-    assert!(free.iter().all(|row| row["attraction"].is_null()));
+    assert!(free.iter().all(|row| row["active_residues"].is_null()));
     let mean = |rows: &[Value]| rows.iter().map(&met).sum::<f64>() / rows.len() as f64;
     let (before, after) = (mean(&free), mean(&drawn));
     assert!(after > 0.6 && after > before + 0.1, "{before} {after}");
@@ -118,6 +115,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
             "--poses",
             "40",
             "--no-cluster",
+            "--diagnostics",
             "--peptidase-weight",
             weight,
         ];
@@ -152,7 +150,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
     assert!(words.contains("family S1 like trypsin (catalytic A:57, A:195)"));
     let number = |text: &String| text.parse::<f64>().unwrap();
     let place = |row: &std::collections::BTreeMap<String, String>| {
-        let parts = ["rotation", "tx", "ty", "tz", "score", "relaxed"];
+        let parts = ["rotation", "tx", "ty", "tz", "search_score", "relaxed"];
         parts.map(|part| row[part].clone())
     };
     let sorted = |rows: &[std::collections::BTreeMap<String, String>]| {
@@ -161,14 +159,14 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
         places
     };
     assert_eq!(sorted(&plain), sorted(&ranked));
-    assert!(plain.iter().all(|row| row["attraction"].is_empty()));
+    assert!(plain.iter().all(|row| row["active_residues"].is_empty()));
     let mut seen = std::collections::BTreeSet::new();
     for row in &ranked {
         let own = plain.iter().find(|other| place(other) == place(row));
         let before = number(&own.unwrap()["pose_score"]);
-        let earned = number(&row["attraction"]);
+        let earned = number(&row["active_residues"]);
         assert!((number(&row["pose_score"]) - before - earned).abs() < 1e-9 * before.abs());
-        seen.insert(row["attraction"].clone());
+        seen.insert(row["active_residues"].clone());
     }
     // None, one or both of the two residues touch.
     let shares = ["0", "500", "1000"].map(str::to_owned);

@@ -1,7 +1,7 @@
 //! Effects on demand: what auto turns on, what an effect that is off leaves untouched, and what cannot be forced.
 
+mod flexible_regions;
 mod known_residues;
-mod loose_chains;
 #[path = "../molecules/mod.rs"]
 mod molecules;
 #[path = "../program/mod.rs"]
@@ -17,8 +17,8 @@ use knotdock::options::DockOptions;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::rescoring::Workspace;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{POSE_TERMS, Workspace};
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use program::succeed;
 use serde_json::Value;
@@ -101,7 +101,7 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
     let number = |value: &Value| value.as_f64().unwrap();
     for row in object["best"].as_array().unwrap().iter().take(1) {
         let terms = ["shape", "electrostatics", "contact"].map(|name| number(&row[name]));
-        let score = number(&row["score"]);
+        let score = number(&row["search_score"]);
         assert!((terms.iter().sum::<f64>() - score).abs() < 1e-9 * score.abs());
         let pose: Vec<String> = ["qw", "qx", "qy", "qz", "tx", "ty", "tz"]
             .iter()
@@ -113,7 +113,7 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
             &["score", &receptor, &ligand, "--pose", &pose, "--json"],
         );
         let again: Value = serde_json::from_str(&again).unwrap();
-        for told in ["missing_residues", "chain_end_residues"] {
+        for told in ["unresolved_residues", "terminus_residues"] {
             assert_eq!(again[told], object["run"]["plan"][told]);
             assert!(again[told][0]["residues"].is_number());
         }
@@ -121,27 +121,14 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {
             assert!((number(&again["terms"][name]) - term).abs() < 1e-6 * score.abs());
         }
-        for name in [
-            "fine_contact",
-            "atom_pair",
-            "relaxed",
-            "attraction",
-            "missing",
-            "chain_ends",
-            "pose_score",
-        ] {
+        let ids = POSE_TERMS.iter().map(|term| term.id);
+        for name in ids.clone().chain(["pose_score"]) {
             assert!((number(&again[name]) - number(&row[name])).abs() < 1e-6 * score.abs());
         }
-        assert_eq!(
-            number(&row["pose_score"]),
-            score
-                + (number(&row["fine_contact"])
-                    + number(&row["atom_pair"])
-                    + number(&row["relaxed"])
-                    + number(&row["attraction"])
-                    + number(&row["missing"])
-                    + number(&row["chain_ends"]))
-        );
+        let sum = ids
+            .map(|id| number(&row[id]))
+            .reduce(|sum, value| sum + value);
+        assert_eq!(number(&row["pose_score"]), score + sum.unwrap());
     }
 }
 

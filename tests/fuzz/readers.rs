@@ -7,7 +7,7 @@ use knotdock::output::pair_table::read_pairs;
 use knotdock::output::poses::PoseTable;
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
-use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
+use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{

@@ -1,6 +1,6 @@
 //! Hard cases of the kernels: x -> 1 in psi, alpha towards 0 and infinity, the low-pass of a sharp ball, skins and lambdas at their ends.
 //!
-//! Numbers of another program are printed by scripts/hard_case_reference.py (mpmath, 34 digits).
+//! Numbers of another program are printed by scripts/reference/hard_case_reference.py (mpmath, 34 digits).
 
 // The reference numbers stand as mpmath prints them.
 #![allow(clippy::excessive_precision)]

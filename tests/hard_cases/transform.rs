@@ -1,7 +1,7 @@
 //! Hard cases of the transforms: tiny and huge frequencies, bumps from a point to a sharp ball, sharply cut lens volumes, nothing to
 //! transform.
 //!
-//! Numbers of another program are printed by scripts/hard_case_reference.py (mpmath, 34 digits).
+//! Numbers of another program are printed by scripts/reference/hard_case_reference.py (mpmath, 34 digits).
 
 // The reference numbers stand as mpmath prints them.
 #![allow(clippy::excessive_precision, clippy::approx_constant)]

@@ -3,10 +3,8 @@
 use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
 use knotdock::dock::scene::Scene;
-use knotdock::mesh::{
-    GivenLengths, MeshOptions, MeshPair, PER_AXIS, RADIUS, RESOLUTION, SampleWeights, sample_pair,
-};
-use knotdock::options::DockOptions;
+use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, RADIUS, RESOLUTION, sample_pair};
+use knotdock::options::{DockOptions, SampleGrid, SampleWeights};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::RankingKernel;
@@ -16,7 +14,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 fn sampled(pair: &Pair) -> MeshPair {
     let options = MeshOptions {
-        per_axis: PER_AXIS,
+        per_axis: SampleGrid::default().per_axis,
         offset: None,
         weights: SampleWeights::Fitted,
         alpha: 2.0,
@@ -28,7 +26,7 @@ fn scorer(meshes: &MeshPair) -> ExactScorer {
     let mut options = DockOptions::default();
     meshes.defaults(&mut options, GivenLengths::default());
     let scene = Scene::of_meshes(meshes, &options).unwrap();
-    let plan = Plan::new(&scene.receptor, &scene.ligand, options.engine()).unwrap();
+    let plan = Plan::new(&scene.receptor, &scene.ligand, options.kernel.engine()).unwrap();
     ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()
 }
 
@@ -107,13 +105,12 @@ fn weights_are_volumes() {
 #[test]
 fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
     let r0 = 0.037;
-    let options = DockOptions {
-        offset: r0,
-        resolution: RESOLUTION * r0,
-        ..DockOptions::default()
-    };
+    let options = DockOptions::default().changed(|options| {
+        options.kernel.offset = r0;
+        options.kernel.resolution = RESOLUTION * r0;
+    });
     let sum = 2.0 * RADIUS * r0;
-    let kernel = RankingKernel::new(options.engine().kernel, sum, sum, 1.15).unwrap();
+    let kernel = RankingKernel::new(options.kernel.engine().kernel, sum, sum, 1.15).unwrap();
     let table = kernel.distance_table(sum);
     let steps = 4000;
     let step = kernel.reach() / f64::from(steps);

@@ -1,7 +1,7 @@
 //! The pairs of parts as solids and as files, and how far a pose is from the right one.
 
 use super::parts::{HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole};
-use knotdock::mesh::PER_AXIS;
+use knotdock::options::SampleGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::{Solid, from_triangles};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -29,7 +29,7 @@ fn with_least_clearance(pair: fn(f64) -> Pair) -> (Pair, f64) {
         .iter()
         .map(|&point| away().apply(point));
     let lengths = extent(&mut close.receptor.positions.iter().copied()) + extent(&mut { turned });
-    let clearance = 1.01 * 3f64.sqrt() * lengths / (PER_AXIS - 1) as f64;
+    let clearance = 1.01 * 3f64.sqrt() * lengths / (SampleGrid::default().per_axis - 1) as f64;
     (pair(clearance), clearance)
 }
 

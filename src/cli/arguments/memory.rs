@@ -1,47 +1,10 @@
-//! Sizes of memory: as the user writes them, and how much of it is free.
+//! How much memory is free, and how much was taken.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Share of the free memory that a run may take when the user names no size.
 const DEFAULT_SHARE: f64 = 0.8;
-
-/// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
-///
-/// # Errors
-/// What is wrong with the text.
-pub fn parse_size(text: &str) -> Result<u64, String> {
-    let text = text.trim();
-    let end = text
-        .find(|c: char| !c.is_ascii_digit() && c != '.')
-        .unwrap_or(text.len());
-    let (digits, unit) = text.split_at(end);
-    let unit = unit.trim().to_ascii_lowercase();
-    let scale = match unit.as_str() {
-        "" | "b" => 1.0,
-        "k" | "kb" => 1e3,
-        "m" | "mb" => 1e6,
-        "g" | "gb" => 1e9,
-        "t" | "tb" => 1e12,
-        "ki" | "kib" => 1024.0,
-        "mi" | "mib" => 1024.0 * 1024.0,
-        "gi" | "gib" => 1024.0 * 1024.0 * 1024.0,
-        "ti" | "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
-        _ => {
-            return Err(format!(
-                "`{unit}` is no unit; write bytes, K, M, G, KiB, MiB or GiB"
-            ));
-        }
-    };
-    let size: f64 = digits
-        .parse()
-        .map_err(|_| "write a number and a unit, such as 800M or 4GiB".to_owned())?;
-    let bytes = size * scale;
-    if bytes < 1.0 || bytes >= u64::MAX as f64 {
-        return Err("the size must be at least one byte and below 2^64".to_owned());
-    }
-    Ok(bytes as u64)
-}
 
 /// What a run may take when the user names no size: 80% of what is free, or `None` where the system does not say.
 pub fn default_limit() -> Option<u64> {
@@ -144,31 +107,6 @@ fn keyed(text: &str, key: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sizes_are_decimal_or_binary_as_written() {
-        for (text, bytes) in [
-            ("123", 123),
-            ("4G", 4_000_000_000),
-            ("1.5 kB", 1_500),
-            ("512MiB", 512 << 20),
-            ("2gib", 2 << 30),
-        ] {
-            assert_eq!(parse_size(text), Ok(bytes), "{text}");
-        }
-        for text in [
-            "",
-            "G",
-            "-1G",
-            "1.2.3",
-            "4 parsecs",
-            "0",
-            "1e9",
-            "99999999T",
-        ] {
-            assert!(parse_size(text).is_err(), "{text}");
-        }
-    }
 
     fn file(root: &Path, path: &str, text: &str) {
         let path = root.join(path);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::Args;
+use clap::{Args, ValueHint};
 use knotdock::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
 use knotdock::output::input_record::NativeRecord;
 use knotdock::output::poses::PoseRow;
@@ -18,13 +18,13 @@ use crate::cli::messages::failure::Failure;
 pub struct NativeArguments {
     /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the largest
     /// interface is taken, and FILE:A,B picks chains.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["native_receptor", "native_ligand"], help_heading = HEADING)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["native_receptor", "native_ligand"], help_heading = HEADING)]
     native: Option<String>,
     /// Receptor of the known complex; FILE:H,L picks chains.
-    #[arg(long, value_name = "FILE", requires = "native_ligand", help_heading = HEADING)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_ligand", help_heading = HEADING)]
     native_receptor: Option<String>,
     /// Ligand of the known complex, in the frame of its receptor; FILE:H,L picks chains.
-    #[arg(long, value_name = "FILE", requires = "native_receptor", help_heading = HEADING)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_receptor", help_heading = HEADING)]
     native_ligand: Option<String>,
 }
 

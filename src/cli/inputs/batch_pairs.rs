@@ -5,25 +5,17 @@ use std::path::Path;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
+use knotdock::options::definition::names_file;
+use knotdock::options::text::first_paragraph;
 use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::cli::dock::Dock;
+use crate::cli::dock::{Dock, refusing_recorded};
 use crate::cli::inputs::molecules::label;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
-use crate::cli::messages::usage::{message, with_negative_numbers};
-
-/// Columns that name files.
-const FILES: [&str; 6] = [
-    "native",
-    "native_receptor",
-    "native_ligand",
-    "contact_potential",
-    "fine_contact_potential",
-    "atom_pair_potential",
-];
+use crate::cli::messages::usage::with_negative_numbers;
 
 /// Options that are the batch's to set.
 const OWN: [&str; 3] = ["output", "rerun", "force"];
@@ -94,8 +86,19 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
 /// Stand for a row's files where only the options are looked at.
 const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
 
+fn pair_command() -> clap::Command {
+    refusing_recorded(PairCommand::command())
+}
+
+/// Whether a column names files.
+fn names_files(column: &str) -> bool {
+    let command = pair_command();
+    let mut arguments = command.get_arguments();
+    arguments.any(|argument| argument.get_id() == column && names_file(argument))
+}
+
 fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
-    let matches = with_negative_numbers(PairCommand::command()).try_get_matches_from(words)?;
+    let matches = with_negative_numbers(pair_command()).try_get_matches_from(words)?;
     PairCommand::from_arg_matches(&matches)
 }
 
@@ -120,7 +123,9 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
         }
         Err(error)
             if error.kind() == ErrorKind::UnknownArgument
-                && FILLED_IN.iter().any(|file| message(&error).contains(*file)) =>
+                && FILLED_IN
+                    .iter()
+                    .any(|file| first_paragraph(&error).contains(*file)) =>
         {
             Err(
                 Failure::input("no file can come after --: files are the table's to name")
@@ -128,15 +133,15 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
             )
         }
         // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a ligand asks for.
-        Err(error) if message(&error).contains("--rerun") => Err(Failure::input(
+        Err(error) if first_paragraph(&error).contains("--rerun") => Err(Failure::input(
             "--rerun cannot come after --: what is docked is the table's to say",
         )
         .remedy(remedy)),
         Err(error)
             if error.kind() == ErrorKind::ArgumentConflict
-                && !message(&error).contains("LIGAND") =>
+                && !first_paragraph(&error).contains("LIGAND") =>
         {
-            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
+            Err(Failure::input(format!("after --: {}", first_paragraph(&error))).remedy(remedy))
         }
         Err(error)
             if matches!(
@@ -152,7 +157,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
             let suggested = suggestions::suggested(&error);
             let remedy =
                 suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
-            Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
+            Err(Failure::input(format!("after --: {}", first_paragraph(&error))).remedy(remedy))
         }
         // What is missing or in conflict here may be otherwise beside a row's own options.
         _ => Ok(()),
@@ -171,7 +176,7 @@ fn command(
         if OWN.contains(&column.as_str()) {
             return Err((format!("a column cannot be `{column}`"), None));
         }
-        let value = if FILES.contains(&column.as_str()) {
+        let value = if names_files(column) {
             at(folder, value)
         } else {
             value.clone()
@@ -187,7 +192,7 @@ fn command(
             .filter(|file| !file.is_empty())
             .map(|file| at(folder, file)),
     );
-    let wrong = |error: clap::Error| (message(&error), suggestions::suggested(&error));
+    let wrong = |error: clap::Error| (first_paragraph(&error), suggestions::suggested(&error));
     Ok(parse(words).map_err(wrong)?.dock)
 }
 

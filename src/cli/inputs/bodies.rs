@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use knotdock::dock::pair::{Pair, PreparedPair, Sampling};
 use knotdock::error::SearchError;
-use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError, PER_AXIS};
+use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError};
 use knotdock::options::DockOptions;
 use knotdock::output::assemblies::write_assemblies;
 use knotdock::output::complexes::write_complexes;
@@ -13,10 +13,8 @@ use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock::output::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
-use knotdock_structures::molecule::{ChainMap, InputSpec, ReadOptions};
+use knotdock_structures::molecule::{ChainMap, InputSpec};
 
-use crate::cli::arguments::idle::refuse_of_meshes;
-use crate::cli::arguments::reading::READING_OPTIONS;
 use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::{Input, folders_of, label};
 use crate::cli::messages::console::Console;
@@ -43,10 +41,10 @@ const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 
 impl Bodies {
     /// Reads two bodies of one kind as the command line names them.
-    pub fn read(receptor: &str, ligand: &str, reading: &ReadOptions) -> Result<Self, Failure> {
+    pub fn read(receptor: &str, ligand: &str, options: &DockOptions) -> Result<Self, Failure> {
         Self::of(
             [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
-            reading,
+            options,
         )
     }
 
@@ -59,7 +57,7 @@ impl Bodies {
     pub fn recorded(
         records: [&InputRecord; 2],
         run: &Path,
-        reading: &ReadOptions,
+        options: &DockOptions,
     ) -> Result<Self, Failure> {
         let folders = folders_of(run);
         let [receptor, ligand] = records;
@@ -67,17 +65,20 @@ impl Bodies {
             receptor.locate(&folders)?.spec(),
             ligand.locate(&folders)?.spec(),
         ];
-        Self::of(specs, reading)
+        Self::of(specs, options)
     }
 
-    fn of(specs: [InputSpec; 2], reading: &ReadOptions) -> Result<Self, Failure> {
+    fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
-        match [receptor, ligand].map(|spec| is_mesh(&spec.path)) {
-            [false, false] => Ok(Self::Molecules(Box::new(Input::all(&specs, reading)?))),
-            [true, true] if *reading != ReadOptions::default() => Err(Failure::input(format!(
-                "{READING_OPTIONS} belong to molecules, and these are meshes"
-            ))
-            .remedy("leave them out")),
+        let are_meshes = [receptor, ligand].map(|spec| is_mesh(&spec.path));
+        if are_meshes[0] == are_meshes[1] {
+            refuse_without_effect(options, are_meshes[0])?;
+        }
+        match are_meshes {
+            [false, false] => {
+                let molecules = Input::all(&specs, &options.input.reading())?;
+                Ok(Self::Molecules(Box::new(molecules)))
+            }
             [true, true] => Ok(Self::Meshes(Box::new([
                 MeshInput::read(receptor)?,
                 MeshInput::read(ligand)?,
@@ -135,29 +136,26 @@ impl Bodies {
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         match self {
             Self::Molecules(inputs) => {
-                if options.sample_grid.is_some() || options.sample_weights.is_some() {
-                    return Err(Failure::input(
-                        "--sample-grid and --sample-weights belong to meshes, and these are molecules",
-                    )
-                    .remedy("leave them out: the balls of a molecule are its atoms"));
-                }
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
                 PreparedPair::molecules(molecules, options).map_err(|error| match error {
                     SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
                     error => refused(error),
                 })
             }
-            Self::Meshes(_) if options.symmetry.is_some() => Err(Failure::input(
+            Self::Meshes(_) if options.search.symmetry.is_some() => Err(Failure::input(
                 "--symmetry makes rings of a molecule, and this is a mesh",
             )
             .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                refuse_of_meshes(options)?;
                 let sampling = MeshOptions {
-                    per_axis: *options.sample_grid.get_or_insert(PER_AXIS),
-                    weights: *options.sample_weights.get_or_insert_default(),
+                    per_axis: options
+                        .sampling
+                        .sample_grid
+                        .get_or_insert_default()
+                        .per_axis,
+                    weights: *options.sampling.sample_weights.get_or_insert_default(),
                     offset,
-                    alpha: options.alpha,
+                    alpha: options.kernel.alpha,
                 };
                 let solids = inputs.each_ref().map(|input| &input.solid);
                 let sampling =
@@ -231,6 +229,23 @@ impl Bodies {
         self.records()
             .map(|record| label(&record.path, record.chains.as_deref()))
     }
+}
+
+/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An option at its default
+/// is no different from one that is not given. Weights of effects that are off are not refused: they say what the effect would weigh.
+fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Failure> {
+    let Some(option) = options.without_effect(are_meshes) else {
+        return Ok(());
+    };
+    let (of, these, remedy) = if are_meshes {
+        let remedy = "leave it out: of meshes the shape is all there is to score";
+        ("molecules", "meshes", remedy)
+    } else {
+        let remedy = "leave it out: the balls of a molecule are its atoms";
+        ("meshes", "molecules", remedy)
+    };
+    let long = option.long();
+    Err(Failure::input(format!("--{long} is of {of}, and these are {these}")).remedy(remedy))
 }
 
 /// A failure that names the mesh at fault.

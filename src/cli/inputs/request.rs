@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::mesh::GivenLengths;
+use knotdock::options::DockOptions;
 use knotdock::output::manifest::Inputs;
 use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::recorded_run::RecordedRun;
-use knotdock::output::run_options::RunOptions;
 use knotdock::pose_space::arrangement::Arrangement;
 
 use crate::cli::arguments::native::NativeFiles;
+use crate::cli::arguments::options::GivenOptions;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -23,7 +24,7 @@ pub struct Request {
     /// The known complex, if one was named.
     pub native: Option<NativeFiles>,
     /// What to do; of meshes, lengths that are not given follow from them.
-    pub options: RunOptions,
+    pub options: DockOptions,
     /// The offset, where it is given.
     pub offset: Option<f64>,
     /// Further lengths that are given.
@@ -31,6 +32,24 @@ pub struct Request {
 }
 
 impl Request {
+    /// Reads what is docked with some options.
+    pub fn read(
+        [receptor, ligand]: [&String; 2],
+        native: Option<NativeFiles>,
+        given: GivenOptions,
+    ) -> Result<Self, Failure> {
+        Ok(Self {
+            bodies: Bodies::read(receptor, ligand, &given.options)?,
+            native,
+            offset: given.has("offset").then_some(given.options.kernel.offset),
+            given: GivenLengths {
+                resolution: given.has("resolution"),
+                cluster_radius: given.has("cluster_radius"),
+            },
+            options: given.options,
+        })
+    }
+
     /// What an earlier run was asked for, from its run.json.
     pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
         let run = RecordedRun::read(path)?;
@@ -48,13 +67,13 @@ impl Request {
             ));
         }
         Ok(Self {
-            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options.reading)?,
+            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options)?,
             native: run
                 .native
                 .as_ref()
                 .map(|native| NativeFiles::recorded(native, path))
                 .transpose()?,
-            offset: Some(run.options.dock.offset),
+            offset: Some(run.options.kernel.offset),
             given: GivenLengths {
                 resolution: true,
                 cluster_radius: true,
@@ -66,8 +85,7 @@ impl Request {
     /// Plans the run; of meshes, options that follow from them are filled in.
     pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Failure> {
         let (offset, given) = (self.offset, self.given);
-        self.bodies
-            .plan(&mut self.options.dock, offset, given, console)
+        self.bodies.plan(&mut self.options, offset, given, console)
     }
 
     /// Matches the known complex, if there is one, with the molecules.
@@ -99,7 +117,7 @@ impl Request {
 
     /// What the run puts together.
     pub fn arrangement(&self) -> Arrangement {
-        self.options.dock.symmetry.into()
+        self.options.search.symmetry.into()
     }
 
     /// The directory of a run that names none.

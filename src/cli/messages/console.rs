@@ -17,12 +17,14 @@ use crate::cli::messages::failure::Failure;
 static LOST: OnceLock<io::Error> = OnceLock::new();
 
 /// The terminal as a command sees it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Console {
     /// Results as one JSON object.
     pub json: bool,
     /// No words but errors.
     pub quiet: bool,
+    /// More words.
+    pub verbose: bool,
 }
 
 impl Console {
@@ -40,6 +42,13 @@ impl Console {
                 // Only the first is told.
                 let _ = LOST.set(error);
             }
+        }
+    }
+
+    /// Writes a paragraph that only `--verbose` wants.
+    pub fn detail(&self, text: impl ToString) {
+        if self.verbose {
+            self.say(text);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use knotdock::dock::loose::Loose;
+use knotdock::dock::flexible_regions::FlexibleRegions;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::plan::DockPlan;
 use knotdock::output::report::counted;
@@ -65,21 +65,10 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
             fine.rotations, fine.cells
         ));
     }
-    let row = outcome.poses.first();
-    let attracting = match plan.active_site() {
-        Some(_) => "the active site",
-        None => "attracted residues",
-    };
-    let terms = [
-        ("fine contacts", row.and_then(|row| row.fine_contact)),
-        ("atom pairs", row.and_then(|row| row.atom_pair)),
-        ("atom pairs once relaxed", row.and_then(|row| row.relaxed)),
-        (attracting, row.and_then(|row| row.attraction)),
-        ("missing residues", row.and_then(|row| row.missing)),
-        ("ends of chains", row.and_then(|row| row.chain_ends)),
-    ];
-    let terms = terms.iter().filter(|(_, value)| value.is_some());
-    let names: Vec<&str> = terms.map(|(name, _)| *name).collect();
+    let names: Vec<&str> = outcome.poses.first().map_or(Vec::new(), |row| {
+        let acting = row.pose_terms.iter().filter(|(_, value)| value.is_some());
+        acting.map(|(term, _)| term.label).collect()
+    });
     let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
     if let (false, Some(stage)) = (names.is_empty(), stage) {
         lines.push(format!(
@@ -111,11 +100,11 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
 
 /// What is wrong with a run's scores, if its fast path was farther from the exact sum than was asked for.
 pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
-    let (worst, tolerance) = (outcome.error.worst, plan.options.tolerance);
+    let (worst, tolerance) = (outcome.error.worst, plan.options.kernel.tolerance);
     if !worst.is_finite() {
         return Some(format!(
             "the best pose scores nothing, so errors have no scale: nothing fits at a resolution of {} {unit} on a grid of {:.4} {unit}",
-            plan.options.resolution,
+            plan.options.kernel.resolution,
             plan.spacing,
             unit = plan.unit
         ));
@@ -157,40 +146,46 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// What is loose of each side and costs poses something: residues that its file does not show, and those near ends.
-pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
-    let of = loose.missing_residues.iter().zip(&loose.chain_end_residues);
-    let told = sides.iter().zip(of).map(|(side, (missing, near))| {
-        let (mut parts, mut options) = (Vec::new(), Vec::new());
-        if missing.gaps > 0 {
-            parts.push(format!(
-                "{} missing in {}",
-                counted(missing.residues, "residue"),
-                counted(missing.gaps, "gap")
-            ));
-        }
-        if missing.ends > 0 {
-            let ends = counted(missing.ends, "end");
-            parts.push(format!("{ends} of chains that may go on"));
-        }
-        if !missing.stretches.is_empty() {
-            options.push("--unresolved-weight 0");
-        } else if let Some(last) = parts.last_mut() {
-            last.push_str(", which the rest leaves no room");
-        }
-        if near.residues > 0 {
-            let residues = counted(near.residues, "residue");
-            parts.push(format!("{residues} near ends of chains or gaps"));
-            options.push("--termini-weight 0");
-        }
-        let leave = if options.len() > 1 { "leave" } else { "leaves" };
-        let pay = match options.join(" and ") {
-            none if none.is_empty() => none,
-            all => format!("; poses pay for atoms that lie or touch there, {all} {leave} that out"),
-        };
-        (!parts.is_empty()).then(|| format!("The {side}: {}{pay}", parts.join(", ")))
-    });
-    told.flatten().collect()
+/// Flexible regions of each side that cost poses score: unresolved segments and residues near termini.
+pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
+    let regions = regions.unresolved.iter().zip(&regions.termini);
+    let lines = sides
+        .iter()
+        .zip(regions)
+        .map(|(side, (unresolved, termini))| {
+            let (mut parts, mut options) = (Vec::new(), Vec::new());
+            if unresolved.gaps > 0 {
+                parts.push(format!(
+                    "{} unresolved in {}",
+                    counted(unresolved.residues, "residue"),
+                    counted(unresolved.gaps, "gap")
+                ));
+            }
+            match unresolved.ends {
+                0 => {}
+                1 => parts.push("1 terminus past which residues may be unresolved".to_owned()),
+                ends => parts.push(format!(
+                    "{ends} termini past which residues may be unresolved"
+                )),
+            }
+            if !unresolved.stretches.is_empty() {
+                options.push("--unresolved-weight 0");
+            } else if let Some(last) = parts.last_mut() {
+                last.push_str(", for which the body leaves no room");
+            }
+            if termini.residues > 0 {
+                let residues = counted(termini.residues, "residue");
+                parts.push(format!("{residues} near termini or gaps"));
+                options.push("--termini-weight 0");
+            }
+            let leave = if options.len() > 1 { "leave" } else { "leaves" };
+            let cost = match options.join(" and ") {
+                none if none.is_empty() => none,
+                all => format!("; contacts and clashes there cost score, {all} {leave} that out"),
+            };
+            (!parts.is_empty()).then(|| format!("The {side}: {}{cost}", parts.join(", ")))
+        });
+    lines.flatten().collect()
 }
 
 /// How many Cys and His are charged as what binds a metal, behind other words.
@@ -215,7 +210,7 @@ pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<Stri
         parts.push(format!(
             "net charge {:+} e at pH {}, {amino} amino and {carboxyl} carboxyl ends charged, {} capped{}",
             labels.net_charge,
-            plan.options.ph,
+            plan.options.terms.ph,
             counted(labels.gaps, "gap"),
             metal_bound(labels)
         ));

@@ -1,8 +1,12 @@
 //! Errors of the libraries as failures of a command.
 
+use std::error::Error;
 use std::fmt::Display;
 use std::path::Path;
 
+use knotdock::options::PotentialFileError;
+use knotdock::options::file::ConfigError;
+use knotdock::options::text::first_paragraph;
 use knotdock::output::balls::PseudoAtomError;
 use knotdock::output::input_record::InputRecordError;
 use knotdock::output::pair_table::PairTableError;
@@ -27,6 +31,34 @@ fn unreadable(
     match file {
         Some(file) => failure.at(file),
         None => failure,
+    }
+}
+
+impl From<PotentialFileError> for Failure {
+    fn from(error: PotentialFileError) -> Self {
+        Self::input(&error)
+            .at(&error.path)
+            .on_line(error.line)
+            .remedy(error.remedy)
+    }
+}
+
+impl From<ConfigError> for Failure {
+    fn from(error: ConfigError) -> Self {
+        Self::input(&error)
+            .at(&error.path)
+            .on_line(error.line)
+            .remedy(error.remedy)
+    }
+}
+
+impl From<clap::Error> for Failure {
+    fn from(error: clap::Error) -> Self {
+        let source = error.source();
+        match source.and_then(|source| source.downcast_ref::<PotentialFileError>()) {
+            Some(error) => error.clone().into(),
+            None => Self::input(first_paragraph(&error)),
+        }
     }
 }
 

@@ -7,16 +7,19 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use knotdock::options::SampleGrid;
+use knotdock::options::values::{above_zero, at_least_one, protrusion};
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Step, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{
+    Ball, BallSet, Method, Sampling, SetName, Step, knots, sample,
+};
 use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
-use crate::cli::arguments::values::{above_zero, at_least_one, grid, protrusion};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use told::{Told, weights_text};
@@ -32,8 +35,8 @@ pub struct Sample {
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Nodes of the grid, as 2^18 or 262144: a cube of the nearest whole number of nodes an axis.
-    #[arg(long, value_name = "M", default_value = "2^18", value_parser = grid)]
-    grid: usize,
+    #[arg(long, value_name = "M", default_value = "2^18")]
+    grid: SampleGrid,
     /// How balls are chosen.
     #[arg(long, value_enum, default_value_t = MethodName::Bi)]
     method: MethodName,
@@ -127,7 +130,7 @@ impl Sample {
         console.say(format!("Mesh: {report}"));
         self.warn(report.warnings(), &console)?;
         let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&self.mesh))?;
-        let mut sampling = sample(&solid, self.grid, method).map_err(|error| {
+        let mut sampling = sample(&solid, self.grid.per_axis, method).map_err(|error| {
             Failure::input(error).at(&self.mesh).remedy(
                 "check that the mesh is closed and one solid, or sample it on a finer --grid",
             )

@@ -13,7 +13,7 @@ const fn suggestion(words: &'static [&'static str], instead: &'static str) -> Su
 }
 
 /// Words of options.
-pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
+pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
     suggestion(
         &[
             "restraint",
@@ -37,8 +37,8 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
         &[
             "active",
             "active-residues",
-            "active-receptor",
-            "active-ligand",
+            "attract-receptor",
+            "attract-ligand",
             "attract",
             "attraction",
             "interface",
@@ -100,7 +100,6 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
             "num-threads",
             "nthreads",
             "jobs",
-            "j",
             "np",
             "t",
             "workers",
@@ -146,15 +145,12 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
         "use `--force`, which replaces an earlier run in the directory",
     ),
     suggestion(
-        &[
-            "repeat",
-            "restore",
-            "config",
-            "settings",
-            "params",
-            "parameters",
-        ],
+        &["repeat", "restore"],
         "use `--rerun RUN.JSON`, which repeats the run that wrote that file",
+    ),
+    suggestion(
+        &["settings", "params", "parameters", "options", "toml"],
+        "use `--config FILE.toml`, which gives options of `knotdock dock` by a file",
     ),
     suggestion(
         &["resume", "restart", "continue"],
@@ -171,7 +167,7 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
             "degrees",
             "step",
         ],
-        "use `--angle DEGREES`, or `--rotations N`",
+        "use `--rotations 15deg`, or `--rotations N`",
     ),
     suggestion(
         &[
@@ -227,7 +223,6 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 25] = [
             "grid-spacing",
             "grid-step",
             "cell",
-            "v",
         ],
         "use `--spacing LENGTH` for the grid, or `--resolution LENGTH` for what is ranked",
     ),
@@ -361,7 +356,7 @@ pub(in crate::cli) const COMMANDS: [Suggestion; 10] = [
     ),
     suggestion(
         &[
-            "build", "export", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
+            "build", "complex", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
         ],
         "use `knotdock export RUN --rank 37,40-45`",
     ),

@@ -1,0 +1,131 @@
+//! Pose term `active_residues`: the share of the active residues that are in contact.
+//!
+//! Active residues are named by the user, or they are the catalytic residues of an enzyme, which may have several active sites.
+//!
+//! The search draws poses to named residues by the contacts of their atoms ([`crate::terms::effect::restraint`]), because a correlation
+//! can count nothing else. One buried residue with many contacts then earns as much as several should. So this term counts residues.
+
+use super::side::Side;
+use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use crate::se3::Pose;
+use knotdock_structures::Knots;
+
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "active_residues",
+    label: "active residues",
+    weight_option: "active-weight",
+    weight_help: "Score of a pose in which all active residues are in contact; other poses get their share of it",
+    unit: "score",
+    default_weight: 2000.0,
+    time_share: UNRELAXED,
+    applies: |inputs| !inputs.active_residues.is_empty(),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let sets = inputs.active_residues;
+        Box::new(ActiveResidues::new(receptor, ligand, sets, weight))
+    },
+};
+
+/// Active residues of receptor and ligand, each as the indices of its knots.
+pub type Residues = [Vec<Vec<usize>>; 2];
+
+/// Two bodies prepared for counting the active residues in contact.
+pub struct ActiveResidues {
+    /// Sets of residues of receptor and ligand, each residue as the positions of its atoms (Å).
+    sets: Vec<[Vec<Positions>; 2]>,
+    receptor: Side,
+    ligand: Side,
+    weight: f64,
+}
+
+/// Positions of the atoms of a residue (Å).
+type Positions = Vec<[f64; 3]>;
+
+impl ActiveResidues {
+    /// Prepares two sets of knots. `weight` is the score of a pose in which all residues of one set are in contact.
+    pub fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
+        let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Positions> {
+            let centers = |residue: &Vec<usize>| {
+                let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
+                centers.copied().collect()
+            };
+            residues.iter().map(centers).collect()
+        };
+        let sets = sets.iter();
+        Self {
+            sets: sets
+                .map(|[own, other]| [of(receptor, own), of(ligand, other)])
+                .collect(),
+            receptor: Side::new(receptor),
+            ligand: Side::new(ligand),
+            weight,
+        }
+    }
+
+    /// Weight times the share of a set's residues that are in contact at a pose, of the set with the largest share.
+    pub fn score(&self, pose: &Pose) -> f64 {
+        let inverse = pose.inverse();
+        let shares = self.sets.iter().map(|[receptor, ligand]| {
+            let own = in_contact(&self.ligand, receptor, &inverse);
+            let other = in_contact(&self.receptor, ligand, pose);
+            (own + other) as f64 / (receptor.len() + ligand.len()).max(1) as f64
+        });
+        self.weight * shares.fold(0.0, f64::max)
+    }
+}
+
+impl PoseTerm for ActiveResidues {
+    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
+        self.score(pose)
+    }
+}
+
+/// Number of residues of the other side with an atom in contact with `side`; `pose` carries them into its frame.
+fn in_contact(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
+    let touches = |atom: &[f64; 3]| side.touches(pose, *atom);
+    let residues = residues.iter();
+    residues.filter(|atoms| atoms.iter().any(touches)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Atoms at 10, 20, 30 and 40 Å on both sides. A residue counts once, however many of its atoms are in contact.
+    #[test]
+    fn residues_in_contact_are_counted() {
+        let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
+        let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
+        let residues = [vec![vec![0], vec![2, 3]], vec![vec![1]]];
+        let term = ActiveResidues::new(&knots, &knots, &[residues], 300.0);
+        let at =
+            |quaternion, x: f64, y: f64| term.score(&Pose::from_parts(quaternion, [x, y, 0.0]));
+        let straight = [1.0, 0.0, 0.0, 0.0];
+        assert_eq!(at(straight, 0.0, 4.9), 300.0);
+        assert_eq!(at(straight, 0.0, 5.1), 0.0);
+        // The ligand's first two atoms lie over the receptor's last two.
+        assert_eq!(at(straight, 20.0, 3.0), 200.0);
+        assert_eq!(at(straight, 30.0, 3.0), 100.0);
+        // Half a turn about z takes atoms to -10 ... -40 Å, and 50 Å bring them back in reverse.
+        assert_eq!(at([0.0, 0.0, 0.0, 1.0], 50.0, 3.0), 300.0);
+        assert_eq!(at([0.0, 0.0, 0.0, 1.0], 20.0, 3.0), 100.0);
+    }
+
+    /// Of several sites the one with the largest share counts; shares of different sites do not add up.
+    #[test]
+    fn one_set_of_several_is_enough() {
+        let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
+        let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
+        let ligand = Knots::new(vec![[0.0; 3], [10.0, 0.0, 0.0]], vec![1.9; 2]).unwrap();
+        let set = |first: usize, second: usize| [vec![vec![first], vec![second]], Vec::new()];
+        let sets = [set(0, 1), set(2, 3)];
+        let term = ActiveResidues::new(&knots, &ligand, &sets, 300.0);
+        let at = |x: f64| term.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]));
+        assert_eq!(at(10.0), 300.0);
+        assert_eq!(at(30.0), 300.0);
+        assert_eq!(at(20.0), 150.0);
+        assert_eq!(at(40.0), 150.0);
+        assert_eq!(at(60.0), 0.0);
+    }
+}

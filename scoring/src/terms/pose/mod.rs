@@ -1,0 +1,217 @@
+//! Pose terms: functions of a pose that are too expensive for all translations of a search.
+//!
+//! # Conventions
+//!
+//! A search ranks poses by a correlation, in which every term is a sum of one radial function times a class matrix of low rank. It
+//! keeps a few thousand poses. Each is then scored by the terms of [`POSE_TERMS`], which may be any function of the pose. Their
+//! values are added to the score. Higher is better, lengths are in Å, and positions are relative to the centres of the two bodies.
+//!
+//! | id | what is scored | source of its numbers |
+//! |---|---|---|
+//! | `fine_contact` | pairs of atoms by 18 types and 3 ranges of distance | interfaces of known complexes |
+//! | `atom_pair` | pairs of atoms by 158 kinds and 6 distances | insides of proteins |
+//! | `relaxed` | the same with a penalty on overlap, after a small rigid move | the same |
+//! | `active_residues` | share of the active residues that are in contact | the user, or the active site of a peptidase |
+//! | `unresolved` | atoms where the other side has unresolved residues | conformers of its unresolved segments |
+//! | `termini` | contacts of residues near termini and gaps | the chains of the file |
+//!
+//! # Adding a term
+//!
+//! Write a file with a type that implements [`PoseTerm`] and a constant [`TermDefinition`], and add the constant to [`POSE_TERMS`].
+//! Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow from the registry.
+
+mod active_residues;
+mod atom_pair;
+mod atom_pair_potential;
+mod bodies;
+mod distance_binned_potential;
+mod energy_table;
+mod fine_contact;
+mod relaxed;
+mod rescorer;
+mod side;
+mod termini;
+mod unresolved;
+mod values;
+
+pub use active_residues::{ActiveResidues, Residues};
+pub use atom_pair::AtomPairs;
+pub use atom_pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+pub use distance_binned_potential::{DistanceBinnedPotential, RANGES};
+pub use fine_contact::FineContacts;
+pub use relaxed::{Relaxation, Relaxed, Workspace};
+pub use rescorer::Rescorer;
+pub use termini::TerminusContacts;
+pub use unresolved::UnresolvedClashes;
+pub use values::TermValues;
+
+use crate::se3::Pose;
+use knotdock_structures::{Conformers, Knots};
+
+/// Edge in Å of the cells that hold a body's atoms.
+const CELL_EDGE: f64 = 4.0;
+
+/// Every pose term, in the order of sums, columns and reports.
+pub const POSE_TERMS: &[TermDefinition] = &[
+    fine_contact::TERM,
+    atom_pair::TERM,
+    relaxed::TERM,
+    active_residues::TERM,
+    unresolved::TERM,
+    termini::TERM,
+];
+
+/// Time to score a pose by all terms but `relaxed`, as a share of the time by all terms. Measured on the example pair.
+const UNRELAXED: f64 = 0.25;
+
+/// A pose term prepared for two bodies.
+pub trait PoseTerm: Send + Sync {
+    /// Weighted value at a pose of the ligand; higher is better. Calls with one workspace allocate nothing once it has grown.
+    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64;
+}
+
+/// What a pose term is called, what it reads, and how it is prepared.
+#[derive(Debug)]
+pub struct TermDefinition {
+    /// Name in columns, JSON and scripts: lower case with `_` between words.
+    pub id: &'static str,
+    /// Name in reports: lower case, in the plural.
+    pub label: &'static str,
+    /// Name of the option that holds its weight: lower case with `-` between words, ending in `-weight`.
+    pub weight_option: &'static str,
+    /// Description of that option: the quantity that the weight multiplies.
+    pub weight_help: &'static str,
+    /// Unit of the weight.
+    pub unit: &'static str,
+    /// Weight if the option is left out.
+    pub default_weight: f64,
+    /// Time to score a pose by this and all cheaper terms, as a share of the time with every term (cost model).
+    pub time_share: f64,
+    /// Whether the inputs hold what it reads.
+    pub applies: fn(&TermInputs) -> bool,
+    /// Prepares it with a weight; called only if it applies.
+    pub build: fn(&TermInputs, f64) -> Box<dyn PoseTerm>,
+}
+
+impl TermDefinition {
+    /// The term with an id.
+    pub fn with_id(id: &str) -> Option<&'static Self> {
+        POSE_TERMS.iter().find(|term| term.id == id)
+    }
+
+    /// Whether it scores poses: its weight is positive and the inputs hold what it reads.
+    pub fn acts(&self, inputs: &TermInputs, weight: f64) -> bool {
+        weight > 0.0 && (self.applies)(inputs)
+    }
+}
+
+/// All that pose terms may read of the two bodies of a docking.
+#[derive(Clone, Copy, Debug)]
+pub struct TermInputs<'a> {
+    /// Knots of receptor and ligand, with contact types and atom kinds where the contact effect is on.
+    pub bodies: [&'a Knots; 2],
+    /// Potential of `fine_contact`; `None`: the built-in one.
+    pub fine_contact_potential: Option<&'a DistanceBinnedPotential>,
+    /// Potential of `atom_pair` and `relaxed`; `None`: the built-in one.
+    pub atom_pair_potential: Option<&'a AtomPairPotential>,
+    /// Sets of active residues; a pose should touch all residues of one set.
+    pub active_residues: &'a [Residues],
+    /// Conformers of the unresolved segments of receptor and ligand.
+    pub unresolved: [&'a [Conformers]; 2],
+    /// Indices of the knots near termini and gaps of receptor and ligand.
+    pub termini: [&'a [usize]; 2],
+}
+
+impl TermInputs<'_> {
+    /// Whether both bodies carry contact types.
+    fn has_contact_types(&self) -> bool {
+        self.bodies
+            .iter()
+            .all(|knots| !knots.contact_types.is_empty())
+    }
+
+    /// Whether both bodies carry atom kinds.
+    fn has_atom_kinds(&self) -> bool {
+        self.bodies.iter().all(|knots| !knots.atom_kinds.is_empty())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns, JSON keys, options and reports are named by the registry, so no two terms may share a name.
+    #[test]
+    fn ids_labels_and_options_of_terms_are_unique_and_well_formed() {
+        for (index, term) in POSE_TERMS.iter().enumerate() {
+            let rest = &POSE_TERMS[index + 1..];
+            assert!(rest.iter().all(|other| other.id != term.id), "{}", term.id);
+            assert!(rest.iter().all(|other| other.label != term.label));
+            assert!(
+                rest.iter()
+                    .all(|other| other.weight_option != term.weight_option)
+            );
+            let lower = |text: &str, between: char| {
+                text.chars().all(|c| c.is_ascii_lowercase() || c == between)
+            };
+            assert!(lower(term.id, '_'), "{}", term.id);
+            assert!(lower(term.label, ' '), "{}", term.label);
+            assert!(lower(term.weight_option, '-') && term.weight_option.ends_with("-weight"));
+            assert!(term.default_weight >= 0.0 && (0.0..=1.0).contains(&term.time_share));
+            let found = TermDefinition::with_id(term.id).unwrap();
+            assert_eq!(found.label, term.label);
+        }
+        assert!(TermDefinition::with_id("gravity").is_none());
+    }
+
+    /// Without weights or without inputs there is nothing to score, and a term alone has the only value.
+    #[test]
+    fn only_terms_with_weights_and_inputs_have_values() {
+        let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
+        let typed = bare
+            .clone()
+            .with_labels(Vec::new(), vec![Some(6)])
+            .unwrap()
+            .with_atom_kinds(vec![Some(6)])
+            .unwrap();
+        let sets = [[vec![vec![0]], Vec::new()]];
+        let segment = [Conformers {
+            origin: [0.0; 3],
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            courses: vec![vec![[1.0, 0.0, 0.0]]],
+        }];
+        let nothing = TermInputs {
+            bodies: [&bare, &bare],
+            fine_contact_potential: None,
+            atom_pair_potential: None,
+            active_residues: &[],
+            unresolved: [&[], &[]],
+            termini: [&[], &[]],
+        };
+        let all = TermInputs {
+            bodies: [&typed, &typed],
+            active_residues: &sets,
+            unresolved: [&[], &segment],
+            termini: [&[0], &[]],
+            ..nothing
+        };
+        let none = [0.0; POSE_TERMS.len()];
+        let one = [1.0; POSE_TERMS.len()];
+        assert!(Rescorer::new(&nothing, &one).is_none());
+        assert!(Rescorer::new(&all, &none).is_none());
+        let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0]);
+        let mut workspace = Workspace::default();
+        let together = Rescorer::new(&all, &one)
+            .unwrap()
+            .score(&pose, &mut workspace);
+        for (index, (term, value)) in together.iter().enumerate() {
+            assert!(value.is_some_and(|value| value != 0.0), "{}", term.id);
+            let mut weights = none;
+            weights[index] = 2.0;
+            let alone = Rescorer::new(&all, &weights).unwrap();
+            let alone = alone.score(&pose, &mut workspace);
+            assert_eq!(alone, TermValues::default().with(term.id, alone.sum()));
+            assert!((alone.sum() - 2.0 * value.unwrap()).abs() < 1e-12);
+        }
+    }
+}

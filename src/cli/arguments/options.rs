@@ -1,0 +1,199 @@
+//! The options of a command, as they are typed and as a file of `--config` gives them.
+
+use std::ffi::OsString;
+use std::marker::PhantomData;
+use std::path::PathBuf;
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
+use knotdock::options::definition::{Definition, definitions};
+use knotdock::options::{DockOptions, file, text};
+
+use crate::cli::messages::failure::Failure;
+
+/// Which of the options of `knotdock dock` a command has.
+pub trait Selection {
+    /// Whether the command has this one.
+    fn has(option: &Definition) -> bool;
+}
+
+/// All options: of `knotdock dock`.
+#[derive(Debug)]
+pub struct OfDock;
+
+impl Selection for OfDock {
+    fn has(_: &Definition) -> bool {
+        true
+    }
+}
+
+/// The options that say how a pose scores: of `knotdock score`.
+#[derive(Debug)]
+pub struct OfScore;
+
+impl Selection for OfScore {
+    fn has(option: &Definition) -> bool {
+        ["input", "kernel", "terms", "restraints"].contains(&option.subject())
+    }
+}
+
+/// The options of a sweep, which docks no rings and writes no run: of `knotdock tradeoff`.
+#[derive(Debug)]
+pub struct OfTradeoff;
+
+impl Selection for OfTradeoff {
+    fn has(option: &Definition) -> bool {
+        option.subject() != "output" && option.name() != "symmetry"
+    }
+}
+
+/// The options that say what is read of a structure, and what is assumed of it: of `knotdock inspect`.
+#[derive(Debug)]
+pub struct OfInspect;
+
+impl Selection for OfInspect {
+    fn has(option: &Definition) -> bool {
+        option.subject() == "input" || option.name() == "ph"
+    }
+}
+
+/// An option with the words that give it a value.
+#[derive(Clone, Debug)]
+struct Typed {
+    name: &'static str,
+    words: Vec<OsString>,
+}
+
+/// The options of a command as they are typed.
+#[derive(Clone, Debug)]
+pub struct OptionArguments<S> {
+    typed: Vec<Typed>,
+    config: Option<PathBuf>,
+    selection: PhantomData<S>,
+}
+
+/// Name of the option that names a file of options.
+const CONFIG: &str = "config";
+
+impl<S: Selection> Args for OptionArguments<S> {
+    fn augment_args(command: Command) -> Command {
+        let config = Arg::new(CONFIG)
+            .long(CONFIG)
+            .value_name("FILE.toml")
+            .value_hint(ValueHint::FilePath)
+            .value_parser(value_parser!(PathBuf))
+            .help(
+                "Options of `knotdock dock` from a file in TOML: tables named as the headings of its help, such as [search], and lines such as \
+                 fine_rotations = 14400; what is typed as well wins",
+            );
+        let own = definitions().iter().filter(|option| S::has(option));
+        own.fold(command.arg(config), |command, option| {
+            command.arg(option.argument().clone())
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<S: Selection> FromArgMatches for OptionArguments<S> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut typed = Vec::new();
+        for option in definitions().iter().filter(|option| S::has(option)) {
+            let name = option.name();
+            if matches.value_source(name) != Some(ValueSource::CommandLine) {
+                continue;
+            }
+            let words = if option.is_flag() {
+                vec![format!("--{}", option.long()).into()]
+            } else {
+                let values = matches.get_raw(name).into_iter().flatten();
+                values
+                    .map(|value| {
+                        let mut word = OsString::from(option.word(""));
+                        word.push(value);
+                        word
+                    })
+                    .collect()
+            };
+            typed.push(Typed { name, words });
+        }
+        Ok(Self {
+            typed,
+            config: matches.get_one(CONFIG).cloned(),
+            selection: PhantomData,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Options, and which of them were given.
+pub struct GivenOptions {
+    /// The options, by default where they were not given.
+    pub options: DockOptions,
+    given: Vec<String>,
+    /// Whether rotations of the whole circle were given by their angle.
+    by_angle: bool,
+}
+
+impl GivenOptions {
+    /// Whether an option was typed, or given by a file.
+    pub fn has(&self, name: &str) -> bool {
+        self.given.iter().any(|given| given == name)
+    }
+
+    /// The options of a search for rings, if it is one.
+    pub fn of_rings(self) -> Result<Self, Failure> {
+        if self.options.search.symmetry.is_some() && self.by_angle {
+            return Err(Failure::input(
+                "an angle is one of rotations, and rings are searched over axes",
+            )
+            .remedy("give --rotations a number of axes, or leave it out"));
+        }
+        let rotations_given = self.has("rotations");
+        Ok(Self {
+            options: self.options.of_rings(rotations_given),
+            ..self
+        })
+    }
+}
+
+impl<S: Selection> OptionArguments<S> {
+    /// The options: as typed, else as the file gives them, else by default.
+    ///
+    /// # Errors
+    /// [`Failure`] for a file of options that cannot be read.
+    pub fn given(&self) -> Result<GivenOptions, Failure> {
+        let from_file = match &self.config {
+            Some(path) => file::read::<DockOptions>(path)?,
+            None => Vec::new(),
+        };
+        let mut words: Vec<OsString> = Vec::new();
+        let mut given: Vec<String> = Vec::new();
+        for entry in from_file {
+            if self.typed.iter().all(|typed| typed.name != entry.name) {
+                words.extend(entry.words.into_iter().map(Into::into));
+                given.push(entry.name);
+            }
+        }
+        for typed in &self.typed {
+            words.extend(typed.words.iter().cloned());
+            given.push(typed.name.to_owned());
+        }
+        let by_angle = words.iter().any(|word| {
+            let word = word.to_string_lossy();
+            word.starts_with("--rotations=") && word.ends_with("deg")
+        });
+        let options: DockOptions = text::read(words)?;
+        Ok(GivenOptions {
+            options,
+            given,
+            by_angle,
+        })
+    }
+}

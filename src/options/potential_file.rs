@@ -1,0 +1,55 @@
+//! Files of potentials that options name.
+
+use std::path::{Path, PathBuf};
+
+use knotdock_scoring::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
+
+/// Why the potential that an option names cannot be used.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct PotentialFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// 1-based line, where one is at fault.
+    pub line: Option<u64>,
+    /// What is wrong.
+    pub message: String,
+    /// What the user may do about it.
+    pub remedy: String,
+}
+
+/// The contact potential of a file.
+pub(super) fn contact(path: &str) -> Result<Potential, PotentialFileError> {
+    read(path, "contact_potential.py", Potential::parse)
+}
+
+/// The fine contact potential of a file.
+pub(super) fn fine_contact(path: &str) -> Result<DistanceBinnedPotential, PotentialFileError> {
+    read(
+        path,
+        "contact_potential.py --fine",
+        DistanceBinnedPotential::parse,
+    )
+}
+
+/// The atom pair potential of a file.
+pub(super) fn atom_pair(path: &str) -> Result<AtomPairPotential, PotentialFileError> {
+    read(path, "atom_pair_potential.py", AtomPairPotential::parse)
+}
+
+/// The table in a file; `script` writes such tables.
+fn read<P>(
+    path: &str,
+    script: &str,
+    parse: fn(&str) -> Result<P, PotentialError>,
+) -> Result<P, PotentialFileError> {
+    let wrong = |line, message| PotentialFileError {
+        path: Path::new(path).to_owned(),
+        line,
+        message,
+        remedy: format!("give a table as scripts/{script} writes it, or leave the option out"),
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(None, error.to_string()))?;
+    parse(&text).map_err(|error| wrong(Some(error.line as u64), error.to_string()))
+}

@@ -1,0 +1,125 @@
+//! How meshes are sampled.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+
+/// How meshes are sampled. Molecules are balls as they come.
+#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Sampling (meshes)")]
+#[serde(deny_unknown_fields)]
+pub struct SamplingOptions {
+    /// Of meshes: nodes of the grid that each part is sampled on, as 2^18 or 262144 [default: 2^18].
+    #[arg(long, value_name = "M")]
+    pub sample_grid: Option<SampleGrid>,
+    /// Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside, or one
+    /// [default: fitted].
+    #[arg(
+        long,
+        value_enum,
+        value_name = "fitted|unit",
+        hide_possible_values = true
+    )]
+    pub sample_weights: Option<SampleWeights>,
+}
+
+/// Maximum number of nodes an axis of a grid: beyond it the depths alone take a gibibyte.
+pub const MAX_PER_AXIS: usize = 512;
+
+/// A grid that meshes are sampled on, as its number of nodes along each edge. Written as 64^3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct SampleGrid {
+    /// Nodes along each edge.
+    pub per_axis: usize,
+}
+
+impl Default for SampleGrid {
+    /// m = 2^18 nodes.
+    fn default() -> Self {
+        Self { per_axis: 64 }
+    }
+}
+
+impl fmt::Display for SampleGrid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}^3", self.per_axis)
+    }
+}
+
+impl From<SampleGrid> for String {
+    fn from(grid: SampleGrid) -> Self {
+        grid.to_string()
+    }
+}
+
+impl TryFrom<String> for SampleGrid {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl FromStr for SampleGrid {
+    type Err = String;
+
+    /// The grid of M nodes, M written as 2^18 or 262144: the cube root of M to the nearest whole number.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let nodes = match text.split_once('^') {
+            Some((base, power)) => {
+                match (base.trim().parse::<u64>(), power.trim().parse::<u32>()) {
+                    (Ok(base), Ok(power)) => base.checked_pow(power),
+                    _ => None,
+                }
+            }
+            None => text.parse::<u64>().ok(),
+        };
+        let max = (MAX_PER_AXIS as u64).pow(3);
+        match nodes.filter(|nodes| (8..=max).contains(nodes)) {
+            Some(nodes) => Ok(Self {
+                per_axis: (nodes as f64).cbrt().round() as usize,
+            }),
+            None => Err(format!(
+                "a whole number of nodes from 8 to {max} is needed, such as 2^18 or 262144"
+            )),
+        }
+    }
+}
+
+/// Weights of a mesh's balls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum SampleWeights {
+    /// Such that the summed bumps come closest to one inside and to zero outside.
+    #[default]
+    Fitted,
+    /// One each.
+    Unit,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grids_are_cubes() {
+        for (text, per_axis) in [
+            ("2^12", 16),
+            ("2^21", 128),
+            ("262144", 64),
+            ("64^3", 64),
+            ("1000", 10),
+            ("8", 2),
+        ] {
+            let grid: SampleGrid = text.parse().unwrap();
+            assert_eq!(grid.per_axis, per_axis, "{text}");
+            assert_eq!(grid.to_string().parse(), Ok(grid));
+        }
+        for text in ["", "7", "2^28", "9^99", "2^x", "-8", "1e6", "2^", "nan"] {
+            assert!(text.parse::<SampleGrid>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! How densely and on what is searched.
+
+use clap::{Args, ValueEnum};
+use knotdock_scoring::symmetry::Symmetry;
+use serde::{Deserialize, Serialize};
+
+use super::values::{count, rotations, share};
+
+/// How densely is searched, and on what.
+#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Search")]
+#[serde(deny_unknown_fields)]
+pub struct SearchOptions {
+    /// Rotations of the ligand, near uniform over all: their number, or their angle as 15deg, which stands for the field's count
+    /// 3600 (15/D)^3, so that 6deg gives 56,250; with `dock --symmetry` axes, by default 900 over half a sphere or 90 across a
+    /// ring's own.
+    #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
+    pub rotations: usize,
+    /// Search again, among this many rotations (or this angle, likewise), about the best: their peaks take the place of the best
+    /// rotations' own.
+    #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS))]
+    pub fine_rotations: Option<usize>,
+    /// Share of the finer rotations that are searched.
+    #[arg(long, value_name = "X", value_parser = share, default_value_t = 0.05)]
+    pub fine_share: f64,
+    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is reported is in
+    /// double precision either way.
+    #[arg(long, value_enum, value_name = "single|double", hide_possible_values = true, default_value_t = Precision::Single)]
+    pub precision: Precision,
+    /// What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single precision; of
+    /// several the environment variable WGPU_ADAPTER_NAME names one.
+    #[arg(long, value_enum, value_name = "cpu|gpu", hide_possible_values = true, default_value_t = EngineChoice::Cpu)]
+    pub engine: EngineChoice,
+    /// Peaks kept of each rotation.
+    #[arg(long, value_name = "N", value_parser = count(1..=10_000), default_value_t = 3)]
+    pub per_rotation: usize,
+    /// Poses kept of all rotations.
+    #[arg(long, value_name = "N", value_parser = count(1..=10_000_000), default_value_t = 2000)]
+    pub poses: usize,
+    /// Best poses to refine off the grid [default: 600 with shape alone, none beside other effects, where tighter fits make no better
+    /// a ranking].
+    #[arg(long, value_name = "N")]
+    pub refine: Option<usize>,
+    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is
+    /// itself a ring of 2, 3 ... copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where
+    /// the second copy or ring goes. Residues that --block-receptor and --active-receptor name are those of every copy, or of both
+    /// rings.
+    #[arg(long, value_name = "Cn|Dn")]
+    pub symmetry: Option<Symmetry>,
+}
+
+/// Maximum number of rotations of a set.
+const MAX_ROTATIONS: usize = 10_000_000;
+
+/// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on the ligand's random start
+/// orientation (docs/defaults.md). Beside other effects refining cost ranks.
+pub const REFINED_BY_SHAPE: usize = 600;
+
+/// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.
+pub const AXES: usize = 900;
+
+/// Axes of two rings by default: of D2 a degree apart, of Dn 2 / n of one.
+pub const AXES_ACROSS: usize = 90;
+
+/// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision whatever it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// 32 bits: tolerances down to 1e-4.
+    #[default]
+    Single,
+    /// 64 bits: tolerances down to 1e-6.
+    Double,
+}
+
+impl Precision {
+    /// Finest tolerance that it can reach.
+    pub fn finest_tolerance(self) -> f64 {
+        match self {
+            Self::Single => 1e-4,
+            Self::Double => 1e-6,
+        }
+    }
+}
+
+/// What the correlations are computed on. All else, exact sums and refinement among it, is computed on the CPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum EngineChoice {
+    /// The CPU's cores.
+    #[default]
+    Cpu,
+    /// A graphics processor, in single precision.
+    Gpu,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::definition::definitions;
+
+    /// The help writes out defaults that depend on more than the option itself.
+    #[test]
+    fn the_help_states_the_defaults_that_are_computed() {
+        let help = |name: &str| {
+            let all = definitions();
+            let found = all.iter().find(|definition| definition.name() == name);
+            found.unwrap().help()
+        };
+        assert!(help("refine").contains(&format!("default: {REFINED_BY_SHAPE} ")));
+        let axes = format!("{AXES} over half a sphere or {AXES_ACROSS} across");
+        assert!(help("rotations").contains(&axes));
+        let ratio = format!("default: {} times", crate::options::PASS_RATIO);
+        assert!(help("pass_length").contains(&ratio));
+    }
+}

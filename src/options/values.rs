@@ -1,0 +1,277 @@
+//! Values of options, checked as they are read.
+
+use std::ops::RangeInclusive;
+
+use super::text::BOUND;
+
+/// The field's count of rotations at an angle of 15 degrees.
+const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
+
+/// Numbers of rotations in a range, each written as a number or as an angle, such as 15deg.
+pub fn rotations(
+    range: RangeInclusive<usize>,
+) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| match text.strip_suffix("deg") {
+        Some(angle) => {
+            let rotations = rotations_of_angle(angle)?;
+            count(range.clone())(&rotations.to_string())
+        }
+        None => count(range.clone())(text)
+            .map_err(|error| format!("{error}, or an angle such as 15deg")),
+    }
+}
+
+/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3).
+///
+/// # Errors
+/// When the angle is not above 0.1 (12 thousand million rotations) and at most 180 degrees.
+fn rotations_of_angle(text: &str) -> Result<usize, String> {
+    let angle = above_zero(text)?;
+    if !(0.1..=180.0).contains(&angle) {
+        return Err("the angle must lie between 0.1 and 180 degrees".to_owned());
+    }
+    let rotations = (ROTATIONS_AT_15_DEGREES * (15.0 / angle).powi(3)).round();
+    Ok((rotations as usize).max(1))
+}
+
+/// Numbers in a range.
+pub fn number(
+    range: RangeInclusive<f64>,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse::<f64>() {
+        // A negative zero would be written as one.
+        Ok(value) if range.contains(&value) => Ok(value + 0.0),
+        _ => Err(format!(
+            "{BOUND}between {} and {}",
+            range.start(),
+            range.end()
+        )),
+    }
+}
+
+/// Whole numbers in a range.
+pub fn count(
+    range: RangeInclusive<usize>,
+) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse::<usize>() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        _ => Err(format!(
+            "{BOUND}a whole number between {} and {}",
+            range.start(),
+            range.end()
+        )),
+    }
+}
+
+/// A share: a number above zero and at most one.
+pub fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err(format!("{BOUND}above 0 and at most 1")),
+    }
+}
+
+/// A finite number above zero.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("it must be a finite number above zero".to_owned()),
+    }
+}
+
+/// A time in seconds, from text such as `5s`, `90`, `2min` or `1h`.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let end = text
+        .find(|c: char| c.is_ascii_alphabetic() && c != 'e')
+        .unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let unit = match unit.trim() {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        other => return Err(format!("`{other}` is no unit of time; write s, min or h")),
+    };
+    above_zero(number.trim())
+        .map(|value| value * unit)
+        .map_err(|_| "write a number above zero and a unit, such as 5s or 2min".to_owned())
+}
+
+/// A finite number, zero or above.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value + 0.0),
+        _ => Err("it must be a finite number, zero or above".to_owned()),
+    }
+}
+
+/// A protrusion factor, from 0 to 1.
+pub fn protrusion(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value + 0.0),
+        _ => Err("it must be between 0 and 1".to_owned()),
+    }
+}
+
+/// The name of a biological assembly.
+pub fn assembly_name(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("the name of an assembly is needed, such as 1".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+/// The name of a residue.
+pub fn residue_name(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() {
+        return Err("the name of a residue is needed, such as HEM".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+/// A pLDDT, above 0 and up to 100.
+pub fn plddt(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 100.0 => Ok(value),
+        _ => Err("it must be above 0 and up to 100".to_owned()),
+    }
+}
+
+/// A whole number above zero.
+pub fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(value) if value > 0 => Ok(value),
+        _ => Err("it must be a whole number above zero".to_owned()),
+    }
+}
+
+/// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn size(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let end = text
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .unwrap_or(text.len());
+    let (digits, unit) = text.split_at(end);
+    let unit = unit.trim().to_ascii_lowercase();
+    let scale = match unit.as_str() {
+        "" | "b" => 1.0,
+        "k" | "kb" => 1e3,
+        "m" | "mb" => 1e6,
+        "g" | "gb" => 1e9,
+        "t" | "tb" => 1e12,
+        "ki" | "kib" => 1024.0,
+        "mi" | "mib" => 1024.0 * 1024.0,
+        "gi" | "gib" => 1024.0 * 1024.0 * 1024.0,
+        "ti" | "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
+        _ => {
+            return Err(format!(
+                "`{unit}` is no unit; write bytes, K, M, G, KiB, MiB or GiB"
+            ));
+        }
+    };
+    let number: f64 = digits
+        .parse()
+        .map_err(|_| "write a number and a unit, such as 800M or 4GiB".to_owned())?;
+    let bytes = number * scale;
+    if bytes < 1.0 || bytes >= u64::MAX as f64 {
+        return Err("the size must be at least one byte and below 2^64".to_owned());
+    }
+    Ok(bytes as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_give_the_counts_of_the_field() {
+        let rotations = rotations(1..=10_000_000);
+        assert_eq!(rotations("17"), Ok(17));
+        assert_eq!(rotations("15deg"), Ok(3600));
+        for text in ["0", "0deg", "15 rad", "deg", "10000001", "-3", "1.5"] {
+            assert!(rotations(text).is_err(), "{text}");
+        }
+        assert_eq!(rotations_of_angle("15"), Ok(3600));
+        assert_eq!(rotations_of_angle("6"), Ok(56_250));
+        assert_eq!(rotations_of_angle("180"), Ok(2));
+        for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
+            assert!(rotations_of_angle(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn times_have_units() {
+        for (text, seconds) in [
+            ("5s", 5.0),
+            ("90", 90.0),
+            ("1.5 min", 90.0),
+            ("2h", 7200.0),
+            ("1e2s", 100.0),
+        ] {
+            assert_eq!(duration(text), Ok(seconds), "{text}");
+        }
+        for text in ["", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
+            assert!(duration(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_decimal_or_binary_as_written() {
+        for (text, bytes) in [
+            ("123", 123),
+            ("4G", 4_000_000_000),
+            ("1.5 kB", 1_500),
+            ("512MiB", 512 << 20),
+            ("2gib", 2 << 30),
+        ] {
+            assert_eq!(size(text), Ok(bytes), "{text}");
+        }
+        for text in [
+            "",
+            "G",
+            "-1G",
+            "1.2.3",
+            "4 parsecs",
+            "0",
+            "1e9",
+            "99999999T",
+        ] {
+            assert!(size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn shares_of_one_and_of_a_hundred() {
+        assert_eq!(protrusion("1"), Ok(1.0));
+        assert_eq!(plddt("100"), Ok(100.0));
+        for text in ["0", "-1", "100.1", "nan", ""] {
+            assert!(plddt(text).is_err(), "{text}");
+        }
+        assert!(
+            ["-0.1", "1.1", "nan", ""]
+                .iter()
+                .all(|text| protrusion(text).is_err())
+        );
+    }
+
+    #[test]
+    fn numbers_that_no_option_can_take_are_refused() {
+        for text in ["nan", "inf", "-1", "", "1e999"] {
+            assert!(above_zero(text).is_err(), "{text}");
+            assert!(not_negative(text).is_err(), "{text}");
+        }
+        assert!(above_zero("0").is_err());
+        assert_eq!(not_negative("-0").map(f64::to_bits), Ok(0));
+        assert!(at_least_one("0").is_err());
+        for text in ["nan", "-1", "14.1", "", "inf"] {
+            assert!(number(0.0..=14.0)(text).is_err(), "{text}");
+        }
+        assert_eq!(number(0.0..=14.0)("-0").map(f64::to_bits), Ok(0));
+        assert!(["0", "1.1", "nan"].iter().all(|text| share(text).is_err()));
+    }
+}

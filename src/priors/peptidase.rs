@@ -1,0 +1,352 @@
+//! Peptidases, detected from their sequence and fold, and the residues of their active sites.
+//!
+//! A peptidase cuts proteins, so a protein that binds it, an inhibitor above all, mostly does so at its active site.
+//!
+//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing together in
+//! space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be turned, flipped or
+//! missing, and a nucleophile mutated, modified or left out.
+//!
+//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules besides
+//! (lipases, esterases) are left out.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use knotdock_structures::molecule::{Molecule, PeptideChain};
+use serde::Serialize;
+use serde_json::json;
+
+use super::peptidase_families::{Anchor, families};
+use super::{Findings, Prior, Site, SiteRole};
+
+/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md, "Active
+/// sites").
+pub const WEIGHT: f64 = 500.0;
+
+/// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
+const TOGETHER: f64 = 12.0;
+
+/// The active site of a peptidase.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ActiveSite {
+    /// The family, by its name in MEROPS; M10 stands for all metzincins.
+    pub family: &'static str,
+    /// An enzyme that the family is known by.
+    pub known_by: &'static str,
+    /// Catalytic residues, each as `chain:number` by the author's names, with the insertion code.
+    pub residues: Vec<String>,
+    /// The indices of the atoms of each catalytic residue in the molecule.
+    #[serde(skip)]
+    pub atoms: Vec<Vec<usize>>,
+}
+
+impl ActiveSite {
+    /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one each.
+    pub fn all(molecule: &Molecule) -> Vec<Self> {
+        let chains = molecule.peptide_chains();
+        let chains: Vec<(&PeptideChain<'_>, Vec<char>)> = chains
+            .iter()
+            .map(|chain| (chain, chain.sequence().chars().collect()))
+            .collect();
+        let mut sites = Vec::new();
+        for family in families() {
+            let of = |anchor: &Anchor| places(molecule, anchor, &chains);
+            let found: Vec<Vec<Vec<Found>>> = family.anchors.iter().map(of).collect();
+            for catalytic in together(&found) {
+                let atoms = catalytic.iter().map(|own| own.atoms.clone().collect());
+                sites.push(Self {
+                    family: &family.name,
+                    known_by: &family.known_by,
+                    atoms: atoms.collect(),
+                    residues: catalytic.into_iter().map(|own| own.name).collect(),
+                });
+            }
+        }
+        sites
+    }
+
+    /// The family and the catalytic residues in words.
+    fn in_words(&self) -> String {
+        format!(
+            "of family {} like {} (catalytic {})",
+            self.family,
+            self.known_by,
+            self.residues.join(", ")
+        )
+    }
+
+    /// Several sites in words.
+    pub fn all_in_words(sites: &[Self]) -> String {
+        let words: Vec<String> = sites.iter().map(Self::in_words).collect();
+        words.join("; ")
+    }
+}
+
+/// Peptidases bind proteins at their active sites.
+pub struct PeptidasePrior;
+
+impl Prior for PeptidasePrior {
+    fn name(&self) -> &'static str {
+        "peptidase"
+    }
+
+    fn sites(&self, molecule: &Molecule) -> Vec<Site> {
+        let site = |site: ActiveSite| Site {
+            role: SiteRole::Favoured,
+            reason: format!("a peptidase, {}", site.in_words()),
+            record: json!(site),
+            residues: site.atoms,
+            weight: WEIGHT,
+        };
+        ActiveSite::all(molecule).into_iter().map(site).collect()
+    }
+
+    fn entry_name(&self) -> &'static str {
+        "active_sites"
+    }
+
+    fn findings(&self, molecule: &Molecule) -> Findings {
+        let sites = ActiveSite::all(molecule);
+        let words = ActiveSite::all_in_words(&sites);
+        let any = !sites.is_empty();
+        Findings {
+            entry: json!(sites),
+            lines: any
+                .then(|| format!("A peptidase, {words}"))
+                .into_iter()
+                .collect(),
+        }
+    }
+}
+
+/// A catalytic residue that was found.
+#[derive(Clone, Debug)]
+struct Found {
+    /// `chain:number` by the author's names.
+    name: String,
+    /// The indices of its atoms in the molecule.
+    atoms: Range<usize>,
+    /// Where its CA stands, Å.
+    position: [f64; 3],
+}
+
+/// The catalytic residues of each place where a pattern of an anchor fits.
+fn places(
+    molecule: &Molecule,
+    anchor: &Anchor,
+    chains: &[(&PeptideChain<'_>, Vec<char>)],
+) -> Vec<Vec<Found>> {
+    let mut places = Vec::new();
+    for (chain, sequence) in chains {
+        for start in 0..sequence.len() {
+            let rest = &sequence[start..];
+            if anchor.patterns.iter().any(|pattern| fits(rest, pattern)) {
+                let found = |place: &usize| found(molecule, chain, start + place);
+                let catalytic: Option<Vec<Found>> = anchor.catalytic.iter().map(found).collect();
+                places.extend(catalytic);
+            }
+        }
+    }
+    places
+}
+
+/// A residue of a chain, if it has a CA.
+fn found(molecule: &Molecule, chain: &PeptideChain<'_>, place: usize) -> Option<Found> {
+    let residue = chain.residues.get(place)?;
+    let mut atoms = molecule.atoms[residue.atoms.clone()].iter();
+    let carbon = atoms.find(|atom| atom.name == "CA")?;
+    Some(Found {
+        name: format!("{}:{}", chain.name, residue.number),
+        atoms: residue.atoms.clone(),
+        position: carbon.position,
+    })
+}
+
+/// Whether a sequence begins with a pattern.
+fn fits(sequence: &[char], pattern: &[String]) -> bool {
+    sequence.len() >= pattern.len()
+        && pattern
+            .iter()
+            .zip(sequence)
+            .all(|(allowed, letter)| allowed.is_empty() || allowed.contains(*letter))
+}
+
+/// One place of every anchor, all of whose catalytic residues stand together, in each way that there is.
+fn together(found: &[Vec<Vec<Found>>]) -> Vec<Vec<Found>> {
+    let near = |a: &Found, b: &Found| {
+        let square: f64 = (0..3)
+            .map(|axis| (a.position[axis] - b.position[axis]).powi(2))
+            .sum();
+        a.atoms != b.atoms && square <= TOGETHER * TOGETHER
+    };
+    let mut ways: Vec<Vec<Found>> = vec![Vec::new()];
+    for places in found {
+        let with = |way: &Vec<Found>| -> Vec<Vec<Found>> {
+            let fit = |place: &&Vec<Found>| {
+                let all = |own: &Found| place.iter().all(|other| near(own, other));
+                way.iter().all(all)
+            };
+            let places = places.iter().filter(fit);
+            places
+                .map(|place| [way.as_slice(), place].concat())
+                .collect()
+        };
+        ways = ways.iter().flat_map(with).collect();
+    }
+    // Where two anchors are alike, each way comes in either order.
+    let mut seen = BTreeSet::new();
+    ways.retain(|way| {
+        let atoms = way.iter().map(|found| found.atoms.start);
+        seen.insert(atoms.collect::<BTreeSet<_>>())
+    });
+    ways
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::priors::test_chains;
+    use knotdock_structures::molecule::{Atom, Format};
+
+    /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and from each other.
+    fn chain(chain: &str, sequence: &str, first: i64, bent: &[i64]) -> Vec<Atom> {
+        let position = |number: i64| {
+            if bent.contains(&number) {
+                [number as f64 / 100.0, 0.0, 0.0]
+            } else {
+                [100.0 * number as f64, 50.0, 0.0]
+            }
+        };
+        test_chains::chain(chain, sequence, first, &["N", "CA", "C"], position)
+    }
+
+    /// Family and residues of each site.
+    fn sites(atoms: Vec<Atom>) -> Vec<(&'static str, Vec<String>)> {
+        let sites = ActiveSite::all(&Molecule::new(atoms, Format::Pdb));
+        let shown = |site: ActiveSite| {
+            assert_eq!(site.atoms.len(), site.residues.len());
+            (site.family, site.residues)
+        };
+        sites.into_iter().map(shown).collect()
+    }
+
+    fn named(residues: &[&str]) -> Vec<String> {
+        residues.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    /// The segments about the catalytic residues of an enzyme of each family, by its usual numbers: chymotrypsin, subtilisin BPN', papain,
+    /// pepsin, collagenase of fibroblasts and carboxypeptidase A.
+    #[test]
+    fn an_enzyme_of_each_family_is_detected() {
+        type Piece = (&'static str, i64);
+        let enzymes: [(&str, &[Piece], &[&str]); 6] = [
+            (
+                "S1",
+                &[("WVVTAAHCGVTTSD", 51), ("SCMGDSGGPLVC", 190)],
+                &["A:57", "A:195"],
+            ),
+            (
+                "S8",
+                &[("DNNSHGTHVAGTVA", 60), ("NGTSMASPHVAG", 218)],
+                &["A:64", "A:221"],
+            ),
+            (
+                "C1",
+                &[("NQGSCGSCWAFSA", 18), ("VDHAVAAVGYN", 157)],
+                &["A:25", "A:159"],
+            ),
+            (
+                "A1",
+                &[("TVIFDTGSSNLWV", 28), ("AIVDTGTSLLTG", 212)],
+                &["A:32", "A:215"],
+            ),
+            ("M10", &[("AAHELGHSLGLSHS", 216)], &["A:218", "A:219"]),
+            (
+                "M14",
+                &[("IHSREWITQA", 68), ("HSYSQLLLYPYGY", 196)],
+                &["A:69", "A:72", "A:196"],
+            ),
+        ];
+        for (family, pieces, residues) in enzymes {
+            let numbers: Vec<i64> = residues.iter().map(|r| r[2..].parse().unwrap()).collect();
+            let atoms = |bent: &[i64]| {
+                let pieces = pieces.iter();
+                let pieces = pieces.map(|(piece, first)| chain("A", piece, *first, bent));
+                pieces.collect::<Vec<_>>().concat()
+            };
+            assert_eq!(sites(atoms(&numbers)), [(family, named(residues))]);
+            // The same segments of a chain whose catalytic residues stand apart are chance.
+            if pieces.len() > 1 {
+                assert_eq!(sites(atoms(&numbers[..1])), [], "{family}");
+            }
+        }
+    }
+
+    /// Their relatives by the same segments: urokinase, a peptidase of Streptomyces, furin, proteinase K, cathepsins B, L and D, the protease of HIV (of a family
+    /// next to A1), ADAM17 and carboxypeptidase B.
+    #[test]
+    fn relatives_are_detected_by_the_same() {
+        for (family, segments) in [
+            ("S1", &["WVISATHCFIDY", "CQGDSGGPLVC"][..]),
+            ("S1", &["ALTAGHCTNI", "CAQPGDSGGSLF"]),
+            ("S8", &["DNRHGTRCAGEVA", "THTGTSASAPLAA"]),
+            ("S8", &["RNGHGTHCAGTIG", "SISGTSMATPHVA"]),
+            ("C1", &["RDQGSCGSCWAFGA", "MGGHAIRILGWG"]),
+            ("C1", &["KNQGQCGSCWAFSA", "LDHGVLVVGYG"]),
+            ("A1", &["TVVFDTGSSNLWV", "AIVDTGTSLMVG"]),
+            ("A1", &["EALLDTGADDTVL", "EALLDTGADDTVL"]),
+            ("M10", &["VTTHELGHNFGAEHD"]),
+            ("M14", &["CGFHAREWISPA", "HSYSQMMIYPYSY"]),
+        ] {
+            let names = ["A", "B"].iter().zip(segments);
+            let near: Vec<i64> = (1..20).collect();
+            let atoms = names.map(|(name, segment)| chain(name, segment, 1, &near));
+            let found = sites(atoms.collect::<Vec<_>>().concat());
+            let families: Vec<&str> = found.iter().map(|(family, _)| *family).collect();
+            assert_eq!(families, [family], "{segments:?}");
+        }
+    }
+
+    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two copies, whose
+    /// residues go with the nearer.
+    #[test]
+    fn sites_span_chains_and_do_without_the_serine() {
+        let base = || chain("B", "WVVTAAHCGVTTSD", 51, &[57]);
+        let with = |serine: &str, bent| sites([base(), chain("C", serine, 190, bent)].concat());
+        let expected = [("S1", named(&["B:57", "C:195"]))];
+        assert_eq!(with("SCMGDSGGPLVC", &[195]), expected);
+        assert_eq!(with("SCMGDAGGPLVC", &[195]), expected);
+        assert_eq!(with("SCMGDXGGPLVC", &[195]), expected);
+        assert_eq!(with("SCMGDGGPLVC", &[195]), expected);
+        assert_eq!(with("SCMGESGGPLVC", &[195]), []);
+        let far: Vec<Atom> = [base(), chain("C", "SCMGDSGGPLVC", 190, &[195])]
+            .concat()
+            .into_iter()
+            .map(|mut atom| {
+                atom.chain = if atom.chain == "B" { "E" } else { "F" }.to_owned();
+                atom.position[2] += 40.0;
+                atom
+            })
+            .collect();
+        let near = [base(), chain("C", "SCMGDSGGPLVC", 190, &[195])].concat();
+        assert_eq!(
+            sites([near, far].concat()),
+            [
+                ("S1", named(&["B:57", "C:195"])),
+                ("S1", named(&["E:57", "F:195"]))
+            ]
+        );
+    }
+
+    /// Hen egg-white lysozyme, an enzyme that cuts no proteins; a residue without its CA; nothing at all.
+    #[test]
+    fn what_is_no_peptidase_has_none() {
+        let lysozyme = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSDITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
+        let all: Vec<i64> = (1..130).collect();
+        assert_eq!(sites(chain("A", lysozyme, 1, &all)), []);
+        let mut atoms = chain("A", "AAHELGHSLGLSHS", 216, &[218, 219]);
+        atoms.retain(|atom| atom.residue_number != 218 || atom.name != "CA");
+        assert_eq!(sites(atoms), []);
+        assert_eq!(sites(Vec::new()), []);
+    }
+}
