@@ -4,7 +4,8 @@
 //! at every ligand knot, by the window that spreads them: O(ligand knots), whatever the receptor's size. That makes it
 //! cheap to maximise thousands of peaks in six degrees of freedom.
 //!
-//! ACCURACY
+//! Against the sum over the same modes, a score errs by less than 1e-4 of the largest potential of one knot. Against
+//! the exact pair sum its accuracy is that of the fast path.
 
 use crate::effect::Effect;
 use crate::engine::Plan;
@@ -22,7 +23,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Fine grid points per mode: the window's slope needs more room than its value.
 const OVERSAMPLING: f64 = 1.5;
-/// Window width in fine cells: about 1e-4 of the largest potential.
+/// Window width in fine cells. A ligand's score is then within 1e-4 of the largest potential of one knot, its force
+/// within 2e-3 of that per Å (scoring/tests/potential_grid.rs).
 const WIDTH: usize = 6;
 /// Lanes of the innermost loop, at least `WIDTH`.
 const LANES: usize = 8;

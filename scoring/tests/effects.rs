@@ -225,7 +225,8 @@ fn the_field_reads_all_terms() {
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
     let scale = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
-    // Strewn knots touch in few places: their best score is a tenth of a protein's, against which errors are small.
+    // The plan's tolerance, against the exact sum; the grid's own error is a hundredth of it (potential_grid.rs).
+    // Strewn knots touch in few places: their best score is a tenth of a protein's.
     let bound = 2e-2;
     for shift in [[15.0, -9.0, 6.0], [14.0, 9.0, -8.0], [0.0, 17.0, 5.0]] {
         let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], shift);
@@ -470,8 +471,8 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
     assert!(elsewhere[0] < 0.5, "{elsewhere}");
 }
 
-/// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to: where its patch
-/// is all that is not, away from a patch that is, and where a patch attracts it.
+/// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to. That is at the
+/// only free patch, away from a blocked one, and at an active one.
 #[test]
 fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
     let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));

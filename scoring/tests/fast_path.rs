@@ -136,8 +136,8 @@ fn slices_meet_the_requested_tolerance() {
 }
 
 /// Below 1e-2 the grid's spacing comes from a bound on what the modes beyond it take, with a slack that whole sums have
-/// never used up: neither small bodies, whose few pairs may be off in phase, nor offsets near zero, where skins and
-/// cores nearly cancel, nor kernels with a cusp or an edge.
+/// never used up. Cases: small bodies, whose few pairs may be off in phase, offsets near zero, where skins and cores
+/// nearly cancel, and kernels with a cusp or an edge.
 #[test]
 fn cut_modes_stay_within_the_tolerance() {
     let (mut worst_share, mut counted) = (0.0f64, 0);

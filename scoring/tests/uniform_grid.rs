@@ -278,9 +278,9 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
     }
 }
 
-/// Random modes of both engines' results against the 4D direct transform: the bodies' factor u_r(w) as a Fourier series
-/// along the radius, u_r = sum_k U_k exp(-2 pi i eta_k r), turns rho_A(w) into sum_k U_k(w) rho_A(w, eta_k); and
-/// against the 3D one with u_r as weights.
+/// Random modes of both engines' results against the direct transforms: the 3D one with the factors u_r(w) as weights,
+/// and the 4D one. As a Fourier series along the radius, u_r = sum_k U_k exp(-2 pi i eta_k r), which turns rho_A(w)
+/// into sum_k U_k(w) rho_A(w, eta_k).
 #[test]
 fn modes_equal_the_direct_transforms() {
     let (a, b) = (cloud(30, 6.0, &RADII, 13), cloud(15, 4.0, &RADII, 14));

@@ -192,8 +192,8 @@ fn poses(count: usize, spread: f64) -> Vec<Pose> {
 
 /// Score alone, score from slices, and a double loop over the kernel's own distance tables, which have other panels,
 /// must agree to 1e-9 of the best score, and so must the gradient's. Hard cases: coincident knots, whose distance is 0;
-/// knots at distances of 1e6 Å; more knots within reach than are collected at a time; radii of a ratio of 1e6, whose
-/// tables reach far beyond the panels of small pairs.
+/// knots at distances of 1e6 Å; more knots within reach than are collected at a time. Also radii of a ratio of 1e6,
+/// whose tables reach far beyond the panels of small pairs.
 #[test]
 fn score_alone_slices_and_plain_loop_agree() {
     let mut far = cloud(50, 12.0, 11);

@@ -1,7 +1,8 @@
 //! The lifted cone (B&I eq. 44): one kernel over (x, r) whose slice at height rho is the pair kernel of two balls.
 //!
 //! kappa(d, sigma) = psi_alpha(d / sigma) w(sigma). For balls of radii r, s and a slice at offset rho, sigma = r + s +
-//! rho. w is the trim along the radius axis: it makes the cone periodic in sigma, so that it has Fourier modes.
+//! rho. The factor w is the trim along the radius axis: it makes the cone periodic in sigma, so that it has Fourier
+//! modes.
 //!
 //! B&I's r axis runs the other way, r = -sigma. Their trim is printed as psi_alpha(1 - r / L) after eq. 44, and as
 //! psi_alpha(1 - 2 r / L) in section 2.2. For r < 0 the argument is above 1, where psi_alpha is 0: as printed it

@@ -67,8 +67,8 @@ pub enum KernelError {
     },
 }
 
-/// Longest reach of a kernel in resolutions. Tables take the square of it in time: here those of the lifted axis 5 s on
-/// one core (measured: 2.7 s at 100, 11 s at 200), and those of a pair sum a second for each sum of two radii.
+/// Longest reach of a kernel in resolutions. Tables take the square of it in time. Those of the lifted axis take 5 s
+/// here on one core (measured: 2.7 s at 100, 11 s at 200), those of a pair sum a second for each sum of two radii.
 pub(super) const LONGEST: f64 = 140.0;
 /// Most resolutions that the low-pass may ring over: those of a pass length a hundredth above the resolution.
 pub(super) const MAX_RING_LENGTH: f64 = 102.0;

@@ -28,8 +28,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 const MOST: usize = 24;
 /// Most copies in each of two rings.
 const MAX_FOLDS: usize = 12;
-/// How far a pose may be from a ring's: in radians of its angle, and of its slide along the axis in Å plus this share
-/// of its whole translation, which is long where the file's origin is far.
+/// Largest departure of a pose from a ring's: in radians of its angle, and in Å of its slide along the axis. This share
+/// of its translation is added, which is long where the file's origin is far.
 const OFF: f64 = 1e-6;
 
 /// How copies of a molecule stand to each other: Cn, n of them about an axis, or Dn, two rings of n face to face.
