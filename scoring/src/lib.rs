@@ -23,8 +23,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, the affinity function, score and slices |
-//! | [`effect`] | terms beside shape in the search |
+//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, affinity function, score and slices |
 //! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
 //! | [`transform`] | knots to modes and modes to grids |
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
@@ -33,7 +32,7 @@
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
-//! | [`rescoring`] | terms that only kept poses get |
+//! | [`terms`] | terms beside shape: effects of the search, and pose terms that only kept poses get |
 
 pub mod affinity;
 mod correlator;

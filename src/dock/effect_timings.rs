@@ -96,7 +96,7 @@ fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
         .map(|index| {
             let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
             let start = Instant::now();
-            engine.turn(rotation, &mut work);
+            engine.transform_ligand(rotation, &mut work);
             for half_turn in images {
                 engine.correlate_turned(*half_turn, &mut work);
             }

@@ -1,7 +1,7 @@
-//! The receptor's fields that the ligand's knots read, and which knot reads which.
+//! The receptor's components that the ligand's knots read, and which knot reads which.
 //!
-//! With few radii a field belongs to a radius, and every knot reads one. With many, knots would read all of the lifted modes; the
-//! factorisation of the lifted axis then stands for them.
+//! With few radii a component belongs to a radius, and every knot reads one. With many, knots would read all of the
+//! lifted modes; the factorisation of the lifted axis then stands for them.
 
 use crate::engine::Plan;
 use crate::engine::{Factors, ReceptorSpectra};
@@ -9,42 +9,46 @@ use crate::transform::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Singular values below this share of the tolerance, relative to the largest, are left out where fields are factored: the error
-/// of the score is some ten times that of the singular values.
+/// Singular values below this share of the tolerance, relative to the largest, are left out where components are
+/// factored: the error of the score is some ten times that of the singular values.
 const SINGULAR_SHARE: f64 = 1e-2;
 
-/// One field: a combination of the folded spectra.
-pub(super) struct Field {
+/// One component: a combination of the receptor's spectra.
+pub(super) struct Component {
     /// (basis function, coefficient).
     terms: Vec<(usize, f64)>,
     /// (ligand knot, weight).
     pub knots: Vec<(usize, f64)>,
 }
 
-impl Field {
-    /// H of the field at a mode.
-    pub fn mode<T: Real>(&self, folded: &ReceptorSpectra<T>, place: usize) -> Complex64 {
+impl Component {
+    /// H of the component at a mode.
+    pub fn mode<T: Real>(&self, spectra: &ReceptorSpectra<T>, place: usize) -> Complex64 {
         self.terms
             .iter()
             .map(|&(function, coefficient)| {
-                let value = folded.spectra()[function][place];
+                let value = spectra.spectra()[function][place];
                 Complex64::new(value.re.wide(), value.im.wide()) * coefficient
             })
             .sum()
     }
 }
 
-/// The fields of a folded correlation.
-pub(super) fn of<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, knots: usize) -> Vec<Field> {
-    let functions = folded.full_rank();
-    let direct: Vec<Field> = (0..functions)
-        .map(|function| Field {
+/// The components of a correlation.
+pub(super) fn of<T: Real>(
+    plan: &Plan,
+    spectra: &ReceptorSpectra<T>,
+    knots: usize,
+) -> Vec<Component> {
+    let functions = spectra.full_rank();
+    let direct: Vec<Component> = (0..functions)
+        .map(|function| Component {
             terms: vec![(function, 1.0)],
-            knots: nonzero(knots, |knot| folded.ligand_weight(knot, function)),
+            knots: nonzero(knots, |knot| spectra.ligand_weight(knot, function)),
         })
-        .filter(|field| !field.knots.is_empty())
+        .filter(|component| !component.knots.is_empty())
         .collect();
-    let reads: usize = direct.iter().map(|field| field.knots.len()).sum();
+    let reads: usize = direct.iter().map(|component| component.knots.len()).sum();
     if reads <= 2 * knots {
         return direct;
     }
@@ -52,7 +56,7 @@ pub(super) fn of<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, knots: usize
         combination,
         coefficients,
         singular,
-    } = folded.factor(plan.modes());
+    } = spectra.factor(plan.modes());
     let largest = singular.first().copied().unwrap_or(0.0);
     let least = SINGULAR_SHARE * plan.options().tolerance * largest;
     let rank = singular.iter().filter(|&&value| value > least).count();
@@ -60,7 +64,7 @@ pub(super) fn of<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, knots: usize
         return direct;
     }
     (0..rank)
-        .map(|q| Field {
+        .map(|q| Component {
             terms: (0..functions).map(|b| (b, combination[(b, q)])).collect(),
             knots: nonzero(knots, |knot| coefficients[(knot, q)]),
         })
@@ -77,9 +81,9 @@ fn nonzero(knots: usize, weight: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
 /// exp(+2 pi i w.c) by place of the mode, c the middle of the receptor in the box.
 pub(super) fn centering<T: Real>(
     plan: &Plan,
-    folded: &ReceptorSpectra<T>,
+    spectra: &ReceptorSpectra<T>,
 ) -> impl Fn(usize) -> Complex64 {
-    let center = folded.center();
+    let center = spectra.center();
     let mut turns = Vec::with_capacity(plan.modes().count);
     plan.modes().for_each(|_, w, _| {
         turns.push(w[0] * center[0] + w[1] * center[1] + w[2] * center[2]);
