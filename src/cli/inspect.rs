@@ -1,4 +1,4 @@
-//! `knotdock inspect`: what a structure file holds, what would be kept of it, and what would be assumed.
+//! `knotdock inspect`: the contents of a structure file, what of it is kept, and what is assumed.
 
 use std::path::{Path, PathBuf};
 
@@ -103,7 +103,7 @@ impl Inspect {
         console.say(format!(
             "{}\n{}\n{}",
             molecule.report,
-            told(
+            labels_text(
                 &labels,
                 (&unresolved, &termini),
                 ph,
@@ -171,8 +171,8 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// The labels in words.
-fn told(
+/// Labels, flexible regions, surface and findings in words.
+fn labels_text(
     labels: &LabelReport,
     (unresolved, termini): (&MissingResidues, &ChainEnds),
     ph: f64,
