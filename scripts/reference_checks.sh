@@ -27,6 +27,7 @@ for sides in "receptor ligand" "ligand receptor"; do
         "${example}_${first}_bound.pdb" "${example}_${second}_bound.pdb"
 done
 "$(python dockq)" scripts/checks/check_atom_pairs.py
+"$(python dockq)" scripts/reference/pair_sum.py "$target/debug/knotdock"
 "$(python rdkit)" scripts/checks/check_rdkit.py "$target/debug/knotdock" structures/examples
 # The full set of files, five times as many, goes without --few.
 "$(python gemmi)" scripts/checks/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few

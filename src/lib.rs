@@ -6,6 +6,7 @@ pub mod evaluate;
 pub mod mesh;
 pub mod options;
 pub mod output;
+pub mod plot;
 pub mod pose_geometry;
 pub mod pose_space;
 pub mod priors;

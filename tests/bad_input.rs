@@ -201,7 +201,10 @@ fn options_out_of_range() {
     let place = Place::new();
     for option in [
         ["--rotations", "0"],
-        ["--angle", "0"],
+        ["--rotations", "0deg"],
+        ["--rotations", "0.2deg"],
+        ["--config", "nowhere.toml"],
+        ["--config", "receptor.pdb"],
         ["--spacing", "-1"],
         ["--offset", "nan"],
         ["--effects", "gravity"],
@@ -287,7 +290,7 @@ fn a_negative_number_is_judged_as_the_value_that_it_is() {
     for option in [
         "--lambda",
         "--rotations",
-        "--angle",
+        "--fine-rotations",
         "--resolution",
         "--ph",
         "--threads",

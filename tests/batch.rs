@@ -201,7 +201,7 @@ fn a_known_complex_is_measured_against() {
     assert_eq!(best["capri"], row["capri"].as_str());
     let record = fs::read(folder.path().join("out/a/run.json")).unwrap();
     let record: Value = serde_json::from_slice(&record).unwrap();
-    assert_eq!(record["options"]["active_receptor"], "A:5");
+    assert_eq!(record["options"]["restraints"]["active_receptor"], "A:5");
 
     // Another known complex is another run, and so is a table of poses that is gone.
     let again = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 48");

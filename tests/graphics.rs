@@ -29,10 +29,13 @@ fn record(run: &Path) -> Value {
 /// Runs with both engines and holds the rows of one to those of the other: every row of either among the other's but for a few at the end, where a
 /// rounding error decides what is kept. Rows that both have were scored by the same exact sum; the grid's scores differ by single precision alone.
 fn hold_to_cpu(folder: &Path, arguments: &str) {
-    run(folder, &format!("dock {arguments} -o cpu --quiet"));
     run(
         folder,
-        &format!("dock {arguments} -o gpu --engine gpu --quiet"),
+        &format!("dock {arguments} --diagnostics -o cpu --quiet"),
+    );
+    run(
+        folder,
+        &format!("dock {arguments} --diagnostics -o gpu --engine gpu --quiet"),
     );
     let (cpu, gpu) = (rows(&folder.join("cpu")), rows(&folder.join("gpu")));
     let best = cpu
@@ -48,14 +51,14 @@ fn hold_to_cpu(folder: &Path, arguments: &str) {
             continue;
         };
         shared += 1;
-        assert_eq!(row["score"], twin["score"]);
+        assert_eq!(row["search_score"], twin["search_score"]);
         let difference = number(row, "score_grid") - number(twin, "score_grid");
         assert!(difference.abs() < 1e-5 * best, "{difference} of {best}");
     }
     println!("{shared} of {} and {} rows", cpu.len(), gpu.len());
     assert!(!cpu.is_empty() && 50 * shared >= 49 * cpu.len().max(gpu.len()));
     let record = record(&folder.join("gpu"));
-    assert_eq!(record["options"]["engine"], "gpu");
+    assert_eq!(record["options"]["search"]["engine"], "gpu");
     assert!(record["machine"]["adapter"]["name"].is_string());
 }
 

@@ -59,7 +59,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
     assert!(!best.is_empty() && best.len() <= 10);
     assert_eq!(best[0]["rank"], 1);
     assert!(best[0]["score"].is_number() && best[0]["irmsd"].is_number());
-    assert!(best[0]["refined"].is_boolean() && best[0]["capri"].is_string());
+    assert!(best[0]["cluster_size"].is_number() && best[0]["capri"].is_string());
     let complexes = object["complexes"].as_array().unwrap();
     assert_eq!(complexes.len(), 2);
     for path in complexes {
@@ -93,12 +93,12 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
         ]
     );
     assert!(
-        recorded["options"].get("threads").is_none(),
+        recorded["options"].get("machine").is_none(),
         "threads are the machine's"
     );
     let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
     assert!(columns.lines().next().unwrap().ends_with(
-        "cluster_score,pose_score,z_score,restraint,other_copies,fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,irmsd,lrmsd,fnat,dockq,capri"
+        "unresolved,termini,other_copies,z_score,qw,qx,qy,qz,tx,ty,tz,irmsd,lrmsd,fnat,dockq,capri"
     ));
 }
 
@@ -312,13 +312,13 @@ fn reading_options_are_recorded_and_followed() {
         ("hydrogens", "drop".into()),
         ("altloc", "A".into()),
     ] {
-        assert_eq!(first["options"][name], value, "{name}");
+        assert_eq!(first["options"]["input"][name], value, "{name}");
     }
     run(folder.path(), "dock --rerun run/run.json -o again --quiet");
     let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
     assert_eq!(recorded("again")["options"], first["options"]);
-    run(folder.path(), "complex run --rank 1 -o out --quiet");
+    run(folder.path(), "export run --rank 1 -o out --quiet");
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let placed = String::from_utf8(bytes("out/rank_0001.pdb")).unwrap();
     assert!(

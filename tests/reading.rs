@@ -49,7 +49,7 @@ fn residues_left_out_are_recorded_and_followed() {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
     };
     let first = recorded("run");
-    assert_eq!(first["options"]["min_plddt"], 50.0);
+    assert_eq!(first["options"]["input"]["min_plddt"], 50.0);
     let ligand = &first["inputs"]["ligand"];
     assert_eq!(ligand["atoms"], 50);
     assert_eq!(
@@ -127,7 +127,7 @@ fn an_assembly_is_recorded_and_followed() {
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
-    assert_eq!(first["options"]["assembly"], "1");
+    assert_eq!(first["options"]["input"]["assembly"], "1");
     assert_eq!(first["inputs"]["ligand"]["atoms"], 120);
     assert_eq!(
         first["inputs"]["ligand"]["report"]["assembly"],
@@ -248,7 +248,7 @@ fn all_models_are_recorded_and_followed() {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
     };
     let first = recorded("run");
-    assert_eq!(first["options"]["model"], "all");
+    assert_eq!(first["options"]["input"]["model"], "all");
     let ligand = &first["inputs"]["ligand"];
     assert_eq!(ligand["atoms"], 120);
     assert_eq!(
@@ -273,7 +273,7 @@ fn all_models_are_recorded_and_followed() {
     let pairs = "name,receptor,ligand,model,rotations\nfirst,receptor.pdb,dimer.pdb1,all,20\n";
     fs::write(folder.join("pairs.csv"), pairs).unwrap();
     succeed(folder, "batch pairs.csv -o runs --quiet".split_whitespace());
-    assert_eq!(recorded("runs/first")["options"]["model"], "all");
+    assert_eq!(recorded("runs/first")["options"]["input"]["model"], "all");
     assert_eq!(recorded("runs/first")["inputs"]["ligand"]["atoms"], 120);
 
     // Two files of one model have none to join.
@@ -355,7 +355,7 @@ fn picked_residues_are_recorded_and_followed() {
     );
     assert_eq!(inputs["receptor"]["atoms"], 5 * 24);
     assert_eq!(inputs["ligand"]["atoms"], 5 * 6);
-    assert_eq!(first["options"]["active_ligand"], "A:2,3,4-6");
+    assert_eq!(first["options"]["restraints"]["active_ligand"], "A:2,3,4-6");
     succeed(
         folder,
         "dock --rerun run/run.json -o again --quiet".split_whitespace(),

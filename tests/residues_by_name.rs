@@ -94,7 +94,7 @@ fn a_dropped_residue_is_recorded_and_followed() {
         "dock inhibited.pdb ligand.pdb --drop-residue XK2 --native native.pdb -o run {options}"
     ));
     let first = run_json(folder, "run");
-    assert_eq!(first["options"]["drop_residue"], json!(["XK2"]));
+    assert_eq!(first["options"]["input"]["drop_residue"], json!(["XK2"]));
     assert_eq!(
         first["inputs"]["receptor"]["report"]["dropped"],
         json!([{"kind": "residue", "atoms": 6, "names": {"XK2": 6}}])
@@ -125,7 +125,7 @@ fn a_dropped_residue_is_recorded_and_followed() {
     .unwrap();
     run("batch pairs.csv -o batch -- --rotations 20 --write-top 0");
     let pair = run_json(folder, "batch/inhibited_ligand");
-    assert_eq!(pair["options"]["drop_residue"], json!(["XK2"]));
+    assert_eq!(pair["options"]["input"]["drop_residue"], json!(["XK2"]));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose among its case's;
 //! `search.csv` the first poses of a small search. These are regression tables, our own output of the day they were blessed; what
 //! can be known otherwise is tested as such below: closed forms, signs, sums.
+//! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every pose in Python.
 //!
 //! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
 //! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
-use knotdock::progress::Progress;
+use knotdock::progress::NoProgress;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
@@ -269,13 +270,6 @@ fn scores_terms_slices_and_ranks_of_poses() {
     check("scores.csv", &columns, &found, &tolerance);
 }
 
-struct Silent;
-
-impl Progress for Silent {
-    fn stage(&self, _: &str, _: u64) {}
-    fn advance(&self, _: u64) {}
-}
-
 #[test]
 fn first_poses_of_small_searches() {
     let mut found = Table::new();
@@ -288,11 +282,11 @@ fn first_poses_of_small_searches() {
         });
         let plan = knotdock::dock::plan::plan(&receptor, &ligand, &options).unwrap();
         let points = knotdock::dock::run::molecule_points(&ligand);
-        let outcome = knotdock::dock::run::dock(&plan, &points, &Silent).unwrap();
+        let outcome = knotdock::dock::run::dock(&plan, &points, &NoProgress).unwrap();
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),
-                Some(row.score),
+                Some(row.search_score),
                 Some(row.score_grid),
                 Some(row.pose_score),
             ];

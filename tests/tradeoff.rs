@@ -72,7 +72,7 @@ fn check(folder: &Path, object: &Value) {
     assert_eq!(number(&settings[1], "agreement"), 1.0);
     let competitors = |own_score: bool| {
         settings.iter().filter(move |setting| {
-            setting["knob"] != "reference"
+            setting["parameter"] != "reference"
                 && (!own_score
                     || ["resolution", "sample_grid"]
                         .iter()
@@ -112,13 +112,11 @@ fn check(folder: &Path, object: &Value) {
     );
     assert!(advice["text"].as_str().unwrap().starts_with("Take "));
     let svg = fs::read_to_string(directory.join("tradeoff.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains(">default</text>"));
-    let png = fs::read(directory.join("tradeoff.png")).unwrap();
-    assert!(png.starts_with(b"\x89PNG"));
+    assert!(svg.starts_with("<svg") && svg.lines().any(|line| line.trim() == "default"));
     assert!(!directory.join(".partial").exists());
 }
 
-/// Two helices: every knob of molecules is moved, a finer tolerance has a smaller error and is nearer to the reference score, and the known
+/// Two helices: every parameter of molecules is moved, a finer tolerance has a smaller error and is nearer to the reference score, and the known
 /// complex is ranked.
 #[test]
 fn molecules() {
@@ -141,18 +139,21 @@ fn molecules() {
     let object = swept(folder.path(), &arguments);
     check(folder.path(), &object);
     let settings = object["tradeoff"]["settings"].as_array().unwrap();
-    for knob in [
+    for parameter in [
         "tolerance",
         "spacing",
         "resolution",
         "rotations",
+        "fine-rotations",
         "per-rotation",
         "refine",
         "combination",
     ] {
         assert!(
-            settings.iter().any(|setting| setting["knob"] == knob),
-            "{knob}"
+            settings
+                .iter()
+                .any(|setting| setting["parameter"] == parameter),
+            "{parameter}"
         );
     }
     let of = |name: &str, column: &str| {
@@ -174,7 +175,7 @@ fn molecules() {
     // Another resolution is another score, another tolerance all but the same.
     let apart = settings
         .iter()
-        .filter(|setting| setting["knob"] == "resolution");
+        .filter(|setting| setting["parameter"] == "resolution");
     for setting in apart {
         assert!(setting["definition_rms"].as_f64().unwrap() > of("default", "definition_rms"));
     }
@@ -192,16 +193,20 @@ fn molecules() {
     assert!(String::from_utf8_lossy(&again.stderr).contains("--force"));
     let few = [
         &arguments[..],
-        &["--force", "--knobs", "rotations", "--quiet"],
+        &["--force", "--parameters", "rotations", "--quiet"],
     ]
     .concat();
     let few = swept(folder.path(), &few);
     check(folder.path(), &few);
-    let knobs = few["tradeoff"]["settings"].as_array().unwrap().iter();
-    assert!(knobs.skip(2).all(|setting| setting["knob"] == "rotations"));
+    let parameters = few["tradeoff"]["settings"].as_array().unwrap().iter();
+    assert!(
+        parameters
+            .skip(2)
+            .all(|setting| setting["parameter"] == "rotations")
+    );
 }
 
-/// Two halves of a block: the sampler's grid is a knob, and a grid that cannot sample the parts is left out with the reason.
+/// Two halves of a block: the sampler's grid is a parameter, and a grid that cannot sample the parts is left out with the reason.
 #[test]
 fn meshes() {
     let folder = tempfile::tempdir().unwrap();
@@ -219,7 +224,7 @@ fn meshes() {
             "24",
             "--poses",
             "60",
-            "--knobs",
+            "--parameters",
             "sample-grid,tolerance,rotations",
             "-o",
             "out",
@@ -230,7 +235,7 @@ fn meshes() {
     let refused = object["tradeoff"]["refused"].as_array().unwrap();
     let grids = settings
         .iter()
-        .filter(|setting| setting["knob"] == "sample-grid");
+        .filter(|setting| setting["parameter"] == "sample-grid");
     assert_eq!(grids.clone().count() + refused.len(), 2);
     // Another grid keeps the gap that the default looks for, which would follow from the grid otherwise.
     for grid in grids {
@@ -254,11 +259,11 @@ fn bad_input_is_refused_before_anything_runs() {
     let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
     for arguments in [
         vec!["missing.pdb", &ligand],
-        vec![receptor.as_str(), &ligand, "--knobs", "colour"],
+        vec![receptor.as_str(), &ligand, "--parameters", "colour"],
         vec![
             receptor.as_str(),
             &ligand,
-            "--knobs",
+            "--parameters",
             "tolerance,sample-grid",
         ],
         vec![receptor.as_str(), &ligand, "--tolerance", "1e-9"],
@@ -312,7 +317,7 @@ fn a_docking_within_an_accuracy_and_a_time() {
         .as_f64()
         .unwrap();
     assert!(error <= 1e-3 && run["error"]["rms"].as_f64().unwrap() < 2.0 * error);
-    assert_eq!(run["options"]["rotations"], 8);
+    assert_eq!(run["options"]["search"]["rotations"], 8);
     // Seconds of a rotation follow, and with them a budget for about 700.
     let each = run["machine"]["chosen"]["predicted_seconds"]
         .as_f64()
@@ -322,10 +327,10 @@ fn a_docking_within_an_accuracy_and_a_time() {
     let (code, object) = with(&[&accuracy[..], &["--budget", &budget, "-o", "one"]].concat());
     assert_eq!(code, Some(0));
     let run = &object["run"];
-    assert_eq!(run["options"]["rotations"], 700);
+    assert_eq!(run["options"]["search"]["rotations"], 700);
     assert_eq!(
-        run["options"]["tolerance"],
-        plain.1["run"]["options"]["tolerance"]
+        run["options"]["kernel"]["tolerance"],
+        plain.1["run"]["options"]["kernel"]["tolerance"]
     );
     let chosen = &run["machine"]["chosen"];
     assert!(
@@ -389,7 +394,7 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     assert!(output.status.success(), "{output:?}");
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     let run = &object["run"];
-    let planned = run["options"]["rotations"].as_u64().unwrap();
+    let planned = run["options"]["search"]["rotations"].as_u64().unwrap();
     assert!(planned > 10_000);
     let searched = run["results"]["rotations"].as_u64().unwrap();
     assert!((1..planned).contains(&searched), "{searched} of {planned}");

@@ -18,7 +18,7 @@ use std::path::Path;
 use knotdock::dock::plan::{DockPlan, plan};
 use knotdock::dock::run::{dock, molecule_points};
 use knotdock::options::DockOptions;
-use knotdock::progress::Progress;
+use knotdock::progress::NoProgress;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::{CostModel, LADDER, Workload};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
@@ -27,13 +27,6 @@ use pace::Pace;
 /// Dockings of a setting, and seconds after which no further one is begun.
 const MAX_DOCKINGS: usize = 3;
 const ENOUGH_SECONDS: f64 = 60.0;
-
-struct Silent;
-
-impl Progress for Silent {
-    fn stage(&self, _: &str, _: u64) {}
-    fn advance(&self, _: u64) {}
-}
 
 fn molecule(path: &str) -> Result<Molecule, Box<dyn Error>> {
     Ok(read(&InputSpec::parse(path)?, &ReadOptions::default())?)
@@ -56,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Memory is touched and the processor awake after one.
     pace.seconds();
     let before = pace.seconds();
-    let fitted = calibrate(threads, &Silent)?;
+    let fitted = calibrate(threads, &NoProgress)?;
     let machine = Machine {
         threads,
         fitted,
@@ -131,7 +124,7 @@ fn pair(files: &[String; 2], machine: &Machine) -> Result<(), Box<dyn Error>> {
             let before = machine.pace.seconds();
             let clock = std::time::Instant::now();
             let plan: DockPlan = plan(&receptor, &ligand, &options)?;
-            let outcome = dock(&plan, &molecule_points(&ligand), &Silent)?;
+            let outcome = dock(&plan, &molecule_points(&ligand), &NoProgress)?;
             let seconds = clock.elapsed().as_secs_f64();
             let pace = 0.5 * (before + machine.pace.seconds()) / machine.at_fit;
             times.push(Time { seconds, pace });

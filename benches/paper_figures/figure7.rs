@@ -6,8 +6,8 @@ use crate::scene::Scene;
 use crate::table::{Cell, Table};
 use crate::timing::{least, timed};
 use crate::whole::{Errors, Whole};
-use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
-use knotdock::tradeoff::drawing::Colour;
+use knotdock::plot::chart::Colour;
+use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::{Selection, total};
 
 /// Everything measured at one m'.
@@ -134,6 +134,7 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
         name: name.to_owned(),
         colour: colour_of_grid(whole.grid().per_axis),
         style,
+        labels: Vec::new(),
         points: rows
             .iter()
             .filter(|(_, row)| row.per_axis == whole.grid().per_axis)
@@ -159,6 +160,7 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
         name: name.to_owned(),
         colour,
         style,
+        labels: Vec::new(),
         points: correlations
             .iter()
             .map(|(_, whole)| [whole.values().len() as f64, 1e3 * value(whole)])
@@ -168,6 +170,7 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
         name: name.to_owned(),
         colour,
         style: Style::HollowDiscs,
+        labels: Vec::new(),
         points: vec![point],
     };
     let line =

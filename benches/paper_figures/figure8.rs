@@ -7,8 +7,8 @@ use crate::spectrum::Kernel;
 use crate::table::{Cell, Table};
 use crate::timing::timed;
 use crate::ways_measured::{Measured, OfGrid, measure};
-use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
-use knotdock::tradeoff::drawing::Colour;
+use knotdock::plot::chart::Colour;
+use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;
 
 /// The ways in the order in which they are measured.
@@ -152,18 +152,21 @@ fn panel(grid: &OfGrid) -> Panel {
             name: "paper: NDFT wins left of 2^16 (CPU), for m > 2^15".to_owned(),
             colour: [0xcc, 0x79, 0xa7],
             style: Style::Guide,
+            labels: Vec::new(),
             points: vec![[2f64.powi(16), 1e-9], [2f64.powi(16), 1e9]],
         },
         Series {
             name: "paper: left of 2^12 (GPU), for m > 2^18".to_owned(),
             colour: [0xaa, 0xaa, 0xaa],
             style: Style::Guide,
+            labels: Vec::new(),
             points: vec![[2f64.powi(12), 1e-9], [2f64.powi(12), 1e9]],
         },
         Series {
             name: "rasterise + 3D FFT".to_owned(),
             colour: [0, 0, 0],
             style: Style::Line,
+            labels: Vec::new(),
             points: ends.map(|modes| [modes, 1e3 * grid.raster()]).to_vec(),
         },
     ];
@@ -190,6 +193,7 @@ fn panel(grid: &OfGrid) -> Panel {
                 name: "scaled up from a share".to_owned(),
                 colour: COLOURS[way],
                 style: Style::Dashed,
+                labels: Vec::new(),
                 points: joined.collect(),
             });
         }
@@ -197,6 +201,7 @@ fn panel(grid: &OfGrid) -> Panel {
             name: NAMES[way].to_owned(),
             colour: COLOURS[way],
             style: Style::Line,
+            labels: Vec::new(),
             points: measured,
         });
     }

@@ -9,7 +9,7 @@ use crate::table::{Cell, Table};
 use crate::timing::least;
 use crate::ways::{Points, fast_3d, plan_3d};
 use crate::whole::Whole;
-use knotdock::tradeoff::chart::{Axis, Panel, Series, Style};
+use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::RotationSpectrum;
 use nalgebra::Vector3;
@@ -175,6 +175,7 @@ fn panels(correlations: &[&Whole], rows: &[Row]) -> Vec<Panel> {
         name: grid_name(per_axis),
         colour: colour_of_grid(per_axis),
         style: Style::Line,
+        labels: Vec::new(),
         points: rows
             .iter()
             .filter(|row| row.per_axis == per_axis && row.rms > 1e-9)
@@ -191,6 +192,7 @@ fn panels(correlations: &[&Whole], rows: &[Row]) -> Vec<Panel> {
         name: "one millisecond".to_owned(),
         colour: [0xaa, 0xaa, 0xaa],
         style: Style::Guide,
+        labels: Vec::new(),
         points: vec![[1.0, 1.0], [1e9, 1.0]],
     }];
     times.extend(correlations.iter().map(|whole| Series {
@@ -205,6 +207,7 @@ fn panels(correlations: &[&Whole], rows: &[Row]) -> Vec<Panel> {
         name: "paper: 1 ms at 2^12 modes".to_owned(),
         colour: [0xcc, 0, 0],
         style: Style::HollowDiscs,
+        labels: Vec::new(),
         points: vec![[PAPER_MODES, 1.0]],
     });
     vec![

@@ -89,9 +89,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     figure7::figure(&correlations).write(&options.out, images)?;
     // Of the largest grid but one, whose points can still be told apart.
     if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
-        let picture = sections::sections(whole)?;
+        let picture = sections::sections(whole);
         for folder in [Some(options.out.as_path()), images].into_iter().flatten() {
-            fs::write(folder.join("fig7_sections.png"), &picture)?;
+            fs::write(folder.join("fig7_sections.svg"), &picture)?;
         }
     }
     let correlations: Vec<(&Scene, &Kernel, &Whole)> = scenes

@@ -1,8 +1,7 @@
-//! What a figure leaves behind: tables as Markdown and CSV, a picture as SVG and PNG.
+//! What a figure leaves behind: tables as Markdown and CSV, a picture as SVG.
 
 use crate::table::{Cell, Table};
-use knotdock::tradeoff::chart::{Panel, draw};
-use knotdock::tradeoff::drawing::Colour;
+use knotdock::plot::chart::{Colour, Panel, draw};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -48,12 +47,8 @@ impl Figure {
     /// # Errors
     /// What writing gives.
     pub fn write(&self, folder: &Path, images: Option<&Path>) -> io::Result<()> {
-        let picture = draw(&self.panels, self.columns);
-        let svg = picture.svg();
+        let svg = draw(&self.panels, self.columns).map_err(io::Error::other)?;
         fs::write(folder.join(format!("{}.svg", self.name)), &svg)?;
-        if let Some(png) = picture.png() {
-            fs::write(folder.join(format!("{}.png", self.name)), png)?;
-        }
         if let Some(images) = images {
             fs::write(images.join(format!("{}.svg", self.name)), &svg)?;
         }

@@ -4,6 +4,7 @@
 
 mod scene;
 
+use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -243,6 +244,76 @@ fn grid_equals_the_4d_direct_transform() {
             "voxel {voxel}: {direct} against {}",
             work.grid[voxel]
         );
+    }
+}
+
+/// B&I eq. 53 from the complex affinity functions themselves (eq. 51), in the engine's order of operations: both as 4D points,
+/// the ligand r-mirrored and its phases conjugated, the product for each mode, the sum over eta, the inverse transform.
+///
+/// The weights must not be conjugated. Conjugating one, as eq. 52 prints it, gives the score with the other sign.
+#[test]
+fn complex_affinity_functions_multiply_to_the_score() {
+    let (a, b) = (cloud(8, 4.0, &RADII, 7), cloud(4, 2.5, &RADII, 8));
+    let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
+    let mut work = engine.workspace();
+    let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
+    engine.correlate(&rotation, &mut work);
+
+    let kernel = plan.kernel().options();
+    let skin = DoubleSkin {
+        lambda: kernel.lambda,
+        offset: kernel.offset,
+    };
+    let (receptor, ligand) = (skin.knots(&a), skin.knots(&b));
+    let about = |x: &[f64; 3], center: Vector3<f64>| Vector3::from(*x) - center;
+    let x: Vec<[f64; 3]> = receptor
+        .centers()
+        .iter()
+        .map(|x| about(x, plan.receptor_center()).into())
+        .collect();
+    let y: Vec<[f64; 3]> = ligand
+        .centers()
+        .iter()
+        .map(|y| (rotation * about(y, plan.ligand_center())).into())
+        .collect();
+    let mirrored: Vec<f64> = ligand.radii().iter().map(|s| -s).collect();
+    let conjugated: Vec<Complex64> = ligand.weights().iter().map(|d| d.conj()).collect();
+    let modes = plan.axis().modes() as i64;
+    let spectrum_with = |weights: &[Complex64]| {
+        let mut spectrum = Vec::new();
+        plan.modes().for_each(|_, w, multiplicity| {
+            let length = w.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let mut sum = Complex64::new(0.0, 0.0);
+            for k in -modes..=modes {
+                let eta = plan.axis().eta(k);
+                sum += plan.axis().coefficient(plan.kernel(), length, k)
+                    * ndft_4d(&x, receptor.radii(), receptor.weights(), w, eta)
+                    * ndft_4d(&y, &mirrored, weights, w, eta).conj();
+            }
+            spectrum.push((w, sum * multiplicity / plan.modes().volume()));
+        });
+        spectrum
+    };
+    // The conjugate of the whole transform conjugates the weights once more.
+    let (product, as_printed) = (spectrum_with(&conjugated), spectrum_with(ligand.weights()));
+    let best = work.grid.iter().copied().fold(0.0, f64::max);
+    for voxel in (0..work.grid.len()).step_by(work.grid.len() / 40) {
+        let t = engine.position(voxel);
+        let at = |spectrum: &[([f64; 3], Complex64)]| -> f64 {
+            let value = |(w, value): &([f64; 3], Complex64)| {
+                let turns = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+                (value * Complex64::cis(2.0 * PI * turns)).re
+            };
+            spectrum.iter().map(value).sum()
+        };
+        let (score, fast) = (at(&product), work.grid[voxel]);
+        assert!(
+            (score - fast).abs() <= 1e-3 * best,
+            "voxel {voxel}: {score} against {fast}"
+        );
+        assert!((score + at(&as_printed)).abs() <= 1e-9 * best.max(score.abs()));
     }
 }
 

@@ -66,6 +66,34 @@ proptest! {
         prop_assert!((ours.score - expected).abs() < 1e-12 * scale);
     }
 
+    /// B&I's Lemma 2: two solids meet where the lifted solid of one meets the r-mirrored lifted solid of the other, and the
+    /// correlation without a skin is not zero exactly there. Unmirrored, the lifted solids always meet, farther down.
+    #[test]
+    fn solids_meet_where_their_mirrored_cones_do(a in knots(), b in knots(), pose in pose()) {
+        let placed: Vec<[f64; 3]> = b.centers.iter().map(|&y| pose.apply(y)).collect();
+        // Whether slices at height h meet: balls of radius r - h, and s + h or, unmirrored, s - h.
+        let meet = |h: f64, mirror: f64| {
+            (0..a.len()).any(|i| (0..b.len()).any(|j| {
+                let d = (0..3).map(|k| (a.centers[i][k] - placed[j][k]).powi(2)).sum::<f64>().sqrt();
+                let (r, s) = (a.radii[i] - h, b.radii[j] - mirror * h);
+                r > 0.0 && s > 0.0 && d < r + s
+            }))
+        };
+        let gap = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j))).map(|(i, j)| {
+            let d = (0..3).map(|k| (a.centers[i][k] - placed[j][k]).powi(2)).sum::<f64>().sqrt();
+            d - a.radii[i] - b.radii[j]
+        }).fold(f64::INFINITY, f64::min);
+        // Nearer to contact than this, heights round differently and the bump underflows.
+        prop_assume!(gap.abs() > 0.01);
+        let heights = (-60..=60).map(|step| 0.05 * f64::from(step));
+        let lifted = heights.clone().any(|h| meet(h, -1.0));
+        prop_assert_eq!(meet(0.0, -1.0), gap < 0.0);
+        prop_assert_eq!(lifted, gap < 0.0);
+        prop_assert!(meet(-100.0, 1.0));
+        let overlap = score(options(10.0, 0.0), &a, &b, &pose).unfiltered;
+        prop_assert_eq!(overlap != 0.0, gap < 0.0, "{} {}", overlap, gap);
+    }
+
     /// A knot split into two halves on the same place changes nothing (duplicate and coincident knots).
     #[test]
     fn split_knots_change_nothing(a in knots(), b in knots(), pose in pose()) {

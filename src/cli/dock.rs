@@ -144,3 +144,50 @@ fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock::options::definition::definitions;
+
+    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the machine are not.
+    #[test]
+    fn rerun_goes_with_nothing_that_is_recorded() {
+        let run = |word: &str| {
+            let command = refusing_recorded(Dock::augment_args(Command::new("dock")));
+            let words = ["dock", "--rerun=run.json", "-o", "out", "--force", word];
+            command.try_get_matches_from(words).map(drop)
+        };
+        for option in definitions() {
+            let value = match option.name() {
+                "sample_weights" => "unit",
+                "precision" => "double",
+                "antibody" => "whole",
+                "waters" | "hetatm" | "hydrogens" => "keep",
+                "effects" => "shape",
+                "symmetry" => "C3",
+                "fine_share" => "0.5",
+                "engine" => "gpu",
+                "sample_grid" => "2^12",
+                _ => "1",
+            };
+            let word = if option.is_flag() {
+                format!("--{}", option.long())
+            } else if option.names_file() {
+                continue;
+            } else {
+                option.word(value)
+            };
+            let refused = run(&word).is_err();
+            assert_eq!(refused, option.subject() != "machine", "{word}");
+        }
+        for word in [
+            "receptor.pdb",
+            "--native=a.pdb",
+            "--budget=5s",
+            "--config=a.toml",
+        ] {
+            assert!(run(word).is_err(), "{word}");
+        }
+    }
+}

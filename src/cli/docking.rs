@@ -29,6 +29,7 @@ use crate::cli::messages::dock::{
     assumed, error_warning, few_rotations_warning, regions_text, told,
 };
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::timings::timings_text;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -154,7 +155,7 @@ impl Docking {
         // The record says where the search stopped, so that it can be repeated.
         request.options.stopped = outcome.stopped;
 
-        let mut table = PoseTable::new(&outcome.poses);
+        let mut table = PoseTable::new(&outcome.poses, request.options.output.diagnostics);
         let quality = match &evaluator {
             Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
             None => Vec::new(),
@@ -197,6 +198,7 @@ impl Docking {
         staging.commit()?;
 
         console.say(format!("\n{}", told(&plan, &outcome)));
+        console.detail(format!("\n{}", timings_text(&outcome)));
         if let Some(warning) = error_warning(&plan, &outcome) {
             console.warn(warning);
         }

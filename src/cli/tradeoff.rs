@@ -25,7 +25,7 @@ use crate::cli::messages::failure::Failure;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given, and with combinations.
 ///
-/// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and tradeoff.png into a directory, and says which setting to take.
+/// Writes tradeoff.csv, tradeoff.json and tradeoff.svg into a directory, and says which setting to take.
 #[derive(Args, Debug)]
 pub struct TradeoffCommand {
     /// What stays, as for `knotdock dock`.
@@ -124,16 +124,11 @@ impl TradeoffCommand {
             machine,
         })
         .map_err(Failure::other)?;
-        let drawing = plot(&tradeoff);
-        let svg = drawing.svg();
-        let png = drawing
-            .png()
-            .ok_or_else(|| Failure::other("the picture cannot be put into a PNG file"))?;
+        let svg = plot(&tradeoff).map_err(Failure::other)?;
         let folder = staging.folder();
         write_whole(&folder.join("tradeoff.svg"), |file| {
             file.write_all(svg.as_bytes())
         })?;
-        write_whole(&folder.join("tradeoff.png"), |file| file.write_all(&png))?;
         write_table(&tradeoff, &folder.join("tradeoff.csv"))?;
         record.write(&folder.join("tradeoff.json"))?;
         staging.commit()?;
@@ -142,13 +137,13 @@ impl TradeoffCommand {
         if let Some(advice) = &advice {
             console.say(format!("\n{}", advice.text));
         }
-        let names = ["tradeoff.csv", "tradeoff.svg", "tradeoff.png"];
-        let [csv, svg, png] = names.map(|name| directory.join(name).display().to_string());
+        let names = ["tradeoff.csv", "tradeoff.svg"];
+        let [csv, svg] = names.map(|name| directory.join(name).display().to_string());
         console.say(format!("\nThe table is in {csv}, the picture in {svg}"));
         console.result(&json!({
             "directory": directory.display().to_string(),
             "table": csv,
-            "pictures": [svg, png],
+            "picture": svg,
             "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
         }))?;
         Ok(())

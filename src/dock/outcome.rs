@@ -15,8 +15,10 @@ use serde::Serialize;
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    /// What orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
     pub score: f64,
+    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    pub search_score: f64,
     /// 1-based cluster number, best cluster first.
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
@@ -31,7 +33,7 @@ pub struct RankedPose {
     pub score_grid: f64,
     /// B&I's own sum (no low-pass) at `pose`.
     pub score_unfiltered: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `score`; `None` where the effect is off.
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],

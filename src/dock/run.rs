@@ -331,7 +331,7 @@ impl Check {
     fn error(&self, plan: &DockPlan, peaks: &[Peak], ranking: &Ranking) -> MeasuredError {
         // Rows stand for clusters by their pose scores; the best score may be another pose's.
         let at_start = self.at_start(plan).iter().map(|exact| exact.score);
-        let rows = ranking.poses.iter().map(|row| row.score);
+        let rows = ranking.poses.iter().map(|row| row.search_score);
         let best = error_scale(rows.chain(at_start), 0.0);
         MeasuredError::over(peaks, &self.at_grid, best)
     }

@@ -3,7 +3,7 @@
 //! # Conventions
 //!
 //! Lengths are in the unit of the mesh files, which must be one. h is the spacing of a part's grid, eps = sqrt(3) h / 2 the bound within which
-//! the sampler knows its surface ([`knotdock_structures::sampler::grid`]); A is the receptor, B the ligand.
+//! the sampler knows its surface ([`knotdock_structures::sampling::grid`]); A is the receptor, B the ligand.
 //!
 //! # Why balls of one radius
 //!
@@ -25,12 +25,12 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
-use knotdock_structures::sampler::feature_size::feature_size;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::lattice::lattice;
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{SampleError, knots};
+use knotdock_structures::sampling::feature_size::feature_size;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::lattice::lattice;
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{SampleError, knots};
 use serde::Serialize;
 
 use crate::options::{DockOptions, SampleWeights};

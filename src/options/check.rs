@@ -51,19 +51,8 @@ impl DockOptions {
         } else {
             Scope::Meshes
         };
-        let records = [self, &Self::default()].map(|options| serde_json::to_value(options).ok());
-        let [Some(own), Some(default)] = records else {
-            return None;
-        };
-        definitions().iter().find(|option| {
-            let value = |record: &serde_json::Value| {
-                record
-                    .get(option.subject())
-                    .and_then(|subject| subject.get(option.name()))
-                    .cloned()
-            };
-            option.scope() == other && value(&own) != value(&default)
-        })
+        let mut given = text::given(self, &Self::default(), definitions());
+        given.find(|option| option.scope() == other)
     }
 
     /// Refuses values out of range.

@@ -191,3 +191,90 @@ fn words(option: &Definition, value: &DeValue<'_>, folder: &Path) -> Result<Vec<
         value => Ok(vec![option.word(&text(value)?)]),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::DockOptions;
+
+    fn words_of(text: &str) -> Vec<String> {
+        let entries = match entries::<DockOptions>(text, Path::new("folder")) {
+            Ok(entries) => entries,
+            Err(wrong) => panic!("{}", wrong.message),
+        };
+        entries.into_iter().flat_map(|entry| entry.words).collect()
+    }
+
+    /// The line, the message and the remedy of what is wrong.
+    fn wrong_in(text: &str) -> (Option<u64>, String) {
+        let Err(wrong) = entries::<DockOptions>(text, Path::new("")) else {
+            panic!("{text}");
+        };
+        let line = wrong.span.map(|span| line_at(text, span.start));
+        (line, format!("{}; {}", wrong.message, wrong.remedy))
+    }
+
+    #[test]
+    fn values_are_text_numbers_truths_and_lists() {
+        for (text, words) in [
+            ("[search]\nrotations = \"15deg\"", "--rotations=15deg"),
+            ("search.rotations = 1_000", "--rotations=1000"),
+            ("[kernel]\ntolerance = 1e-3", "--tolerance=1e-3"),
+            ("[kernel]\nlambda = 3", "--lambda=3"),
+            ("[sampling]\nsample_grid = 0x8000", "--sample-grid=32768"),
+            ("[ranking]\nno_cluster = true", "--no-cluster"),
+            ("[ranking]\nno_cluster = false", ""),
+            ("[machine]\nmemory = \"4GiB\"", "--memory=4GiB"),
+            ("[input]\nmodel = 2", "--model=2"),
+            (
+                "[input]\ndrop_residue = [\"HEM\", \"ZN\"]",
+                "--drop-residue=HEM --drop-residue=ZN",
+            ),
+            ("# nothing\n[terms]\n", ""),
+        ] {
+            assert_eq!(words_of(text).join(" "), words, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_found_by_its_line() {
+        for (text, line, part) in [
+            ("[search]\nrotations = 0\n", 2, "between 1 and 10000000"),
+            ("[search]\n\nrotation = 9\n", 3, "fine_rotations"),
+            ("[search]\nlambda = 9\n", 2, "the table [kernel]"),
+            (
+                "[search]\nfine-rotations = 9\n",
+                2,
+                "write `fine_rotations`",
+            ),
+            ("lambda = 9\n", 1, "the table [kernel]"),
+            ("[serach]\nrotations = 9\n", 1, "[search]"),
+            ("[search]\nrotations = [9, 8]\n", 2, "text or a number"),
+            ("[search]\nrotations = 9\nrotations = 8\n", 3, "duplicate"),
+            ("[ranking]\nno_cluster = 1\n", 2, "true or false"),
+            ("[kernel]\nlambda = inf\n", 2, "finite"),
+            ("[search]\nprecision = \"half\"\n", 2, "single, double"),
+            ("[search\n", 1, "TOML"),
+        ] {
+            let (found, told) = wrong_in(text);
+            assert_eq!(found, Some(line), "{text}: {told}");
+            assert!(told.contains(part), "{text}: {told}");
+        }
+    }
+
+    /// A file that the file names lies in its folder.
+    #[test]
+    fn files_are_looked_for_from_the_file_s_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = include_str!("../../scoring/src/terms/effect/contact_potential.csv");
+        std::fs::write(folder.path().join("own.csv"), table).unwrap();
+        let text = "[terms]\ncontact_potential = \"own.csv\"\n";
+        let path = folder.path().join("run.toml");
+        std::fs::write(&path, text).unwrap();
+        let entries = read::<DockOptions>(&path).unwrap();
+        let expected = folder.path().join("own.csv").display().to_string();
+        assert!(entries[0].words[0].ends_with(&expected));
+        std::fs::write(&path, text.replace("own", "other")).unwrap();
+        assert_eq!(read::<DockOptions>(&path).unwrap_err().line, Some(2));
+    }
+}

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use knotdock_scoring::engine::EngineOptions;
-use knotdock_scoring::kernel::{KernelOptions as EngineKernel, Trim};
+use knotdock_scoring::kernel::{KernelOptions as EngineKernel, Trim, exponent};
 use serde::{Deserialize, Serialize};
 
 use super::EffectChoice;
@@ -24,8 +24,9 @@ pub struct KernelOptions {
     /// sampling, at most twice the smaller feature size.
     #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 2.2)]
     pub offset: f64,
-    /// Exponent of the bump kernel (dimensionless); large values harden the balls.
-    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = 2.0)]
+    /// Exponent of the bump kernel (dimensionless): large values harden the balls, `inf` makes them sharp.
+    #[arg(long, value_name = "X", value_parser = exponent::parse, default_value_t = 2.0)]
+    #[serde(with = "exponent")]
     pub alpha: f64,
     /// Finest detail that is ranked, in Å, of meshes in their unit as all lengths: the low-pass ends at 1/A cycles per Å; of meshes
     /// by default 2.045 times the offset.

@@ -138,3 +138,57 @@ defaults_of_subjects!(
     OutputOptions,
     MachineOptions
 );
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::OsString;
+
+    /// Every option, with a value that is not its default.
+    const GIVEN: &str = "--waters=keep --hetatm=drop --drop-residue=HEM --drop-residue=XK2 --hydrogens=keep --altloc=B --model=all \
+        --assembly=1 --min-plddt=50 --sample-grid=2^12 --sample-weights=unit --effects=contact --lambda=0.30000000000000004 --offset=1 \
+        --alpha=3 --resolution=6 --pass-length=15 --spacing=0.3333333333333333 --tolerance=1e-3 --core-weight=2 \
+        --electrostatics-weight=0 --contact-weight=1e5 --fine-contact-weight=1 --atom-pair-weight=2 --relaxed-weight=0 \
+        --unresolved-weight=1 --termini-weight=0 --ph=5.5 --restraint-weight=3 --antibody=whole --block-receptor=A:1-3 \
+        --block-ligand=B --active-weight=1 --active-receptor=A:5 --active-ligand=B:7,9 --peptidase-weight=0 --rotations=17 \
+        --fine-rotations=15deg --fine-share=0.5 --precision=double --engine=gpu --per-rotation=1 --poses=9 --refine=0 --symmetry=C3 \
+        --cluster-radius=0 --no-cluster --write-top=0 --diagnostics";
+
+    /// Options without a value that this test can name: tables, which are files, and the machine's.
+    const ELSEWHERE: [&str; 5] = [
+        "contact_potential",
+        "fine_contact_potential",
+        "atom_pair_potential",
+        "threads",
+        "memory",
+    ];
+
+    #[test]
+    fn options_survive_the_record_and_the_check_unchanged() {
+        let words = GIVEN.split_whitespace().map(OsString::from);
+        let options: DockOptions = text::read(words).unwrap();
+        let given = text::given(&options, &DockOptions::default(), definition::definitions());
+        assert_eq!(
+            given.count() + ELSEWHERE.len(),
+            definition::definitions().len()
+        );
+        assert!(options.check_ranges().is_ok());
+        let record = serde_json::to_string(&options).unwrap();
+        assert_eq!(
+            serde_json::from_str::<DockOptions>(&record).unwrap(),
+            options
+        );
+        let machine = options.changed(|options| options.machine.threads = 7.into());
+        assert_eq!(serde_json::to_string(&machine).unwrap(), record);
+        let varied = machine.with("rotations", "15").unwrap();
+        assert_eq!(varied.with("rotations", "17").unwrap(), machine);
+    }
+
+    #[test]
+    fn an_option_of_a_later_version_is_refused_not_ignored() {
+        let mut record = serde_json::to_value(DockOptions::default()).unwrap();
+        record["terms"]["charges"] = true.into();
+        let error = serde_json::from_value::<DockOptions>(record).unwrap_err();
+        assert!(error.to_string().contains("charges"));
+    }
+}

@@ -23,13 +23,13 @@ pub struct TermOptions {
     /// Weight of the contact potential: score per RT.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
     pub contact_weight: f64,
-    /// Contact potential to use in place of the program's own, as scripts/contact_potential.py writes it.
+    /// Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
     pub contact_potential: Option<Potential>,
-    /// Fine contact potential to use in place of the program's own, as scripts/contact_potential.py --fine writes it.
+    /// Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py --fine writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::fine_contact, value_hint = ValueHint::FilePath)]
     pub fine_contact_potential: Option<DistanceBinnedPotential>,
-    /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
+    /// Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
     pub atom_pair_potential: Option<AtomPairPotential>,
     /// Weights of the pose terms.

@@ -49,11 +49,7 @@ pub(super) fn defaults<T: Args>() -> T {
 /// The words that give an option its value in `options`. None for a value of `None`, a flag that is off and a table, which was checked
 /// when it was read.
 fn words_of(option: &Definition, options: &Value) -> Result<Vec<OsString>, OptionError> {
-    let Some(value) = options
-        .get(option.subject())
-        .and_then(|subject| subject.get(option.name()))
-    else {
-        // Not recorded, as options of the machine.
+    let Some(value) = value_of(option, options) else {
         return Ok(Vec::new());
     };
     let word = |text: &str| OsString::from(option.word(text));
@@ -77,6 +73,24 @@ fn words_of(option: &Definition, options: &Value) -> Result<Vec<OsString>, Optio
         }
         Value::Null => Vec::new(),
     })
+}
+
+/// The options that differ from their defaults.
+pub fn given<'a, T: Serialize>(
+    options: &T,
+    default: &T,
+    definitions: &'a [Definition],
+) -> impl Iterator<Item = &'a Definition> + use<'a, T> {
+    let [own, default] = [options, default].map(|options| recorded(options).unwrap_or_default());
+    definitions.iter().filter(move |option| {
+        let [own, default] = [&own, &default].map(|record| value_of(option, record));
+        own != default
+    })
+}
+
+/// The value of an option in a record; `None` for one that is not recorded, as those of the machine are not.
+fn value_of<'a>(option: &Definition, record: &'a Value) -> Option<&'a Value> {
+    record.get(option.subject())?.get(option.name())
 }
 
 /// Checks the range of each option as if its value were typed.

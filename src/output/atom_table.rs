@@ -8,7 +8,7 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{DropKind, Listed};
 
-use super::poses::number;
+use super::fields::number;
 use super::whole_file::{FileError, write_whole};
 
 /// The columns, in order.

@@ -1,6 +1,6 @@
 //! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
 //!
-//! Columns are found by name, and later ones are appended after those of [`columns`]. Quaternions are Hamilton's, active,
+//! Columns are found by name: those of [`pose_columns`](super::pose_columns), and whatever is appended. Quaternions are Hamilton's, active,
 //! right-handed, unit, `qw >= 0`; a ligand atom at x in its own file goes to R(q) x + t, in Å, in the receptor's file
 //! frame. Numbers are in the shortest digits that read back to the same f64; a missing value is an empty field.
 
@@ -8,114 +8,15 @@ use std::io;
 use std::path::Path;
 
 use csv::StringRecord;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::terms::pose::POSE_TERMS;
 use serde_json::Value;
 
+use super::fields::Column;
+use super::pose_columns::columns;
 use super::whole_file::{FileError, write_whole};
 use crate::dock::outcome::RankedPose;
 
-/// Columns of every run before those of the pose terms, in order.
-const FIRST_COLUMNS: [&str; 26] = [
-    "rank",
-    "score",
-    "cluster",
-    "cluster_size",
-    "qw",
-    "qx",
-    "qy",
-    "qz",
-    "tx",
-    "ty",
-    "tz",
-    "refined",
-    "rotation",
-    "score_grid",
-    "score_unfiltered",
-    "shape",
-    "slice_0",
-    "slice_r0",
-    "slice_2r0",
-    "electrostatics",
-    "contact",
-    "cluster_score",
-    "pose_score",
-    "z_score",
-    "restraint",
-    "other_copies",
-];
-
-/// The columns that every run writes, in order: the pose terms come last, by their ids.
-pub fn columns() -> impl Iterator<Item = &'static str> {
-    let terms = POSE_TERMS.iter().map(|term| term.id);
-    FIRST_COLUMNS.into_iter().chain(terms)
-}
-
-/// A column to append: its name and one field a row.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// Name in the header.
-    pub name: String,
-    /// The fields, in the order of the rows.
-    pub fields: Vec<String>,
-}
-
-/// A number as a field: the shortest digits that read back to the same f64, empty when it is not a finite number.
-pub fn number(value: f64) -> String {
-    if value.is_finite() {
-        (value + 0.0).to_string() // + 0.0 prints a negative zero as 0
-    } else {
-        String::new()
-    }
-}
-
-fn count(value: Option<usize>) -> String {
-    value.map(|value| value.to_string()).unwrap_or_default()
-}
-
-/// The fields of a pose under [`columns`].
-fn fields(rank: usize, row: &RankedPose) -> impl Iterator<Item = String> {
-    let [qw, qx, qy, qz] = row.pose.quaternion();
-    let translation = row.pose.translation;
-    let [slice_0, slice_r0, slice_2r0] = row.slices;
-    let optional = |value: Option<f64>| value.map_or(String::new(), number);
-    let effect = |effect: Effect| optional(row.terms[effect as usize]);
-    let first: [String; FIRST_COLUMNS.len()] = [
-        rank.to_string(),
-        number(row.score),
-        count(row.cluster),
-        count(row.cluster_size),
-        number(qw),
-        number(qx),
-        number(qy),
-        number(qz),
-        number(translation.x),
-        number(translation.y),
-        number(translation.z),
-        row.refined.to_string(),
-        row.rotation.to_string(),
-        number(row.score_grid),
-        number(row.score_unfiltered),
-        effect(Effect::Shape),
-        number(slice_0),
-        number(slice_r0),
-        number(slice_2r0),
-        effect(Effect::Electrostatics),
-        effect(Effect::Contact),
-        optional(row.cluster_score),
-        number(row.pose_score),
-        optional(row.z_score),
-        effect(Effect::Restraint),
-        optional(row.other_copies),
-    ];
-    let terms = row.pose_terms.iter();
-    first
-        .into_iter()
-        .chain(terms.map(move |(_, value)| optional(value)))
-}
-
-/// A table of poses as text, with the pose of each row made out: what `evaluate` and `complex` read.
+/// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTable {
     pub(super) header: StringRecord,
@@ -123,7 +24,7 @@ pub struct PoseTable {
     pub(super) rows: Vec<PoseRow>,
 }
 
-/// What a row says of where the ligand goes.
+/// Rank and pose of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseRow {
     /// 1-based rank.
@@ -133,18 +34,23 @@ pub struct PoseRow {
 }
 
 impl PoseTable {
-    /// The table of a search's poses in the order given, ranked from 1.
-    pub fn new(poses: &[RankedPose]) -> Self {
+    /// The table of a search's poses in the order given, ranked from 1; with columns for diagnosis if they are wanted.
+    pub fn new(poses: &[RankedPose], diagnostics: bool) -> Self {
+        let columns = columns(diagnostics);
         let rows = poses.iter().enumerate().map(|(index, row)| PoseRow {
             rank: index + 1,
             pose: row.pose,
         });
-        let records = poses.iter().enumerate();
+        let record = |(index, row): (usize, &RankedPose)| {
+            let fields = columns.iter().map(|column| (column.field)(row));
+            std::iter::once((index + 1).to_string())
+                .chain(fields)
+                .collect()
+        };
+        let names = columns.iter().map(|column| column.name);
         Self {
-            header: columns().collect(),
-            records: records
-                .map(|(index, row)| fields(index + 1, row).collect())
-                .collect(),
+            header: std::iter::once("rank").chain(names).collect(),
+            records: poses.iter().enumerate().map(record).collect(),
             rows: rows.collect(),
         }
     }
@@ -231,12 +137,13 @@ fn value(field: &str) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_scoring::terms::pose::TermValues;
+    use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues};
 
     fn pose(quaternion: [f64; 4], translation: [f64; 3]) -> RankedPose {
         RankedPose {
             pose: Pose::from_parts(quaternion, translation),
             score: 1.0 / 3.0,
+            search_score: 0.25,
             cluster: None,
             cluster_size: Some(4),
             cluster_score: None,
@@ -263,19 +170,19 @@ mod tests {
 
     #[test]
     fn numbers_are_shortest_and_missing_ones_empty() {
-        let table = PoseTable::new(&[pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])]);
+        let table = PoseTable::new(&[pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])], true);
         assert_eq!(
             text(&table),
-            "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-             shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,\
-             pose_score,z_score,restraint,other_copies,\
-             fine_contact,atom_pair,relaxed,active_residues,unresolved,termini\n\
-             1,0.3333333333333333,,4,0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,true,17,,0.0000001,0.1,0,2,\
-             1000000000000000000000,,-3,,0.3333333333333333,2.5,,,,-7,2.5,,,\n"
+            "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
+             fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,z_score,\
+             qw,qx,qy,qz,tx,ty,tz,cluster_score,refined,rotation,score_grid,score_unfiltered,\
+             slice_0,slice_r0,slice_2r0\n\
+             1,0.3333333333333333,,4,0.3333333333333333,0.25,0.1,,-3,,,-7,2.5,,,,,2.5,\
+             0.5,-0.5,-0.5,0.5,1.5,-2.25,0.1,,true,17,,0.0000001,0,2,1000000000000000000000\n"
         );
     }
 
-    /// Every pose term has one column and one JSON key, which is its id, and no other column has that name.
+    /// Every pose term has one column and one JSON key, which is its id.
     #[test]
     fn columns_of_pose_terms_are_those_of_the_registry() {
         let values = POSE_TERMS
@@ -288,13 +195,8 @@ mod tests {
             pose_terms: values,
             ..pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])
         };
-        let names: Vec<&str> = columns().collect();
-        for name in &names {
-            assert_eq!(names.iter().filter(|other| *other == name).count(), 1);
-        }
-        let objects = PoseTable::new(&[row]).objects([0]);
+        let objects = PoseTable::new(&[row], false).objects([0]);
         let object = objects[0].as_object().unwrap();
-        assert_eq!(object.len(), names.len());
         for (term, number) in POSE_TERMS.iter().zip(1..) {
             assert_eq!(object[term.id], number, "{}", term.id);
         }
@@ -307,7 +209,7 @@ mod tests {
 
     #[test]
     fn rows_as_objects_carry_types() {
-        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])]);
+        let table = PoseTable::new(&[pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])], true);
         let objects = table.objects([0, 7]);
         assert_eq!(objects.len(), 1);
         assert_eq!(objects[0]["rank"], 1);
@@ -324,7 +226,7 @@ mod tests {
             pose([0.1, 0.2, -0.3, 0.4], [1e6 + 0.1, -1.0 / 3.0, 5e-324]),
             pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
         ];
-        PoseTable::new(&poses).write(&path).unwrap();
+        PoseTable::new(&poses, false).write(&path).unwrap();
         let read = PoseTable::read(&path).unwrap();
         for (row, expected) in read.rows().iter().zip(&poses) {
             assert_eq!(row.pose.translation, expected.pose.translation);

@@ -2,20 +2,17 @@
 
 use crate::dock::outcome::RankedPose;
 
-use super::poses::Column;
+use super::fields::Column;
 
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, score of the cluster where it has one, by which they are ordered, then of its best pose pose score and z-score, size of the
-/// cluster, and whatever columns are appended to the poses.
+/// The best clusters as a table: rank, score, size of the cluster, pose score and z-score of its best pose, and whatever
+/// columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let clustered = ranking.iter().any(|row| row.cluster_score.is_some());
-    let mut header = vec!["rank"];
-    header.extend(clustered.then_some("cluster score"));
-    header.extend(["pose score", "z-score", "cluster size", "unfiltered"]);
+    let header = ["rank", "score", "cluster size", "pose score", "z-score"];
     let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];
@@ -25,16 +22,14 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         };
         let tenths =
             |value: Option<f64>| value.map(|value| format!("{value:.1}")).unwrap_or_default();
-        let mut line = vec![(index + 1).to_string()];
-        line.extend(clustered.then(|| tenths(row.cluster_score)));
-        line.extend([
+        let size = row.cluster_size.map(|size| size.to_string());
+        let mut line = vec![
+            (index + 1).to_string(),
+            tenths(Some(row.score)),
+            size.unwrap_or_default(),
             tenths(Some(row.pose_score)),
             tenths(row.z_score),
-            row.cluster_size
-                .map(|size| size.to_string())
-                .unwrap_or_default(),
-            tenths(Some(row.score_unfiltered)),
-        ]);
+        ];
         line.extend(appended.iter().map(|column| {
             let field = column.fields.get(index).map_or("", String::as_str);
             match field.parse::<f64>() {
@@ -104,6 +99,7 @@ mod tests {
         RankedPose {
             pose: Pose::identity(),
             score,
+            search_score: score,
             cluster,
             cluster_score: None,
             cluster_size: cluster.map(|_| 2),
@@ -138,27 +134,28 @@ mod tests {
         };
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  pose score  z-score  cluster size  unfiltered  irmsd\n\
-             \x20    1         9.0                      2         9.0   1.23\n\
-             \x20    4         6.0                      2         6.0   3.50\n\
-             \x20    3         7.0                                7.0\n\
-             \x20    5         5.0                                5.0"
+            "  rank  score  cluster size  pose score  z-score  irmsd\n\
+             \x20    1    9.0             2         9.0            1.23\n\
+             \x20    4    6.0             2         6.0            3.50\n\
+             \x20    3    7.0                       7.0\n\
+             \x20    5    5.0                       5.0"
         );
     }
 
     /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked wrong.
     #[test]
     fn clusters_show_the_score_that_orders_them() {
-        let in_company = |score, cluster, cluster_score| RankedPose {
-            cluster_score: Some(cluster_score),
+        let in_company = |score: f64, cluster, cluster_score: f64| RankedPose {
+            score: cluster_score,
+            pose_score: score,
             ..pose(score, Some(cluster))
         };
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
         assert_eq!(
             best_clusters(&ranking, &[]),
-            "  rank  cluster score  pose score  z-score  cluster size  unfiltered\n\
-             \x20    1           11.0         8.0                      2         8.0\n\
-             \x20    2           10.0         9.0                      2         9.0"
+            "  rank  score  cluster size  pose score  z-score\n\
+             \x20    1   11.0             2         8.0\n\
+             \x20    2   10.0             2         9.0"
         );
     }
 }

@@ -57,12 +57,7 @@ pub const RUN: Product = Product {
 
 /// What `knotdock tradeoff` leaves.
 pub const TRADEOFF: Product = Product {
-    entries: &[
-        "tradeoff.svg",
-        "tradeoff.png",
-        "tradeoff.csv",
-        "tradeoff.json",
-    ],
+    entries: &["tradeoff.svg", "tradeoff.csv", "tradeoff.json"],
     record: "tradeoff.json",
 };
 

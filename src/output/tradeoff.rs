@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
+use super::fields::number;
 use super::manifest::{Inputs, Machine};
-use super::poses::number;
 use super::program::Program;
 use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;

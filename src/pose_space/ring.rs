@@ -75,7 +75,7 @@ mod tests {
     use crate::pose_space::PoseSpace;
     use crate::pose_space::refine::RefinedPose;
     use crate::priors::restraints::tests::peptide;
-    use crate::progress::Progress;
+    use crate::progress::NoProgress;
     use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra, choose_rank};
@@ -149,12 +149,6 @@ mod tests {
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
     }
 
-    struct Silent;
-    impl Progress for Silent {
-        fn stage(&self, _: &str, _: u64) {}
-        fn advance(&self, _: u64) {}
-    }
-
     /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
     /// shift along it gains anything by the exact sum.
     #[test]
@@ -196,7 +190,7 @@ mod tests {
         );
         let engine = ScanEngine::new(search, chosen.engine).unwrap();
         let groups = search.rotations.groups();
-        let peaks = scan(search, &engine, &groups, 20, None, &Silent)
+        let peaks = scan(search, &engine, &groups, 20, None, &NoProgress)
             .unwrap()
             .peaks;
         assert_eq!(peaks.len(), 20);

@@ -126,6 +126,7 @@ pub(crate) fn report(
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
+                score: if every_pose { row.pose_score } else { score },
                 z_score: background.z_score(row.pose_score),
                 ..row
             })
@@ -211,7 +212,8 @@ impl Candidate {
             other_copies: others,
             pose_score: terms.score + pose_terms.sum() + others.unwrap_or(0.0),
             z_score: None,
-            score: terms.score,
+            score: 0.0,
+            search_score: terms.score,
             cluster: None,
             cluster_size: None,
             cluster_score: None,
@@ -229,17 +231,12 @@ impl Candidate {
 mod tests {
     use super::*;
     use crate::pose_space::refine::RefinedPose;
+    use crate::progress::NoProgress;
     use crate::rank::candidates::candidates;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
     use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
-
-    struct Silent;
-    impl Progress for Silent {
-        fn stage(&self, _: &str, _: u64) {}
-        fn advance(&self, _: u64) {}
-    }
 
     fn scorer() -> ExactScorer {
         let options = KernelOptions {
@@ -313,13 +310,13 @@ mod tests {
                 (&[0], &[true]),
                 true,
                 0.0,
-                &Silent,
+                &NoProgress,
             );
             ranking.poses[0].clone()
         };
         let undone = climbed(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
-        assert!((undone.score - exact(touching)).abs() < 1e-9 * undone.score.abs());
+        assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
         let stands = climbed(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
@@ -366,7 +363,7 @@ mod tests {
                 cluster_temperature: cluster_temperature(unit),
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
-            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &Silent);
+            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &NoProgress);
             let first = &ranking.poses[0];
             (
                 first.cluster_size,

@@ -7,18 +7,13 @@
 
 pub mod advice;
 mod agreement;
-mod axis;
 pub mod calibrate;
 mod change;
-pub mod chart;
 pub mod choice;
 pub mod cost_model;
-pub mod drawing;
-mod frame;
 mod front;
 pub mod measured;
 pub mod plot;
-mod raster;
 pub mod settings;
 pub mod sweep;
 

@@ -1,13 +1,9 @@
 //! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
 
-use crate::tradeoff::axis::{Scale, tick_text};
-use crate::tradeoff::drawing::{Anchor, CHARACTER, Colour, Drawing, LINE, Mark, text_width};
-use crate::tradeoff::frame::{BLACK, Frame, MARGIN, Side, text};
+use crate::plot::chart::{Axis, ChartError, Colour, Panel, Series, Style, draw};
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
 use crate::tradeoff::settings::Parameter;
 
-/// Edge lengths of a panel's axes in pixels.
-const AXES: [f64; 2] = [430.0, 380.0];
 /// Where nothing of the reference is missed: half a row, which a logarithm can show.
 const NONE_MISSED: f64 = 0.5;
 
@@ -38,17 +34,26 @@ struct Point<'a> {
     front: bool,
 }
 
-/// One pair of axes with its points.
-struct Panel<'a> {
-    title: &'static str,
-    label: &'static str,
-    points: Vec<Point<'a>>,
-    /// A value whose tick reads otherwise.
-    named: Option<(f64, &'static str)>,
+impl Point<'_> {
+    fn place(&self) -> [f64; 2] {
+        [self.run.cost(), self.value]
+    }
+
+    /// Whether its name is written before those of others: the front's, the default's and the reference's.
+    fn is_important(&self) -> bool {
+        self.front
+            || matches!(
+                self.run.setting.parameter,
+                Parameter::Default | Parameter::Reference
+            )
+    }
 }
 
-/// Draws a sweep.
-pub fn plot(tradeoff: &Tradeoff) -> Drawing {
+/// Draws a sweep as SVG.
+///
+/// # Errors
+/// [`ChartError`] where the chart cannot be drawn.
+pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
     let points = |value: &dyn Fn(&Measured) -> Option<f64>, front: fn(&Measured) -> bool| {
         let runs = tradeoff.measured.iter();
         runs.filter_map(|run| {
@@ -65,187 +70,98 @@ pub fn plot(tradeoff: &Tradeoff) -> Drawing {
         counted.then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
     };
     let mut panels = vec![
-        Panel {
-            title: "Fast path against the exact sum",
-            label: "error, rms, share of the best score",
-            points: points(&|run| Some(run.error.rms), |run| run.front_error),
-            named: None,
-        },
-        Panel {
-            title: "Against the reference",
-            label: "of its first 100 rows, missed (%)",
-            points: points(&missed, |run| run.front_agreement),
-            named: Some((NONE_MISSED, "none")),
-        },
+        panel(
+            "Fast path against the exact sum",
+            Axis::ten("error, rms, share of the best score"),
+            &points(&|run| Some(run.error.rms), |run| run.front_error),
+        ),
+        panel(
+            "Against the reference",
+            Axis {
+                named: Some((NONE_MISSED, "none")),
+                ..Axis::ten("of its first 100 rows, missed (%)")
+            },
+            &points(&missed, |run| run.front_agreement),
+        ),
     ];
     if tradeoff.with_native {
         let rank = |run: &Measured| run.native?.first_near_native.map(|rank| rank as f64);
-        panels.push(Panel {
-            title: "Against the known complex",
-            label: "rank of the first near-native pose",
-            points: points(&rank, |_| false),
-            named: None,
-        });
+        panels.push(panel(
+            "Against the known complex",
+            Axis::ten("rank of the first near-native pose"),
+            &points(&rank, |_| false),
+        ));
     }
     // No pose may be near the known complex, or no error above zero.
-    panels.retain(|panel| !panel.points.is_empty());
-    let width = MARGIN[0] + AXES[0] + MARGIN[2];
-    let height = MARGIN[1] + AXES[1] + MARGIN[3];
-    let mut marks = Vec::new();
-    for (index, panel) in panels.iter().enumerate() {
-        panel.draw([index as f64 * width + MARGIN[0], MARGIN[1]], &mut marks);
-    }
-    let whole = width * panels.len().max(1) as f64;
-    let below = legend(tradeoff, whole, height, &mut marks);
-    Drawing {
-        width: whole,
-        height: below,
-        marks,
-    }
+    panels.retain(|panel| panel.series.iter().any(|series| !series.points.is_empty()));
+    let columns = panels.len();
+    draw(&panels, columns)
 }
 
-/// One colour a parameter, and what filled discs mean, on as many lines as it takes; the height below them.
-fn legend(tradeoff: &Tradeoff, width: f64, top: f64, marks: &mut Vec<Mark>) -> f64 {
-    let mut parameters: Vec<Parameter> = Vec::new();
-    for run in &tradeoff.measured {
-        if !parameters.contains(&run.setting.parameter) {
-            parameters.push(run.setting.parameter);
-        }
-    }
-    let entries = parameters
+/// A panel with the front as a dashed line, and a series for each parameter: filled discs on the front, hollow ones off it.
+fn panel(title: &str, up: Axis, points: &[Point]) -> Panel {
+    let mut front: Vec<[f64; 2]> = points
         .iter()
-        .map(|&parameter| (colour(parameter), false, parameter.name()))
-        .chain([(FRONT, true, "filled: nothing is better in less time")]);
-    let (mut x, mut y) = (MARGIN[0], top + 4.0);
-    for (colour, filled, name) in entries {
-        let takes = 20.0 + text_width(name) + 3.0 * CHARACTER;
-        if x + takes > width {
-            (x, y) = (MARGIN[0], y + LINE + 6.0);
-        }
-        marks.push(Mark::Disc {
-            at: [x + 6.0, y],
-            radius: 5.0,
-            colour,
-            filled,
-        });
-        marks.push(text([x + 18.0, y], Anchor::Start, BLACK, name));
-        x += takes;
-    }
-    y + LINE + 4.0
-}
-
-impl Panel<'_> {
-    /// Draws the panel with the upper left of its axes at `origin`.
-    fn draw(&self, origin: [f64; 2], marks: &mut Vec<Mark>) {
-        let across = Scale::over(self.points.iter().map(|point| point.run.cost()));
-        let up = Scale::over(self.points.iter().map(|point| point.value));
-        let numbered = |ticks: Vec<f64>| ticks.into_iter().map(|tick| (tick, tick_text(tick)));
-        let mut up_ticks: Vec<(f64, String)> = numbered(up.ticks()).collect();
-        if let Some((value, name)) = self.named {
-            up_ticks.retain(|(tick, _)| *tick > 1.5 * value);
-            if self.points.iter().any(|point| point.value <= value) {
-                up_ticks.push((value, name.to_owned()));
-            }
-        }
-        let told = |point: &Point| point.run.cpu_seconds().is_some();
-        let frame = Frame {
-            origin,
-            size: AXES,
-            title: self.title,
-            across: Side {
-                scale: across,
-                // What settings are compared by.
-                label: if self.points.iter().all(told) {
-                    "processor time, s"
-                } else {
-                    "time on the clock, s"
-                },
-                ticks: numbered(across.ticks()).collect(),
-            },
-            up: Side {
-                scale: up,
-                label: self.label,
-                ticks: up_ticks,
-            },
-        };
-        frame.draw(marks);
-        let place = |point: &Point| frame.place([point.run.cost(), point.value]);
-        let mut front: Vec<[f64; 2]> = self.points.iter().filter(|p| p.front).map(place).collect();
-        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        marks.push(Mark::Line {
-            through: front,
-            colour: FRONT,
-            width: 1.5,
-            dashed: true,
-        });
-        for point in &self.points {
-            marks.push(Mark::Disc {
-                at: place(point),
-                radius: 5.0,
-                colour: colour(point.run.setting.parameter),
-                filled: point.front,
-            });
-        }
-        let places: Vec<[f64; 2]> = self.points.iter().map(place).collect();
-        self.name_points(&places, frame.edges(), marks);
-    }
-
-    /// Writes the names of settings beside their points, where they cover neither points nor each other: those of the front, the default and
-    /// the reference first. A name for which there is no room is left out; the table has it.
-    fn name_points(&self, places: &[[f64; 2]], frame: [f64; 4], marks: &mut Vec<Mark>) {
-        const APART: f64 = 9.0;
-        let mut taken: Vec<[f64; 4]> = places
+        .filter(|p| p.front)
+        .map(Point::place)
+        .collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut series = vec![Series {
+        name: String::new(),
+        colour: FRONT,
+        style: Style::Thin,
+        points: front,
+        labels: Vec::new(),
+    }];
+    // Names of earlier series are written first.
+    for important in [true, false] {
+        for point in points
             .iter()
-            .map(|&[x, y]| [x - 6.0, y - 6.0, x + 6.0, y + 6.0])
-            .collect();
-        let important = |point: &Point| {
-            point.front
-                || matches!(
-                    point.run.setting.parameter,
-                    Parameter::Default | Parameter::Reference
-                )
-        };
-        let mut order: Vec<usize> = (0..self.points.len()).collect();
-        order.sort_by_key(|&index| !important(&self.points[index]));
-        for index in order {
-            let ([x, y], point) = (places[index], &self.points[index]);
-            let name = &point.run.setting.name;
-            let (wide, high) = (text_width(name), LINE);
-            let candidates = [
-                ([x + APART, y], Anchor::Start),
-                ([x - APART, y], Anchor::End),
-                ([x, y - high], Anchor::Middle),
-                ([x, y + high], Anchor::Middle),
-                ([x + 0.7 * APART, y - 0.8 * high], Anchor::Start),
-                ([x + 0.7 * APART, y + 0.8 * high], Anchor::Start),
-                ([x - 0.7 * APART, y - 0.8 * high], Anchor::End),
-                ([x - 0.7 * APART, y + 0.8 * high], Anchor::End),
-            ];
-            let free = candidates.into_iter().find_map(|(at, anchor)| {
-                let from = match anchor {
-                    Anchor::Start => at[0],
-                    Anchor::Middle => at[0] - wide / 2.0,
-                    Anchor::End => at[0] - wide,
-                };
-                let (upper, lower) = (at[1] - high / 2.0, at[1] + high / 2.0);
-                let area = [from, upper, from + wide, lower];
-                let inside = area[0] > frame[0] + 2.0
-                    && area[1] > frame[1] + 2.0
-                    && area[2] < frame[2] - 2.0
-                    && area[3] < frame[3] - 2.0;
-                let covers = |other: &[f64; 4]| {
-                    area[0] < other[2]
-                        && other[0] < area[2]
-                        && area[1] < other[3]
-                        && other[1] < area[3]
-                };
-                (inside && !taken.iter().any(covers)).then_some((at, anchor, area))
+            .filter(|point| point.is_important() == important)
+        {
+            let parameter = point.run.setting.parameter;
+            series.push(Series {
+                name: String::new(),
+                colour: colour(parameter),
+                style: if point.front {
+                    Style::Discs
+                } else {
+                    Style::HollowDiscs
+                },
+                points: vec![point.place()],
+                labels: vec![point.run.setting.name.clone()],
             });
-            if let Some((at, anchor, area)) = free {
-                taken.push(area);
-                let colour = colour(point.run.setting.parameter);
-                marks.push(text(at, anchor, colour, name));
-            }
         }
+    }
+    // Entries of the legend alone.
+    let mut entry = |name: &str, colour, style| {
+        series.push(Series {
+            name: name.to_owned(),
+            colour,
+            style,
+            points: Vec::new(),
+            labels: Vec::new(),
+        });
+    };
+    for point in points {
+        let parameter = point.run.setting.parameter;
+        entry(parameter.name(), colour(parameter), Style::HollowDiscs);
+    }
+    entry(
+        "filled: nothing is better in less time",
+        FRONT,
+        Style::Discs,
+    );
+    let timed = points.iter().all(|point| point.run.cpu_seconds().is_some());
+    Panel {
+        title: title.to_owned(),
+        // What settings are compared by.
+        across: Axis::ten(if timed {
+            "processor time, s"
+        } else {
+            "time on the clock, s"
+        }),
+        up,
+        series,
     }
 }

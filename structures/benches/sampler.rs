@@ -8,11 +8,11 @@ use std::path::Path;
 use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, read};
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::ball_tree::BallTree;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights;
-use knotdock_structures::sampler::{Method, Sampling, SetName, sample};
+use knotdock_structures::sampling::ball_tree::BallTree;
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights;
+use knotdock_structures::sampling::{Method, Sampling, SetName, sample};
 
 const MUS: [f64; 3] = [0.25, 0.5, 1.0];
 
@@ -105,7 +105,7 @@ fn bounds_hold(run: &Run) -> bool {
     near && held && a3.balls.iter().all(|ball| all.contains(&bits(ball)))
 }
 
-fn bits(ball: &knotdock_structures::sampler::Ball) -> [u64; 4] {
+fn bits(ball: &knotdock_structures::sampling::Ball) -> [u64; 4] {
     let [x, y, z] = ball.center;
     [x, y, z, ball.radius].map(f64::to_bits)
 }

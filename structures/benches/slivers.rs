@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 
 use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, from_triangles};
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::{Method, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::{Method, sample};
 
 type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 

@@ -21,7 +21,7 @@ pub mod neighbours;
 pub mod numeric;
 
 #[cfg(feature = "mesh")]
-pub mod sampler;
+pub mod sampling;
 #[cfg(feature = "mesh")]
 pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]

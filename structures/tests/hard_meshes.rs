@@ -7,9 +7,9 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::mesh::{MeshFormat, MeshReport, Solid, parse};
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::{BallSet, Method, SampleError, SetName, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::{BallSet, Method, SampleError, SetName, knots, sample};
 use solids::{Surface, cuboid, sphere};
 
 /// What was made of a shape, and how it fits, lengths as shares of eps.

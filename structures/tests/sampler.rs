@@ -7,13 +7,13 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::mesh::{Solid, read};
-use knotdock_structures::sampler::ball_tree::BallTree;
-use knotdock_structures::sampler::decomposition::{DecompositionOptions, decompose};
-use knotdock_structures::sampler::feature_size::feature_size;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::skeletal_density::{Priority, SHARE_WIDTH, share};
-use knotdock_structures::sampler::{Ball, Method, SetName, sample};
+use knotdock_structures::sampling::ball_tree::BallTree;
+use knotdock_structures::sampling::decomposition::{DecompositionOptions, decompose};
+use knotdock_structures::sampling::feature_size::feature_size;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::skeletal_density::{Priority, SHARE_WIDTH, share};
+use knotdock_structures::sampling::{Ball, Method, SetName, sample};
 use solids::{Surface, cuboid, scattered, sphere};
 
 /// Past a wall thinner than anything the surface is far, and still no ball fits into the wall.

@@ -7,10 +7,10 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::weights::fit;
-use knotdock_structures::sampler::{Ball, Method, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::weights::fit;
+use knotdock_structures::sampling::{Ball, Method, sample};
 use solids::{cuboid, sphere};
 
 fn bump(alpha: f64) -> Bump {

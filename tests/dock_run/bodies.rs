@@ -156,7 +156,9 @@ fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
     let (code, told) = attempt(&(needed * 19 / 20).to_string(), coarser);
     assert_eq!(code, Some(0), "{told}");
     // A coarser grid under the same resolution would fit as well, and its scores would be off by far more than was asked for.
-    let tolerance = told["run"]["options"]["tolerance"].as_f64().unwrap();
+    let tolerance = told["run"]["options"]["kernel"]["tolerance"]
+        .as_f64()
+        .unwrap();
     assert!(
         told["run"]["error"]["rms"].as_f64().unwrap() < tolerance,
         "{told}"

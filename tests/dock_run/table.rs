@@ -9,29 +9,36 @@ use serde_json::Value;
 
 use crate::run::*;
 
-const HEADER: &str = "rank,score,cluster,cluster_size,qw,qx,qy,qz,tx,ty,tz,refined,rotation,score_grid,score_unfiltered,\
-                      shape,slice_0,slice_r0,slice_2r0,electrostatics,contact,cluster_score,pose_score,z_score,restraint,other_copies,fine_contact,atom_pair,relaxed,active_residues,unresolved,termini";
+const HEADER: &str = "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
+                      fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,z_score,\
+                      qw,qx,qy,qz,tx,ty,tz";
+const DIAGNOSTICS: &str =
+    "cluster_score,refined,rotation,score_grid,score_unfiltered,slice_0,slice_r0,slice_2r0";
 
 #[test]
 fn the_table_says_what_its_columns_promise() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --rotations 60 --no-cluster -o run --quiet",
+        "dock receptor.pdb ligand.pdb --rotations 60 --no-cluster --diagnostics -o run --quiet",
     );
     let run = folder.path().join("run");
     let text = fs::read_to_string(run.join("poses.csv")).unwrap();
-    assert_eq!(text.lines().next(), Some(HEADER));
+    assert_eq!(
+        text.lines().next(),
+        Some(format!("{HEADER},{DIAGNOSTICS}").as_str())
+    );
     assert!(!text.contains('\r') && !text.contains("NaN"));
     let rows = rows(&run);
     assert!(!rows.is_empty());
-    let (lambda, best) = (9.0, number(&rows[0], "score").abs());
+    let (lambda, best) = (9.0, number(&rows[0], "search_score").abs());
     let mut last = f64::INFINITY;
     for (index, row) in rows.iter().enumerate() {
         assert_eq!(row["rank"], (index + 1).to_string());
-        let score = number(row, "score");
+        let score = number(row, "search_score");
         let ranked = number(row, "pose_score");
         assert!(ranked <= last, "ranks must follow pose scores");
+        assert_eq!(number(row, "score"), ranked, "poses are rows");
         last = ranked;
         let length: f64 = ["qw", "qx", "qy", "qz"]
             .map(|part| number(row, part).powi(2))
@@ -49,7 +56,7 @@ fn the_table_says_what_its_columns_promise() {
         let ranked_by = number(row, "pose_score") - rescored.iter().sum::<f64>();
         assert!((score - ranked_by).abs() <= 1e-9 * best);
         // Shortest digits: printing what was read gives the field back.
-        for column in ["score", "qx", "tx", "score_grid", "slice_0"] {
+        for column in ["score", "search_score", "qx", "tx", "score_grid", "slice_0"] {
             assert_eq!(number(row, column).to_string(), row[column]);
         }
     }
@@ -62,7 +69,7 @@ fn refined_rows_stand_for_what_lies_within_a_step() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 --no-cluster --write-top 0 -o run --quiet",
+        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 --no-cluster --diagnostics --write-top 0 -o run --quiet",
     );
     let run = folder.path().join("run");
     let record: Value = serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap();
@@ -117,7 +124,10 @@ fn refined_rows_stand_for_what_lies_within_a_step() {
 fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
     let folder = place();
     let dock = "dock receptor.pdb ligand.pdb --rotations 60 --quiet --write-top 0";
-    run(folder.path(), &format!("{dock} --no-cluster -o all"));
+    run(
+        folder.path(),
+        &format!("{dock} --no-cluster --diagnostics -o all"),
+    );
     run(folder.path(), &format!("{dock} -o clusters"));
     let mut seen = std::collections::HashSet::new();
     let mut firsts = rows(&folder.path().join("all"));
@@ -127,6 +137,9 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
         let excess = number(row, "cluster_score") - number(row, "pose_score");
         assert_eq!(excess > 1e-9, row["cluster_size"] != "1", "company counts");
     }
+    let path = folder.path().join("clusters/poses.csv");
+    let text = fs::read_to_string(path).unwrap();
+    assert_eq!(text.lines().next(), Some(HEADER));
     let clusters = rows(&folder.path().join("clusters"));
     assert!(clusters.len() > 1 && clusters.len() < rows(&folder.path().join("all")).len());
     for (index, row) in clusters.iter().enumerate() {
@@ -136,8 +149,12 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
             "best cluster first"
         );
     }
+    // Of a table of clusters the score is the cluster's; the rest is its best pose's.
+    let diagnostics: Vec<&str> = DIAGNOSTICS.split(',').collect();
     for row in firsts.iter_mut() {
         row.insert("rank".to_owned(), row["cluster"].clone());
+        row.insert("score".to_owned(), row["cluster_score"].clone());
+        row.retain(|column, _| !diagnostics.contains(&column.as_str()));
     }
     assert_eq!(firsts, clusters);
 }
@@ -150,7 +167,7 @@ fn double_precision_goes_where_single_cannot() {
         run(
             folder.path(),
             &format!(
-                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster {options} -o {name} --quiet"
+                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster --diagnostics {options} -o {name} --quiet"
             ),
         );
         let record = fs::read(folder.path().join(name).join("run.json")).unwrap();
@@ -209,8 +226,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 fn a_finer_search_about_the_best_rotations() {
     let folder = place();
     let dock = |more: &str| {
-        let arguments =
-            "dock receptor.pdb ligand.pdb --rotations 60 --poses 60 --no-cluster --quiet";
+        let arguments = "dock receptor.pdb ligand.pdb --rotations 60 --poses 60 --no-cluster --diagnostics --quiet";
         run(folder.path(), &format!("{arguments} {more}"));
     };
     dock("-o coarse");
@@ -232,7 +248,7 @@ fn a_finer_search_about_the_best_rotations() {
     // Grid poses of finer rotations score what the fast path said, to its tolerance.
     let scale = best(&fine_rows);
     for row in fine_rows.iter().filter(finer).take(20) {
-        let apart = number(row, "score_grid") - number(row, "score");
+        let apart = number(row, "score_grid") - number(row, "search_score");
         assert!(apart.abs() < 0.02 * scale, "{row:?}");
     }
     let record = |files: &BTreeMap<String, Vec<u8>>| -> Value {

@@ -40,7 +40,7 @@ fn clashes_with_unresolved_residues_cost() {
     for row in rows.iter().step_by(5) {
         let number = |name: &str| -> f64 { row[name].parse().unwrap() };
         let value = number("unresolved");
-        assert_eq!(number("pose_score"), number("score") + value);
+        assert_eq!(number("pose_score"), number("search_score") + value);
         let quaternion = ["qw", "qx", "qy", "qz"].map(number);
         let pose = Pose::from_parts(quaternion, ["tx", "ty", "tz"].map(number));
         let back = pose.inverse();
@@ -58,7 +58,7 @@ fn clashes_with_unresolved_residues_cost() {
     }
     assert!(met > 0, "no pose meets unresolved residues");
     let scores = |rows: &[std::collections::BTreeMap<String, String>]| {
-        let mut scores: Vec<String> = rows.iter().map(|row| row["score"].clone()).collect();
+        let mut scores: Vec<String> = rows.iter().map(|row| row["search_score"].clone()).collect();
         scores.sort();
         scores
     };
@@ -140,7 +140,10 @@ fn contacts_of_termini_cost() {
         };
         let atoms = touching(&fixed, &placed) + touching(&placed, &fixed);
         assert_eq!(number("termini"), -3.0 * atoms as f64);
-        assert_eq!(number("pose_score"), number("score") + number("termini"));
+        assert_eq!(
+            number("pose_score"),
+            number("search_score") + number("termini")
+        );
         met += usize::from(atoms > 0);
     }
     assert!(met > 0, "no pose touches a terminus");

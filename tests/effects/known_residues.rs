@@ -52,7 +52,7 @@ fn named_residues_are_kept_free_or_touched() {
     assert!(free.iter().all(|row| row["restraint"].is_null()));
     for row in &blocked {
         let own = number(&row["restraint"]);
-        assert!((cost(row) - own).abs() < 1e-6 * number(&row["score"]).abs());
+        assert!((cost(row) - own).abs() < 1e-6 * number(&row["search_score"]).abs());
     }
     let mean = |rows: &[Value]| rows.iter().map(&cost).sum::<f64>() / rows.len() as f64;
     let (before, after) = (mean(&free), mean(&blocked));
@@ -115,6 +115,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
             "--poses",
             "40",
             "--no-cluster",
+            "--diagnostics",
             "--peptidase-weight",
             weight,
         ];
@@ -149,7 +150,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
     assert!(words.contains("family S1 like trypsin (catalytic A:57, A:195)"));
     let number = |text: &String| text.parse::<f64>().unwrap();
     let place = |row: &std::collections::BTreeMap<String, String>| {
-        let parts = ["rotation", "tx", "ty", "tz", "score", "relaxed"];
+        let parts = ["rotation", "tx", "ty", "tz", "search_score", "relaxed"];
         parts.map(|part| row[part].clone())
     };
     let sorted = |rows: &[std::collections::BTreeMap<String, String>]| {

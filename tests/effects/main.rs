@@ -101,7 +101,7 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
     let number = |value: &Value| value.as_f64().unwrap();
     for row in object["best"].as_array().unwrap().iter().take(1) {
         let terms = ["shape", "electrostatics", "contact"].map(|name| number(&row[name]));
-        let score = number(&row["score"]);
+        let score = number(&row["search_score"]);
         assert!((terms.iter().sum::<f64>() - score).abs() < 1e-9 * score.abs());
         let pose: Vec<String> = ["qw", "qx", "qy", "qz", "tx", "ty", "tz"]
             .iter()

@@ -8,7 +8,14 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |options: &[&str]| {
-        let mut all = vec!["--rotations", "24", "--poses", "40", "--no-cluster"];
+        let mut all = vec![
+            "--rotations",
+            "24",
+            "--poses",
+            "40",
+            "--no-cluster",
+            "--diagnostics",
+        ];
         all.extend(["--peptidase-weight", "0", "--unresolved-weight", "0"]);
         all.extend(["--termini-weight", "0"]);
         all.extend(options);
@@ -37,7 +44,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
         for (_, term) in TERMS {
             assert_eq!(
                 (row[term].as_str(), &row["pose_score"]),
-                ("", &row["score"])
+                ("", &row["search_score"])
             );
         }
     }
@@ -52,7 +59,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
             }
             assert_eq!(
                 number(&row, "pose_score"),
-                number(&row, "score") + number(&row, only)
+                number(&row, "search_score") + number(&row, only)
             );
         }
     }
@@ -67,7 +74,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
             plain.iter().find(same).unwrap(),
             once.iter().find(same).unwrap(),
         );
-        assert_eq!(before["score"], row["score"]);
+        assert_eq!(before["search_score"], row["search_score"]);
         moved += usize::from(before["rank"] != row["rank"]);
         let mut all = 0.0;
         for (_, term) in TERMS {
@@ -75,7 +82,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
             assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
             all += two;
         }
-        assert_eq!(number(row, "pose_score"), number(row, "score") + all);
+        assert_eq!(number(row, "pose_score"), number(row, "search_score") + all);
     }
     assert!(moved > 0, "rescoring must matter");
     assert!(

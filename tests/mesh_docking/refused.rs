@@ -98,14 +98,14 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--effects", "electrostatics"], "charges"),
         (["--effects", "contact"], "atom types"),
         (["--effects", "restraint"], "residues"),
-        (["--block-ligand", "A:1"], "residues"),
-        (["--active-receptor", "A:1"], "residues"),
+        (["--block-ligand", "A:1"], "of molecules"),
+        (["--active-receptor", "A:1"], "of molecules"),
         (["--core-weight", "2"], "of molecules"),
         (["--contact-weight", "5"], "of molecules"),
         (["--ph", "5"], "of molecules"),
         (["--resolution", "0"], "above zero"),
         (["--alpha", "0"], "above zero"),
-        (["--rotations", "0"], "above zero"),
+        (["--rotations", "0"], "between 1 and 10000000"),
     ] {
         says(&refused(&place, &[&meshes[..], &more].concat()), word);
     }

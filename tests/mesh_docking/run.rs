@@ -74,7 +74,7 @@ pub fn scored_poses(path: &Path) -> Vec<(Pose, f64)> {
             ["qw", "qx", "qy", "qz"].map(value),
             ["tx", "ty", "tz"].map(value),
         );
-        (pose, value("score"))
+        (pose, value("search_score"))
     };
     rows.iter().map(|row| read(row)).collect()
 }

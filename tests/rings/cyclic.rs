@@ -31,7 +31,7 @@ fn a_ring_that_is_known_to_fit_is_found_first() {
     let rows = rows(&folder.path().join("run"));
     // The first pose of the ring is the one with the fewest contacts of termini.
     assert!(rmsd(&both, &pose(&rows[0]), &known) < 1.5);
-    assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
+    assert!(number(&rows[0], "search_score") > 1.2 * number(&rows[1], "search_score"));
 }
 
 /// Docks a small protein into rings of shape alone; the run's object and rows.
@@ -82,9 +82,9 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         told["exact"].as_f64().unwrap()
     };
     for name in ["C2", "C3", "C4", "C5"] {
-        let (told, rows) = small(folder.path(), name, &["--no-cluster"]);
-        assert_eq!(told["run"]["options"]["symmetry"], name);
-        assert_eq!(told["run"]["options"]["rotations"], 40);
+        let (told, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
+        assert_eq!(told["run"]["options"]["search"]["symmetry"], name);
+        assert_eq!(told["run"]["options"]["search"]["rotations"], 40);
         assert!(rows.len() > 20);
         for row in &rows {
             assert!(symmetry(name).ring(&pose(row)).is_some(), "{name}");
@@ -112,7 +112,7 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         for row in &rows[..3] {
             let pose = pose(row);
             let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b.abs().max(1.0);
-            let own = number(row, "score");
+            let own = number(row, "search_score");
             assert!(close(score(&pose), own));
             let others = match name {
                 "C4" => 0.5 * score(&pose.after(&pose)),
@@ -191,7 +191,7 @@ fn all_copies_are_written_and_runs_repeat() {
 fn residues_are_named_for_all_copies() {
     let folder = tempfile::tempdir().unwrap();
     let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
-    assert!(told["run"]["options"]["active_ligand"].is_null());
+    assert!(told["run"]["options"]["restraints"]["active_ligand"].is_null());
     assert!(rows.iter().all(|row| row["active_residues"].is_empty()));
     let molecule = example("ligand_unbound");
     let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
@@ -203,7 +203,7 @@ fn residues_are_named_for_all_copies() {
         ("active_receptor", "active_ligand"),
         ("block_receptor", "block_ligand"),
     ] {
-        let options = &told["run"]["options"];
+        let options = &told["run"]["options"]["restraints"];
         assert!(!options[side].is_null());
         assert_eq!(options[side], options[other]);
     }
@@ -250,12 +250,12 @@ fn what_no_ring_can_have_is_refused() {
         ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
         ("a.pdb --symmetry T", "no symmetry"),
         ("a.pdb --symmetry C1", "no symmetry"),
-        ("a.pdb --symmetry C3 --angle 12", "cannot be used with"),
+        ("a.pdb --symmetry C3 --rotations 12deg", "axes"),
         ("a.pdb --symmetry C3 --budget 5s", "cannot be used with"),
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
         (
             "a.pdb --symmetry C3 --active-ligand B:5",
-            "cannot be used with",
+            "active-ligand is B:5; it must be the receptor's",
         ),
         ("a.pdb --symmetry C3 --refine 5", "refine is 5"),
         (

@@ -53,7 +53,7 @@ fn two_rings_that_are_known_to_fit_are_found_first() {
         off.into_iter().fold(f64::INFINITY, f64::min) < 1.0,
         "{off:?}"
     );
-    assert!(number(&rows[0], "score") > 1.2 * number(&rows[1], "score"));
+    assert!(number(&rows[0], "search_score") > 1.2 * number(&rows[1], "search_score"));
 }
 
 /// From a single molecule in two steps: every row is half a turn about an axis that crosses the ring's at a right angle, scores as such a pair does, and the
@@ -67,7 +67,8 @@ fn rows_lay_two_rings_face_to_face() {
     let first = format!("dock {one} --symmetry C3 --rotations 40 --poses 60 -o ring {small}");
     succeed(folder.path(), first.split(' '));
     let file = "ring/top/rank_0001.pdb";
-    let second = format!("dock {file} --symmetry D3 --rotations 12 --no-cluster {small}");
+    let second =
+        format!("dock {file} --symmetry D3 --rotations 12 --no-cluster --diagnostics {small}");
     let with = |more: &str| succeed(folder.path(), format!("{second} {more}").split(' '));
     with("--threads 1 -o run");
     let table = fs::read(at("run/poses.csv")).unwrap();
@@ -95,7 +96,10 @@ fn rows_lay_two_rings_face_to_face() {
     let place = format!("--pose={w},{x},{y},{z},{a},{b},{c}");
     let options = ["score", file, file, &place, "--effects", "shape", "--json"];
     let told: Value = serde_json::from_slice(&succeed(folder.path(), options).stdout).unwrap();
-    let (exact, own) = (told["exact"].as_f64().unwrap(), number(&rows[0], "score"));
+    let (exact, own) = (
+        told["exact"].as_f64().unwrap(),
+        number(&rows[0], "search_score"),
+    );
     assert!((exact - own).abs() < 1e-6 * own.abs());
 
     let whole = molecule(at("run/top/rank_0001.pdb").to_str().unwrap());

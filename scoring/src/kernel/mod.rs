@@ -2,6 +2,7 @@
 //! rasterised bumps.
 
 pub mod cone;
+pub mod exponent;
 pub mod low_pass;
 mod options;
 pub mod product;

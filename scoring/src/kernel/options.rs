@@ -12,6 +12,7 @@ pub struct KernelOptions {
     /// Skin offset r0 >= 0, in Å.
     pub offset: f64,
     /// Exponent alpha of the bump function.
+    #[serde(with = "super::exponent")]
     pub alpha: f64,
     /// Resolution in Å: the low-pass stops at 1 / resolution.
     pub resolution: f64,

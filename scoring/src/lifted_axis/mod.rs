@@ -1,8 +1,18 @@
-//! The fourth axis: modes eta_k = k / P along the radius, the fold of the three slices, and the basis in which knots meet it.
+//! The fourth axis: modes eta_k = k / P along the radius, the weights of the three slices, and the basis of the radii.
 //!
-//! K(w, eta_k) = (1/P) integral of kappa^(|w|; sigma) exp(+2 pi i eta_k sigma) d sigma, so that a slice at offset rho is
+//! # Conventions
+//!
+//! Of a receptor with knots (x_i, r_i), weights c_i, and a ligand with knots (y_j, s_j), weights d_j, at rotation R:
+//!
+//! - rhoA(w, eta) = sum_i c_i exp(-2 pi i (w.x_i + eta r_i));
+//! - rhoB(w, eta) = sum_j d_j exp(-2 pi i (w.R y_j - eta s_j)), the ligand's r-mirror (B&I eq. 38, 49): s_j enters with the
+//!   other sign. Its conjugate is then sum_j d_j exp(+2 pi i (w.R y_j - eta s_j)), so that the product depends on r + s.
+//!   Without the mirror it would depend on r - s;
+//! - K(w, eta_k) = (1 / P) integral of kappa^(|w|; sigma) exp(+2 pi i eta_k sigma) d sigma.
+//!
+//! The slice at offset rho is
 //! g^(w; rho) = sum_k K(w, eta_k) exp(-2 pi i eta_k rho) rhoA(w, eta_k) conj(rhoB(w, eta_k)).
-//! The slices' weights fold into one factor per mode, C_k = -lambda^2 + 2 lambda exp(-2 pi i eta_k r0) - exp(-4 pi i eta_k r0).
+//! The score's slices add up to one factor a mode, C_k = -lambda^2 + 2 lambda exp(-2 pi i eta_k r0) - exp(-4 pi i eta_k r0).
 
 mod basis;
 mod nodes;
@@ -119,7 +129,7 @@ impl LiftedAxis {
         if k < 0 { value.conj() } else { value }
     }
 
-    /// C_k: what the fold multiplies mode eta_k by.
+    /// C_k: the factor of mode eta_k in a quantity.
     pub fn fold_factor(&self, kernel: &RankingKernel, fold: Quantity, k: i64) -> Complex64 {
         let eta = self.eta(k);
         match fold {

@@ -1,18 +1,19 @@
-//! One configuration without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
+//! The correlation at one pose, without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
 //!
-//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I section 4.3
-//! and Fig. 9). There are two ways through:
+//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I
+//! section 4.1, eq. 50 for collision and the end of 4.2 for the score; their Fig. 9 times it). There are two ways:
 //!
-//! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation; each translation then costs O(m') by
-//!   [`RotationSpectrum::gradient`], with the force.
-//! - [`TruncatedCorrelation::gradient`] takes a pose with a rotation that is new: every knot reads the receptor's field and its slope, which
-//!   gives force and torque together, O(m' x ligand knots).
+//! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation. Each translation then
+//!   costs O(m') by [`RotationSpectrum::gradient`], with the force.
+//! - [`TruncatedCorrelation::gradient`] takes a pose with a new rotation: every knot reads the receptor's components and
+//!   their slopes, which gives force and torque together, O(m' x ligand knots).
 //!
 //! # Conventions
 //!
-//! As everywhere: a pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
-//! ligand's centre. Modes are counted with their conjugates, the lifted axis folded. All sums run in f64. The polynomial repeats
-//! with the box; where the ligand's centre lies outside the box, whose edge no contact reaches, value and gradient are zero.
+//! A pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
+//! ligand's centre. Modes are counted with their conjugates, and the lifted axis is summed over. All sums run in f64. The
+//! polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches, value
+//! and gradient are zero.
 
 mod columns;
 mod fields;

@@ -6,4 +6,5 @@ pub mod failure;
 pub mod library_errors;
 pub mod shared_chains;
 pub mod suggestions;
+pub mod timings;
 pub mod usage;

@@ -11,10 +11,12 @@ use knotdock::options::SampleGrid;
 use knotdock::options::values::{above_zero, at_least_one, protrusion};
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Step, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{
+    Ball, BallSet, Method, Sampling, SetName, Step, knots, sample,
+};
 use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 

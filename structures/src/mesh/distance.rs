@@ -7,7 +7,8 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::query::point::PointQuery;
 use parry3d_f64::shape::TriMesh;
 
-use super::{Mesh, MeshErrorKind};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::triangle_mesh::Mesh;
 
 /// The triangles of a mesh, to measure distances to.
 pub(crate) struct Surface {
@@ -60,6 +61,6 @@ impl Surface {
 
     /// The distance to the surface.
     pub fn distance(&self, point: [f64; 3]) -> f64 {
-        super::vector::distance(self.nearest(point), point)
+        crate::mesh::vector::distance(self.nearest(point), point)
     }
 }

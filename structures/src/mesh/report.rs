@@ -4,11 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::figure::Figure;
-use super::read::MeshFormat;
-use super::topology::Topology;
-use super::vector::{add, norm};
-use super::{Mesh, doubled_normal};
+use crate::mesh::figure::Figure;
+use crate::mesh::read::format::MeshFormat;
+use crate::mesh::repair::topology::Topology;
+use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
+use crate::mesh::vector::{add, norm};
 
 /// What was read, and what is amiss with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::triangle_tree::centroid;
-use super::vector::{add, norm, scale, subtract};
-use super::{Solid, doubled_normal};
+use crate::mesh::solid::Solid;
+use crate::mesh::triangle_mesh::doubled_normal;
+use crate::mesh::triangle_tree::centroid;
+use crate::mesh::vector::{add, norm, scale, subtract};
 
 /// A point that stands for a small piece of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use super::triangle_tree::TriangleTree;
-use super::vector::{cross, dot, norm, subtract};
+use crate::mesh::triangle_tree::TriangleTree;
+use crate::mesh::vector::{cross, dot, norm, subtract};
 
 /// Signed solid angle of a triangle seen from `point`, in steradians: above zero from behind, that is from inside (van
 /// Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).

@@ -356,7 +356,7 @@ pub(in crate::cli) const COMMANDS: [Suggestion; 10] = [
     ),
     suggestion(
         &[
-            "build", "export", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
+            "build", "complex", "extract", "generate", "decoygen", "create", "write", "pdb", "top",
         ],
         "use `knotdock export RUN --rank 37,40-45`",
     ),

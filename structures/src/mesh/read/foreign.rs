@@ -1,8 +1,8 @@
 //! Files of other kinds under a mesh's name, or under none: what they are, and what to give in their place.
 
-use super::super::error::MeshErrorKind;
-use super::encoding::text_of;
-use super::words::lines;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::encoding::text_of;
+use crate::mesh::read::words::lines;
 
 const CONVERT: &str = "export the surface as STL, OBJ, PLY or OFF from a program that opens it";
 const UNPACK: &str = "unpack it, and give the STL, OBJ, PLY or OFF file that is in it";

@@ -6,40 +6,27 @@
 //!
 //! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
 
-mod encoding;
-mod foreign;
-mod obj;
-mod off;
-mod ply;
-mod soup;
-mod stl;
-mod words;
+pub(super) mod encoding;
+pub(super) mod foreign;
+pub(super) mod format;
+pub(super) mod obj;
+pub(super) mod off;
+pub(super) mod ply;
+pub(super) mod soup;
+pub(super) mod stl;
+pub(super) mod words;
 
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use serde::Serialize;
-
-use super::error::{MeshError, MeshErrorKind};
-use super::report::{Altered, MeshReport};
-use super::{Mesh, repeats, topology, weld};
-use encoding::{text_of, unified};
-use soup::{At, Soup};
-
-/// File format of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MeshFormat {
-    /// Stereolithography, text or binary.
-    Stl,
-    /// Wavefront OBJ.
-    Obj,
-    /// Stanford polygon format, text or binary.
-    Ply,
-    /// Object file format of Geomview.
-    Off,
-}
+use crate::mesh::error::{MeshError, MeshErrorKind};
+use crate::mesh::read::encoding::{text_of, unified};
+use crate::mesh::read::format::MeshFormat;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::repair::{repeats, topology, weld};
+use crate::mesh::report::{Altered, MeshReport};
+use crate::mesh::triangle_mesh::Mesh;
 
 /// Largest file that is read, in bytes: 40 million triangles of binary STL.
 const LARGEST_FILE: u64 = 2 << 30;

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::super::error::MeshErrorKind;
-use super::soup::{At, Soup};
-use super::words::{lines, real, shortened};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::read::words::{lines, real, shortened};
 
 /// Keywords other than `v` that a line of an OBJ file may begin with.
 const KEYWORDS: [&str; 14] = [

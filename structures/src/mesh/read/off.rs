@@ -3,9 +3,9 @@
 //!
 //! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be wrapped, or be one.
 
-use super::super::error::MeshErrorKind;
-use super::soup::{At, Soup};
-use super::words::{Line, Records, by_line_or_stream, lines};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines};
 
 /// The keyword that a file begins with, and the letters before its `OFF`.
 fn keyword(text: &str) -> Option<(&str, &str)> {

@@ -1,7 +1,7 @@
 //! Lines of words of a text format, with their numbers, and numbers of words.
 
-use super::super::error::MeshErrorKind;
-use super::super::rounding::Digits;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::repair::rounding::Digits;
 
 /// A line that has words: its 1-based number, and its text up to a comment.
 #[derive(Clone, Copy, Debug)]

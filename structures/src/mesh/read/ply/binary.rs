@@ -5,9 +5,9 @@ use ply_rs_bw::ply::{
     DefaultElement, ElementDef, Header, Property, PropertyAccess, PropertyAccessResult,
 };
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::At;
-use super::{LISTS, Listed, Role, whole};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::elements::{LISTS, Listed, Role, whole};
+use crate::mesh::read::soup::At;
 
 /// A vertex; a coordinate that the file does not have stays NaN and is refused as missing.
 struct Vertex([f64; 3]);

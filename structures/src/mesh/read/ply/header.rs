@@ -3,9 +3,9 @@
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, Header};
 
-use super::super::super::error::MeshErrorKind;
-use super::super::words::shortened;
-use super::binary::broken;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::binary::broken;
+use crate::mesh::read::words::shortened;
 
 /// Whether a file begins as a PLY file does.
 pub fn begins(bytes: &[u8]) -> bool {

@@ -2,10 +2,10 @@
 
 use ply_rs_bw::ply::{Header, PropertyType, ScalarType};
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::At;
-use super::super::words::{Line, Records, by_line_or_stream, lines, real};
-use super::{LISTS, Listed, Role, whole};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::elements::{LISTS, Listed, Role, whole};
+use crate::mesh::read::soup::At;
+use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines, real};
 
 /// Reads what follows the header, which has `before` lines.
 pub fn read(header: &Header, payload: &[u8], before: usize) -> Result<Listed, MeshErrorKind> {

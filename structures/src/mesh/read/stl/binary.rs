@@ -3,8 +3,8 @@
 //! The count may be wrong: programs that write to a pipe leave it at zero or at a number that no file reaches. The records that
 //! are there are read then, with a note.
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::{At, LeftOut, Soup, is_finite};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, LeftOut, Soup, is_finite};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;

@@ -1,8 +1,8 @@
 //! Text STL: `solid`, facets with their vertices, `endsolid`. Lines may be wrapped, or be one.
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::{At, LeftOut, Soup, is_finite};
-use super::super::words::{Line, lines, shortened};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, LeftOut, Soup, is_finite};
+use crate::mesh::read::words::{Line, lines, shortened};
 
 /// Words that begin something inside a facet.
 const WORDS: [&str; 7] = [

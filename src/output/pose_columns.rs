@@ -1,0 +1,125 @@
+//! The columns of `poses.csv` that a search fills, in order.
+//!
+//! | columns | what |
+//! |---|---|
+//! | `score` | what orders the rows: the cluster's score where rows are clusters, else the pose's |
+//! | `pose_score` | `search_score`, the pose terms and `other_copies` together |
+//! | `search_score` | exact correlation at the pose, which is the sum of the effects |
+//! | effects, pose terms | their weighted values by id; empty where one is off |
+//!
+//! Columns for diagnosis come last: what the fast path gave, and from where.
+
+use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::pose::POSE_TERMS;
+
+use super::fields::number;
+use crate::dock::outcome::RankedPose;
+
+/// A column: its name, and its field of a pose.
+pub(super) struct PoseColumn {
+    pub name: &'static str,
+    pub field: Box<dyn Fn(&RankedPose) -> String>,
+}
+
+/// A column of any text.
+fn text(name: &'static str, field: impl Fn(&RankedPose) -> String + 'static) -> PoseColumn {
+    PoseColumn {
+        name,
+        field: Box::new(field),
+    }
+}
+
+/// A column of numbers.
+fn column(name: &'static str, value: impl Fn(&RankedPose) -> f64 + 'static) -> PoseColumn {
+    text(name, move |row| number(value(row)))
+}
+
+/// A column of numbers that some poses lack.
+fn optional(
+    name: &'static str,
+    value: impl Fn(&RankedPose) -> Option<f64> + 'static,
+) -> PoseColumn {
+    text(name, move |row| value(row).map(number).unwrap_or_default())
+}
+
+/// A column of counts that some poses lack.
+fn count(name: &'static str, value: impl Fn(&RankedPose) -> Option<usize> + 'static) -> PoseColumn {
+    text(name, move |row| {
+        value(row)
+            .map(|value| value.to_string())
+            .unwrap_or_default()
+    })
+}
+
+/// The columns after `rank`.
+pub(super) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
+    let mut columns = vec![
+        column("score", |row| row.score),
+        count("cluster", |row| row.cluster),
+        count("cluster_size", |row| row.cluster_size),
+        column("pose_score", |row| row.pose_score),
+        column("search_score", |row| row.search_score),
+    ];
+    columns.extend(
+        Effect::ALL.map(|effect| optional(effect.name(), move |row| row.terms[effect as usize])),
+    );
+    columns.extend(
+        POSE_TERMS
+            .iter()
+            .map(|term| optional(term.id, |row| row.pose_terms.get(term.id))),
+    );
+    columns.push(optional("other_copies", |row| row.other_copies));
+    columns.push(optional("z_score", |row| row.z_score));
+    for (index, name) in ["qw", "qx", "qy", "qz"].into_iter().enumerate() {
+        columns.push(column(name, move |row| row.pose.quaternion()[index]));
+    }
+    for (index, name) in ["tx", "ty", "tz"].into_iter().enumerate() {
+        columns.push(column(name, move |row| row.pose.translation[index]));
+    }
+    if diagnostics {
+        columns.extend(for_diagnosis());
+    }
+    columns
+}
+
+/// Columns that say how the search came to a pose.
+fn for_diagnosis() -> Vec<PoseColumn> {
+    let mut columns = vec![
+        optional("cluster_score", |row| row.cluster_score),
+        text("refined", |row| row.refined.to_string()),
+        text("rotation", |row| row.rotation.to_string()),
+        column("score_grid", |row| row.score_grid),
+        column("score_unfiltered", |row| row.score_unfiltered),
+    ];
+    for (index, name) in ["slice_0", "slice_r0", "slice_2r0"].into_iter().enumerate() {
+        columns.push(column(name, move |row| row.slices[index]));
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    /// A term whose id is a column's name already would hide one of the two.
+    #[test]
+    fn names_are_distinct_and_hold_every_term() {
+        let names: Vec<&str> = columns(true).iter().map(|column| column.name).collect();
+        let distinct: HashSet<&str> = names.iter().copied().collect();
+        assert_eq!(distinct.len(), names.len());
+        assert!(POSE_TERMS.iter().all(|term| distinct.contains(term.id)));
+        assert!(
+            Effect::ALL
+                .iter()
+                .all(|effect| distinct.contains(effect.name()))
+        );
+        let default = columns(false);
+        assert!(
+            default
+                .iter()
+                .map(|column| column.name)
+                .eq(names[..default.len()].iter().copied())
+        );
+    }
+}
