@@ -83,6 +83,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             "match",
             "options",
             "plan",
+            "pose_terms",
             "program",
             "rank",
             "results",
@@ -229,10 +230,11 @@ fn inspect_tells_what_was_read_and_assumed() {
             "accessible_area",
             "active_sites",
             "antibody",
-            "chain_end_residues",
             "input",
             "labels",
-            "missing_residues",
+            "pose_terms",
+            "terminus_residues",
+            "unresolved_residues",
             "volume",
             "volume_error"
         ]
