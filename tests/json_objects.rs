@@ -161,7 +161,7 @@ fn complex_lists_files_by_rank() {
         folder.path(),
         "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
     );
-    let told = object(&run(folder.path(), "complex run --rank 3,1 --json"));
+    let told = object(&run(folder.path(), "export run --rank 3,1 --json"));
     assert_eq!(keys(&told), ["chains", "files"]);
     let files = told["files"].as_array().unwrap();
     assert_eq!(

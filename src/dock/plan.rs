@@ -173,7 +173,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
             let plan = planned(&coarser).ok()?;
             let spacing = rounded_up(plan.spacing, angstrom);
             let (fixed, per_rotation) = needs(&plan.with_spacing(spacing).ok()?);
-            (fixed + per_rotation <= allowed).then(|| KernelOptions {
+            (fixed + per_rotation <= allowed).then_some(KernelOptions {
                 spacing: Some(spacing),
                 ..coarser.kernel
             })

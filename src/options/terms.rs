@@ -34,8 +34,8 @@ pub struct TermOptions {
     /// Weight of the atom pair potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 1.0)]
     pub atom_pair_weight: f64,
-    /// Weight of the atom pair potential where the pose comes to rest within 2 Å once atoms must not overlap, score per RT, by which
-    /// poses are rescored where the contact effect is on; 0 for none.
+    /// Weight of the atom pair potential where the pose comes to rest within 2 Å once atoms must not overlap: score per RT. Poses are
+    /// rescored by it where the contact effect is on; 0 for none.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 3.0)]
     pub relaxed_weight: f64,
     /// Atom pair potential to use in place of the program's own, as scripts/atom_pair_potential.py writes it.
