@@ -337,3 +337,26 @@ fn score_tells_the_geometry_of_the_pose() {
     ));
     assert!((same["geometry"]["shape_tanimoto"].as_f64().unwrap() - 1.0).abs() < 1e-9);
 }
+
+/// `-v` adds the times of stages and effects to what a run says by default; `-q` leaves all of it out.
+#[test]
+fn verbose_says_more_and_quiet_says_nothing() {
+    let folder = place();
+    let said = |options: &str| {
+        let command =
+            format!("dock receptor.pdb ligand.pdb --rotations 20 -o run --force {options}");
+        String::from_utf8(run(folder.path(), &command).stdout).unwrap()
+    };
+    let [default, verbose, quiet] = ["-j 1", "-v -j 1", "-q -j 1"].map(said);
+    assert!(!default.contains("CPU s") && default.contains("Effect shape"));
+    for part in [
+        "CPU s",
+        "search",
+        "cluster",
+        "ms a rotation",
+        "Effect shape",
+    ] {
+        assert!(verbose.contains(part), "{part}: {verbose}");
+    }
+    assert_eq!(quiet, "");
+}

@@ -6,8 +6,8 @@
 //! | what | how |
 //! |---|---|
 //! | the command line, its help and its refusals | `#[derive(clap::Args)]` |
-//! | [`DockOptions::default`] | an empty command line ([`text::defaults`]) |
-//! | the file of `--config` | its values are read as if they were typed ([`file`]) |
+//! | [`DockOptions::default`] | an empty command line ([`text`]) |
+//! | the file of `--config` | its values are read as if they were typed ([`mod@file`]) |
 //! | `options` in `run.json` | `#[derive(Serialize, Deserialize)]` |
 //! | the check of options from elsewhere | the values are read as if they were typed ([`check`]) |
 //! | what `--rerun` repeats, which options a kind of input has | [`definition::definitions`] |
