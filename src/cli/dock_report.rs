@@ -177,7 +177,7 @@ pub fn loose_told(sides: &[&str], loose: &Loose) -> Vec<String> {
             let ends = counted(missing.ends, "end");
             parts.push(format!("{ends} of chains that may go on"));
         }
-        if !missing.stretches.is_empty() {
+        if !missing.segments.is_empty() {
             options.push("--unresolved-weight 0");
         } else if let Some(last) = parts.last_mut() {
             last.push_str(", which the rest leaves no room");

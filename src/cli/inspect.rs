@@ -9,7 +9,7 @@ use knotdock::priors::{Findings, PRIORS};
 use knotdock::search::DockOptions;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    Format, InputSpec, LabelReport, Termini, UnresolvedResidues, fits,
 };
 use serde_json::{Map, Value, json};
 
@@ -81,7 +81,7 @@ impl Inspect {
             None => None,
         };
         let (input, listed) = if self.atoms.is_some() {
-            let (input, listed) = Input::read_listed(&self.file, &reading)?;
+            let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
             (input, Some(listed))
         } else {
             let [input] = Input::read_all([&self.file], &reading)?;
@@ -101,8 +101,8 @@ impl Inspect {
             .iter()
             .sum();
         let findings = PRIORS.map(|prior| prior.findings(molecule));
-        let missing = molecule.missing_residues();
-        let ends = molecule.chain_ends();
+        let missing = molecule.unresolved_residues();
+        let ends = molecule.termini();
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
             "{}\n{}",
@@ -153,7 +153,7 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
 /// The labels in words.
 fn told(
     labels: &LabelReport,
-    (missing, ends): (&MissingResidues, &ChainEnds),
+    (missing, ends): (&UnresolvedResidues, &Termini),
     ph: f64,
     area: f64,
     volume: Volume,

@@ -82,7 +82,7 @@ impl Asked {
                 .map(|weight| Attraction::new(receptor, ligand, &attracted.sets, weight)),
             missing: asked(self.missing).map(|weight| {
                 let missing = loose.missing_residues.each_ref();
-                let stretches = missing.map(|side| side.stretches.as_slice());
+                let stretches = missing.map(|side| side.segments.as_slice());
                 MissingContacts::new(receptor, ligand, stretches, weight)
             }),
             chain_ends: asked(self.chain_ends).map(|weight| {

@@ -68,11 +68,11 @@ fn run(solid: &Solid, per_axis: usize, method: Method) -> Run {
     let (start, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let sampling = sample(solid, per_axis, method).expect("the bunny has an inside");
     let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
-    let referee = HausdorffMeter::new(solid, &sampling.field);
+    let meter = HausdorffMeter::new(solid, &sampling.field);
     let fits = sampling
         .sets
         .iter()
-        .map(|set| referee.judge(&set.balls))
+        .map(|set| meter.measure(&set.balls))
         .collect();
     Run {
         sampling,
@@ -169,14 +169,14 @@ fn main() {
                 run.cpu
             );
             if index == 0 {
-                let referee = HausdorffMeter::new(&solid, &run.sampling.field);
+                let meter = HausdorffMeter::new(&solid, &run.sampling.field);
                 others.push(row(
                     paper,
                     "B&I A3, mu 0.25",
                     &format!("{}", paper.n3[0]),
                     &run,
                     2,
-                    referee.volume(),
+                    meter.volume(),
                 ));
             }
         }

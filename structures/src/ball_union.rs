@@ -60,7 +60,7 @@ pub fn union_volume(balls: &Knots) -> Volume {
 
 /// Volumes of two unions of balls, in one frame, and of what they share.
 pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
-    let [a, b, both] = if apart(first, second) {
+    let [a, b, both] = if are_disjoint(first, second) {
         let ([a, ..], [b, ..]) = (measure(&[first]), measure(&[second]));
         [a, b, std::array::from_fn(|axis| a[axis] + b[axis])]
     } else {
@@ -84,7 +84,7 @@ pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
 }
 
 /// Whether the boxes about two sets do not meet.
-fn apart(first: &Knots, second: &Knots) -> bool {
+fn are_disjoint(first: &Knots, second: &Knots) -> bool {
     let largest = |set: &Knots| set.radii.iter().copied().fold(0.0, f64::max);
     let reach = largest(first) + largest(second);
     let ((low, high), (other_low, other_high)) = (first.bounds(), second.bounds());

@@ -1,25 +1,25 @@
-//! Where residues may be that a file does not show: many courses that their chain may take, none more likely than another.
+//! Where residues may be that a file does not show: many conformers that their chain may take, none more likely than another.
 
-/// Courses of a stretch of chain, in a frame of its own that goes with the body.
+/// Conformers of a segment of chain, in a frame of its own that goes with the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conformers {
-    /// Where the stretch begins, in the file's frame (Å).
+    /// Where the segment begins, in the file's frame (Å).
     pub origin: [f64; 3],
-    /// Unit vectors of the stretch's own frame, in the file's.
+    /// Unit vectors of the segment's own frame, in the file's.
     pub axes: [[f64; 3]; 3],
-    /// CA atoms of each course, in the stretch's own frame (Å).
-    pub courses: Vec<Vec<[f64; 3]>>,
+    /// CA atoms of each conformer, in the segment's own frame (Å).
+    pub traces: Vec<Vec<[f64; 3]>>,
 }
 
 impl Conformers {
-    /// A point of the file's frame in the stretch's own.
+    /// A point of the file's frame in the segment's own.
     pub fn local(&self, point: [f64; 3]) -> [f64; 3] {
         let from: [f64; 3] = std::array::from_fn(|axis| point[axis] - self.origin[axis]);
         self.axes
             .map(|unit| unit.iter().zip(&from).map(|(a, b)| a * b).sum())
     }
 
-    /// A point of the stretch's own frame in the file's.
+    /// A point of the segment's own frame in the file's.
     pub fn in_file(&self, point: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| {
             let along = self.axes.iter().zip(&point).map(|(unit, x)| unit[axis] * x);

@@ -27,17 +27,17 @@ pub struct SphereTree {
 
 /// The smallest ball that holds two.
 pub fn enclosing(a: &Ball, b: &Ball) -> Ball {
-    let apart = distance(a.center, b.center);
-    if apart + b.radius <= a.radius {
+    let spacing = distance(a.center, b.center);
+    if spacing + b.radius <= a.radius {
         return *a;
     }
-    if apart + a.radius <= b.radius {
+    if spacing + a.radius <= b.radius {
         return *b;
     }
-    let radius = 0.5 * (apart + a.radius + b.radius);
+    let radius = 0.5 * (spacing + a.radius + b.radius);
     let center = along(
         a.center,
-        (radius - a.radius) / apart,
+        (radius - a.radius) / spacing,
         subtract(b.center, a.center),
     );
     // Rounding of the centre must not let a child peep out.
@@ -153,8 +153,8 @@ fn partnered(nodes: &[SphereNode], open: &[Open], node: usize) -> Open {
     for other in open.iter().filter(|other| other.node != node) {
         let ball = nodes[other.node].ball;
         // The radius of the enclosing ball.
-        let apart = distance(own.center, ball.center);
-        let cost = (0.5 * (apart + own.radius + ball.radius))
+        let spacing = distance(own.center, ball.center);
+        let cost = (0.5 * (spacing + own.radius + ball.radius))
             .max(own.radius)
             .max(ball.radius);
         if cost < best.cost {

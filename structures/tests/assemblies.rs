@@ -7,7 +7,7 @@ mod pdb_text;
 use std::path::Path;
 
 use knotdock_structures::molecule::{
-    BuiltAssembly, DropKind, InputSpec, Molecule, ReadError, ReadOptions, read, read_listed,
+    BuiltAssembly, DropKind, InputSpec, Molecule, ReadError, ReadOptions, read, read_with_fates,
 };
 use pdb_text::{ATOM, Line, text};
 
@@ -104,23 +104,23 @@ fn a_dimer_is_built_of_one_chain() {
         on_axes: 1,
     };
     assert_eq!(report.assembly, Some(expected));
-    let told = report.to_string();
+    let shown = report.to_string();
     assert!(
-        told.contains(
+        shown.contains(
             "biological assembly 1: 2 chains, of 2 in the file; 1 atom on its axes kept once"
         ),
-        "{told}"
+        "{shown}"
     );
     assert!(
-        told.contains("1 atom of chains outside the assembly (B)"),
-        "{told}"
+        shown.contains("1 atom of chains outside the assembly (B)"),
+        "{shown}"
     );
     assert!(
         report
             .warnings
             .iter()
             .all(|warning| !warning.contains("--assembly")),
-        "{told}"
+        "{shown}"
     );
 
     let second = built("", "2").unwrap();
@@ -135,7 +135,7 @@ fn a_dimer_is_built_of_one_chain() {
 }
 
 #[test]
-fn every_atom_is_listed_with_the_copies() {
+fn every_atom_has_a_fate_with_the_copies() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.pdb");
     std::fs::write(&path, dimer()).unwrap();
@@ -143,7 +143,7 @@ fn every_atom_is_listed_with_the_copies() {
         assembly: Some("1".to_owned()),
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_listed(&InputSpec::whole(&path), &options).unwrap();
+    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
     let outside: Vec<_> = listed
         .iter()
         .filter(|entry| entry.dropped.is_some())
@@ -168,12 +168,12 @@ fn a_unit_that_is_no_assembly_is_warned_of() {
             .collect();
         of_assemblies.join(" ")
     };
-    let told = warned(&dimer(), "");
+    let shown = warned(&dimer(), "");
     assert!(
-        told.contains(
+        shown.contains(
             "assembly 1 (2 chains in the file, 2 in the assembly): --assembly 1 builds it"
         ),
-        "{told}"
+        "{shown}"
     );
     assert_eq!(warned(&dimer(), ":A"), "");
     let whole = format!(
@@ -221,9 +221,9 @@ fn what_cannot_be_built_says_why() {
         assert!(error.file().is_some() && error.remedy().contains("--assembly"));
         (error.line(), error.to_string())
     };
-    let (line, told) = refused(&dimer(), "3");
+    let (line, shown) = refused(&dimer(), "3");
     assert_eq!(
-        (line, told.as_str()),
+        (line, shown.as_str()),
         (None, "there is no assembly '3'; the file has 1, 2")
     );
     for (from, to, expected_line, what) in [
@@ -247,16 +247,16 @@ fn what_cannot_be_built_says_why() {
             "before the chains",
         ),
     ] {
-        let (line, told) = refused(&dimer().replacen(from, to, 1), "1");
-        assert_eq!(line, Some(expected_line), "{told}");
-        assert!(told.contains(what), "{told}");
+        let (line, shown) = refused(&dimer().replacen(from, to, 1), "1");
+        assert_eq!(line, Some(expected_line), "{shown}");
+        assert!(shown.contains(what), "{shown}");
     }
     // An operator that no coordinates survive.
     let far = dimer().replacen("BIOMT1   2 -1.000000", "BIOMT1   2  9e307   ", 1);
-    let (line, told) = refused(&far, "1");
+    let (line, shown) = refused(&far, "1");
     assert!(
-        line.is_some() && told.contains("out of all bounds"),
-        "{told}"
+        line.is_some() && shown.contains("out of all bounds"),
+        "{shown}"
     );
     let cut = dimer()
         .replacen(IDENTITY.lines().last().unwrap(), "", 3)
@@ -351,10 +351,10 @@ fn operators_combine_from_the_last_to_the_first() {
         let error = read_as(folder.path(), "x.cif", &text, "", Some("1")).unwrap_err();
         (error.line(), error.to_string())
     };
-    let (line, told) = refused("1-5");
+    let (line, shown) = refused("1-5");
     assert!(
-        line == Some(2) && told.contains("operator 4 is not in"),
-        "{line:?} {told}"
+        line == Some(2) && shown.contains("operator 4 is not in"),
+        "{line:?} {shown}"
     );
     assert!(refused("Q").1.contains("operator Q"));
     let many = format!("'{}'", "(1,2,3,P)".repeat(9));

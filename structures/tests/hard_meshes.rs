@@ -32,14 +32,14 @@ fn sampled(surface: &Surface, per_axis: usize) -> Sampled {
         Method::BehandishIlies(DecompositionOptions::default()),
     )
     .unwrap();
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     let epsilon = sampling.field.grid.epsilon();
-    let volume = referee.volume() * solid.frame().unit.powi(3);
+    let volume = meter.volume() * solid.frame().unit.powi(3);
     let fits = sampling
         .sets
         .iter()
         .map(|set| {
-            let mut fit = referee.judge(&set.balls);
+            let mut fit = meter.measure(&set.balls);
             for length in [
                 &mut fit.hausdorff_inward,
                 &mut fit.hausdorff_outward,
@@ -327,9 +327,9 @@ fn a_million_triangles() {
         start.elapsed().as_secs_f64(),
         sampling.steps
     );
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     for set in &sampling.sets {
-        let fit = referee.judge(&set.balls);
+        let fit = meter.measure(&set.balls);
         println!("{:?}: {} balls, {fit:?}", set.name, set.balls.len());
         let epsilon = sampling.field.grid.epsilon();
         assert!(fit.hausdorff_inward <= epsilon && fit.outward_bound <= epsilon * (1.0 + 1e-12));

@@ -212,7 +212,7 @@ fn what_is_no_structure_is_refused() {
 }
 
 #[test]
-fn gzip_is_told_by_its_magic_bytes() {
+fn gzip_is_detected_from_its_magic_bytes() {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
     encoder.write_all(ATOM.text().as_bytes()).unwrap();
     let packed = encoder.finish().unwrap();

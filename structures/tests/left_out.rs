@@ -133,8 +133,8 @@ fn records_that_are_no_atoms_are_dropped_and_reported() {
         let ligand = usize::from(molecule.atoms.iter().any(|atom| atom.name == "C1"));
         assert_eq!(molecule.atoms.len(), 11 + ligand);
         let count: usize = expected.iter().map(|(_, count)| count).sum();
-        let told = molecule.report.to_string();
-        assert!(told.contains(&format!("{count} pseudo-atom")), "{told}");
+        let shown = molecule.report.to_string();
+        assert!(shown.contains(&format!("{count} pseudo-atom")), "{shown}");
     }
 }
 

@@ -45,7 +45,7 @@ fn is_cube_with_warning(name: &str, bytes: &[u8], words: &[&str]) {
 /// OFF is a stream of words by its definition, and ModelNet's files have the counts glued to the keyword; all of these were refused.
 #[test]
 fn off_in_other_lines() {
-    // Without the colours of faces, which are told by the ends of lines alone.
+    // Without the colours of faces, which are detected from the ends of lines alone.
     let off = cube().off().replace(" 255 0 0", "").replace("# test\n", "");
     is_cube("plain.off", off.as_bytes());
     let body = off.strip_prefix("OFF\n").unwrap();

@@ -317,7 +317,7 @@ fn triangles_without_area_do_no_harm() {
 }
 
 #[test]
-fn samples_cover_the_surface_as_densely_as_asked() {
+fn samples_cover_the_surface_as_densely_as_requested() {
     let surface = cuboid([0.0; 3], [1.0, 0.1, 0.001]);
     let (mesh, _) = surface.mesh();
     let solid = Solid::new(&mesh).unwrap();

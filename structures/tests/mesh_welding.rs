@@ -127,14 +127,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number that looks random
 /// from `low` to `high`; every other triangle turned over if `turned`.
-fn meshed_apart(
+fn meshed_separately(
     surface: &Surface,
     low: i64,
     high: i64,
     turned: bool,
     step: impl Fn(f64, i64) -> f64,
 ) -> Surface {
-    let mut apart = Surface::default();
+    let mut separate = Surface::default();
     let mut state: u64 = 1;
     let mut random = |count: i64| {
         state = state
@@ -143,10 +143,10 @@ fn meshed_apart(
         (state >> 33) as i64 % count
     };
     for triangle in &surface.triangles {
-        let start = apart.positions.len() as u32;
+        let start = separate.positions.len() as u32;
         for &corner in triangle {
             let position = surface.positions[corner as usize];
-            apart
+            separate
                 .positions
                 .push(position.map(|x| step(x, low + random(high - low + 1))));
         }
@@ -154,9 +154,9 @@ fn meshed_apart(
         if turned && random(2) == 1 {
             corners.swap(0, 1);
         }
-        apart.triangles.push(corners);
+        separate.triangles.push(corners);
     }
-    apart
+    separate
 }
 
 /// A neighbour among the `float`s.
@@ -172,17 +172,17 @@ fn seams_within_the_rounding_of_a_float_are_closed() {
     let whole = ball.mesh().0.volume();
     for (low, high) in [(0, 1), (-1, 1)] {
         for turned in [false, true] {
-            let apart = meshed_apart(&ball, low, high, turned, ulps);
-            let (mesh, report) = read(&apart.stl_binary(), MeshFormat::Stl);
+            let separate = meshed_separately(&ball, low, high, turned, ulps);
+            let (mesh, report) = read(&separate.stl_binary(), MeshFormat::Stl);
             assert!(report.is_closed() && report.parts == 1, "{report}");
             assert_eq!(report.vertices, ball.positions.len());
             assert!(report.seam_vertices > 500 && report.weld_reach < 2e-5);
             assert!((mesh.volume() / whole - 1.0).abs() < 1e-5, "{report}");
             // Doubles that hold floats, as text and not.
             for (bytes, format) in [
-                (apart.ply_binary(false), MeshFormat::Ply),
-                (apart.ply_text().into_bytes(), MeshFormat::Ply),
-                (apart.obj().into_bytes(), MeshFormat::Obj),
+                (separate.ply_binary(false), MeshFormat::Ply),
+                (separate.ply_text().into_bytes(), MeshFormat::Ply),
+                (separate.obj().into_bytes(), MeshFormat::Obj),
             ] {
                 assert!(read(&bytes, format).1.is_closed(), "{format:?}");
             }
@@ -206,11 +206,11 @@ fn seams_within_the_digits_written_are_closed() {
         }),
     ];
     for (unit, write) in written {
-        let apart = meshed_apart(&ball, 0, 1, true, |x, steps| x + unit * steps as f64);
+        let separate = meshed_separately(&ball, 0, 1, true, |x, steps| x + unit * steps as f64);
         let mut obj = String::new();
         let mut stl = String::from("solid\n");
-        for t in &apart.triangles {
-            let corners = t.map(|corner| apart.positions[corner as usize]);
+        for t in &separate.triangles {
+            let corners = t.map(|corner| separate.positions[corner as usize]);
             stl += "facet normal 0 0 0\nouter loop\n";
             for position in corners {
                 let [x, y, z] = position.map(write);
@@ -236,14 +236,14 @@ fn seams_within_the_digits_written_are_closed() {
 fn seams_of_doubles() {
     let ball = sphere([100.0; 3], 10.0, 10);
     let next = |x: f64, steps: i64| f64::from_bits((x.to_bits() as i64 + steps) as u64);
-    let apart = meshed_apart(&ball, 0, 1, false, next);
+    let separate = meshed_separately(&ball, 0, 1, false, next);
     assert!(
-        read(apart.ply_text().as_bytes(), MeshFormat::Ply)
+        read(separate.ply_text().as_bytes(), MeshFormat::Ply)
             .1
             .is_closed()
     );
     // A millionth of a float's last bit is no rounding of a double.
-    let farther = meshed_apart(&ball, 0, 1, false, |x, steps| x + 1e-9 * steps as f64);
+    let farther = meshed_separately(&ball, 0, 1, false, |x, steps| x + 1e-9 * steps as f64);
     let (_, report) = read(farther.ply_text().as_bytes(), MeshFormat::Ply);
     assert!(!report.is_closed() && report.seam_vertices == 0);
 }

@@ -210,8 +210,8 @@ fn a_blank_location_beside_a_lettered_one_is_an_alternative() {
         record: "HETATM",
         ..at("LIG", " CA ", 'A', 0.4, 30.0)
     };
-    let apart = [ATOM, water];
-    assert_eq!(read_text(&text(&apart)).unwrap().atoms.len(), 2);
+    let separate = [ATOM, water];
+    assert_eq!(read_text(&text(&separate)).unwrap().atoms.len(), 2);
 }
 
 /// Found by a user: HADDOCK merges a Fab's chains and numbers the second from where the first ends, with a gap: its amino end lost its charge.
@@ -247,7 +247,7 @@ fn the_second_of_two_merged_chains_keeps_its_amino_end() {
         let text = name(&ended, chains[0]) + &name(&shifted, chains[1]);
         read_text(&text).unwrap().labels(7.0).report
     };
-    let (merged, apart) = (with(["A", "A"]), with(["A", "B"]));
-    assert_eq!(apart.termini, [2, 2]);
-    assert_eq!(merged, apart);
+    let (merged, separate) = (with(["A", "A"]), with(["A", "B"]));
+    assert_eq!(separate.termini, [2, 2]);
+    assert_eq!(merged, separate);
 }

@@ -199,7 +199,7 @@ fn a_trace_and_missing_side_chains_are_warned_of() {
         .collect();
     let warnings = read_text(&text(&nowhere)).unwrap().report.warnings;
     assert!(
-        warnings.iter().any(|told| told.contains("in one place")),
+        warnings.iter().any(|shown| shown.contains("in one place")),
         "{warnings:?}"
     );
     // The same atom twice: two chains of one name in a file put together by hand.
@@ -234,7 +234,7 @@ fn two_chains() -> String {
     text(&lines)
 }
 
-/// Asked for by users: a domain of a chain is docked without editing the file.
+/// Requested by users: a domain of a chain is docked without editing the file.
 #[test]
 fn residues_are_picked_by_their_numbers() {
     let picked = |selection: &str| {

@@ -99,7 +99,7 @@ fn inside(body: &Body, stretches: &[Occupancy], pose: &Pose, back: &Pose) -> f64
 
 impl Occupancy {
     fn new(stretch: &Conformers) -> Self {
-        let alphas = || stretch.courses.iter().flatten();
+        let alphas = || stretch.traces.iter().flatten();
         let end = |pick: fn(f64, f64) -> f64, start: f64| {
             alphas().fold([start; 3], |end, alpha| {
                 std::array::from_fn(|axis| pick(end[axis], alpha[axis]))
@@ -116,18 +116,18 @@ impl Occupancy {
         let from_middle = |alpha: &[f64; 3]| (Vector3::from(*alpha) - Vector3::from(middle)).norm();
         let mut occupancy = Self {
             frame: Conformers {
-                courses: Vec::new(),
+                traces: Vec::new(),
                 ..*stretch
             },
             low,
             counts,
             passing: vec![0; counts.iter().product()],
-            share: 1.0 / stretch.courses.len() as f64,
+            share: 1.0 / stretch.traces.len() as f64,
             middle: stretch.in_file(middle),
             // A cell that is passed may hold an atom that is not.
             radius: alphas().map(from_middle).fold(0.0, f64::max) + WITHIN + 1.0,
         };
-        occupancy.fill(&stretch.courses);
+        occupancy.fill(&stretch.traces);
         occupancy
     }
 
@@ -193,7 +193,7 @@ mod tests {
         Conformers {
             origin: [10.0, 20.0, 30.0],
             axes: TURNED,
-            courses,
+            traces: courses,
         }
     }
 
@@ -216,7 +216,7 @@ mod tests {
         let (receptor, ligand) = (atoms(&[-30.0]), atoms(&places));
         let passing = |y: f64| -> f64 {
             let passed = |course: &Vec<[f64; 3]>| course.iter().any(|a| (a[0] - y).abs() < 5.0);
-            one.courses.iter().filter(|course| passed(course)).count() as f64 / 3.0
+            one.traces.iter().filter(|course| passed(course)).count() as f64 / 3.0
         };
         assert!((places.map(passing).iter().sum::<f64>() - 8.0 / 3.0).abs() < 1e-12);
         let missing = MissingContacts::new(&receptor, &ligand, [slice::from_ref(&one), &[]], 6.0);
@@ -252,7 +252,7 @@ mod tests {
                     < reach * reach
             };
             let passing = stretch
-                .courses
+                .traces
                 .iter()
                 .filter(|course| course.iter().any(near));
             passing.count() as f64 / 9.0

@@ -174,7 +174,7 @@ pub(crate) fn surface_pieces(
                 }
                 let [a, b, c] = turned_to_longest(corners);
                 let halved = scale(add(a, b), 0.5);
-                // Doubles are no finer, whatever was asked for.
+                // Doubles are no finer, whatever was requested.
                 if halved == a || halved == b {
                     visit(middle, area);
                     continue;

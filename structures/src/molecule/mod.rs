@@ -38,8 +38,8 @@ pub use self::model::report::{
 };
 pub use self::model::residue_selection::{ResidueSelection, UnknownResidues};
 pub use self::model::sequence::{PeptideChain, PeptideResidue, one_letter};
-pub use self::model::termini::ChainEnds;
-pub use self::model::unresolved::MissingResidues;
+pub use self::model::termini::Termini;
+pub use self::model::unresolved::UnresolvedResidues;
 pub use self::read::confidence::LOW;
 pub use self::read::error::ReadError;
 pub use self::read::input::InputSpec;
@@ -47,7 +47,7 @@ pub use self::read::policy::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
 };
 pub use self::read::source::file_bytes;
-pub use self::read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
+pub use self::read::{AtomFate, read, read_bytes, read_bytes_with_fates, read_with_fates};
 pub use self::write::error::WriteError;
 pub use self::write::{
     ChainMap, ChainName, Partner, complex_format, fits, write_complex, write_molecule,

@@ -27,8 +27,8 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
         .filter(|&node| field.depth[node] > 1e-6 * h && field.depth[node] <= 1.5 * h)
         .collect();
     let stride = near.len().div_ceil(SAMPLES).max(1);
-    let asked: Vec<usize> = near.into_iter().step_by(stride).collect();
-    let mut radii: Vec<f64> = asked
+    let sampled: Vec<usize> = near.into_iter().step_by(stride).collect();
+    let mut radii: Vec<f64> = sampled
         .par_iter()
         .map(|&node| touching_radius(solid, field.grid.node(node), field.grid.half()))
         .collect();

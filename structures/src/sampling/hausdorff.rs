@@ -27,7 +27,7 @@ use crate::sampling::outward::farthest;
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
-/// What [`HausdorffMeter::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
+/// What [`HausdorffMeter::measure`] measures. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Farthest distance of a point of the solid from the balls.
@@ -149,13 +149,13 @@ impl<'a> HausdorffMeter<'a> {
     }
 
     /// Measures a set of balls.
-    pub fn judge(&self, balls: &[Ball]) -> Fit {
+    pub fn measure(&self, balls: &[Ball]) -> Fit {
         let tree = BallTree::new(balls);
         let covered = self.covered(balls);
         let cell = self.fine.step.powi(3);
         let (missed, outside, inner, outer) = (0..self.fine.rows())
             .into_par_iter()
-            .map(|row| self.judge_row(row, &covered, &tree))
+            .map(|row| self.measure_row(row, &covered, &tree))
             .reduce(
                 || (0, 0, 0.0, 0.0),
                 |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
@@ -221,7 +221,12 @@ impl<'a> HausdorffMeter<'a> {
     }
 
     /// Points missed and outside in a row, and the farthest of either.
-    fn judge_row(&self, row: usize, covered: &[u64], tree: &BallTree) -> (usize, usize, f64, f64) {
+    fn measure_row(
+        &self,
+        row: usize,
+        covered: &[u64],
+        tree: &BallTree,
+    ) -> (usize, usize, f64, f64) {
         let words = row * self.fine.words..(row + 1) * self.fine.words;
         let (mut missed, mut outside, mut inner, mut outer) = (0, 0, 0.0f64, 0.0f64);
         for (word, (&inside, &covered)) in self.inside[words.clone()]

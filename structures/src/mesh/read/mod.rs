@@ -33,7 +33,7 @@ const LARGEST_FILE: u64 = 2 << 30;
 
 /// Reads a mesh, welds its vertices, turns its triangles to face outward and reports what was found.
 ///
-/// The format is told by the first bytes, else by the name's ending. Numbers keep all the digits of the file.
+/// The format is detected from the first bytes, else by the name's ending. Numbers keep all the digits of the file.
 ///
 /// # Errors
 /// [`MeshError`] when the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a

@@ -36,8 +36,8 @@ fn joined(text: &str) -> Cow<'_, str> {
             false => line.trim_end_matches(['\r', '\n']).strip_suffix('\\'),
         };
         match continued {
-            Some(begun) if line.ends_with('\n') => {
-                joined.push_str(begun);
+            Some(started) if line.ends_with('\n') => {
+                joined.push_str(started);
                 joined.push_str(" \u{b}");
             }
             _ => joined.push_str(line),

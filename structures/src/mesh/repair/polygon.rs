@@ -7,7 +7,7 @@ use crate::mesh::vector::{cross, dot, subtract};
 
 /// Appends the triangles of a polygon with three or more corners, in its own orientation.
 ///
-/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are told apart by
+/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are distinguished by
 /// their numbers, so those in one place must be one.
 ///
 /// A polygon that crosses itself, is far from plane or has no area gives a fan for what cannot be clipped.

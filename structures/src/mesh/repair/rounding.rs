@@ -16,7 +16,7 @@ const LARGEST_UNIT: f64 = 1e-4;
 /// Decimal digits that hold every `float`.
 const FLOAT_DIGITS: i32 = 9;
 
-/// Decades on either side of one that are told apart.
+/// Decades on either side of one that are distinguished.
 const DECADES: i32 = 80;
 
 /// The finest digit written, for each decade of the number that it belongs to.

@@ -171,14 +171,14 @@ mod tests {
         let b = [1.0, 0.0, 0.0];
         let c = [0.0, 1.0, 0.0];
         let almost_b = [1.0 + 0.5e-12, -0.0, 0.2e-12];
-        let apart = [1.0 + 1e-9, 0.0, 0.0];
+        let beyond = [1.0 + 1e-9, 0.0, 0.0];
         let mut faces = Faces::default();
         for triangle in [[0, 1, 2], [6, 4, 2], [1, 4, 2], [0, 5, 2]] {
             faces.push(&triangle);
         }
-        let positions = vec![a, b, c, [5.0; 3], almost_b, apart, [-0.0; 3]];
+        let positions = vec![a, b, c, [5.0; 3], almost_b, beyond, [-0.0; 3]];
         let welded = weld(positions, faces, &Digits::default()).unwrap();
-        assert_eq!(welded.positions, [a, b, c, apart]);
+        assert_eq!(welded.positions, [a, b, c, beyond]);
         assert_eq!(welded.triangles, [[0, 1, 2], [0, 1, 2], [0, 3, 2]]);
         assert_eq!(welded.seam_vertices, 0);
     }

@@ -266,7 +266,7 @@ pub(crate) fn side_chain(residue_name: &str, ph: f64) -> Option<Charges> {
         "CYX" | "CYZ" | "CYN" => return find(&SIDE_CHAINS, "CYS"),
         "LSN" => "LYN",
         "LYP" => return find(&SIDE_CHAINS, "LYS"),
-        // Which of the two was not told apart: half of them carry a charge, none is counted.
+        // Which of the two was not distinguished: half of them carry a charge, none is counted.
         "ASX" => "ASN",
         "GLX" => "GLN",
         other => other,

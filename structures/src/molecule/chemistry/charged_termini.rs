@@ -32,7 +32,7 @@ pub(crate) struct Caps<'a> {
 }
 
 impl Molecule {
-    /// Charges the ends of chains, and counts gaps.
+    /// Charges the termini, and counts gaps.
     pub(crate) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
         let peptide: Vec<&Residue<'_>> = groups
             .iter()
@@ -72,10 +72,10 @@ impl Molecule {
 
     /// Whether one chain ends and another begins between two peptide residues in a row.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
-        let apart = self.distance(before, after).is_some_and(|d| d > BOND);
+        let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number, ..) = before.key;
         let (next_chain, next_number, ..) = after.key;
-        apart && (chain != next_chain || next_number <= number.saturating_add(1))
+        is_broken && (chain != next_chain || next_number <= number.saturating_add(1))
     }
 
     /// Whether a residue has the second oxygen of a carboxyl end.
@@ -136,7 +136,7 @@ impl Molecule {
         })
     }
 
-    /// Atoms that may be bonded to the ends of chains.
+    /// Atoms that may be bonded to the termini.
     pub(crate) fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
         let mut atoms = Vec::new();
         for group in groups {

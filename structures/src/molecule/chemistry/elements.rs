@@ -129,7 +129,7 @@ fn of_standard_residue(residue_name: &str, atom_name: &str) -> Option<&'static s
         'S' => Some("S"),
         'P' => Some("P"),
         'H' | 'D' => Some("H"),
-        // AD1, AE2, XD1: amide oxygen or nitrogen, not told apart (old ASN, GLN; ASX, GLX).
+        // AD1, AE2, XD1: amide oxygen or nitrogen, not distinguished (old ASN, GLN; ASX, GLX).
         'A' | 'X' if amino_acid_type(residue_name, "CB").is_some() && letters.len() == 3 => {
             Some("O")
         }

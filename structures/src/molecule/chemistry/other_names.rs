@@ -1,9 +1,9 @@
-//! Amino acids under other names than the tables have: D-amino acids, names of force fields, names for the ends of chains.
+//! Amino acids under other names than the tables have: D-amino acids, names of force fields, names for the termini.
 //!
 //! A residue is what its atoms make it:
 //!
 //! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose charges are known.
-//! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of the ends of chains
+//! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of the termini
 //!   included) is read so where no atom contradicts. Where it says the charge state, too, the state is read: `ASPH` is neutral.
 //! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives names of their own to
 //!   molecules with the same atom names that are something else (norvaline has proline's); those are listed and stay as they are.
@@ -124,8 +124,8 @@ pub(crate) fn known_as<'a, 'b>(
 /// What a name says of itself; N, C and D before a name of four letters or more are those of an end or of a D-amino acid.
 fn by_name(name: &str) -> Option<&str> {
     let own = |name| {
-        let listed = OTHER_NAMES.iter().find(|(other, _)| *other == name);
-        match listed {
+        let known = OTHER_NAMES.iter().find(|(other, _)| *other == name);
+        match known {
             Some(&(_, standard)) => Some(standard),
             None => is_amino_acid(name).then_some(name),
         }

@@ -143,8 +143,8 @@ pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: G
 
 /// Radius of an atom beside whose kind hydrogens stand as atoms of their own, in Å.
 pub(crate) fn all_atom_radius(element: &str) -> f64 {
-    let listed = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
-    listed.map_or_else(|| of_element(element), |(_, radius)| *radius)
+    let known = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
+    known.map_or_else(|| of_element(element), |(_, radius)| *radius)
 }
 
 const fn element_of(kind: AtomType) -> &'static str {

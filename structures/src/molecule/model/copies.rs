@@ -15,13 +15,13 @@ pub enum CopiesError {
     Chains {
         /// Its chains.
         chains: usize,
-        /// Copies asked for.
+        /// Copies requested.
         copies: usize,
     },
     /// Chains in the same place of each copy are not alike.
     #[error("{shared} residues are common to its {copies} copies, which is too few")]
     Different {
-        /// Copies asked for.
+        /// Copies requested.
         copies: usize,
         /// Residues that all of them have.
         shared: usize,

@@ -16,7 +16,7 @@ pub struct Molecule {
     /// Lines at which the file itself ends a chain, rising: of TER, MODEL, ENDMDL and END records, and in mmCIF the first line
     /// of another `label_asym_id` under the same author's name. Atoms on both sides of such a line are of two chains even
     /// where their chain names are equal.
-    pub chain_ends: Vec<usize>,
+    pub chain_breaks: Vec<usize>,
 }
 
 impl Molecule {
@@ -26,7 +26,7 @@ impl Molecule {
             atoms,
             format,
             report: ReadReport::default(),
-            chain_ends: Vec::new(),
+            chain_breaks: Vec::new(),
         }
     }
 

@@ -224,7 +224,7 @@ impl Molecule {
     }
 }
 
-/// Residues were asked for that a molecule does not have.
+/// Residues were requested that a molecule does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownResidues {
     /// What no atom belongs to, as `H:1-50`.

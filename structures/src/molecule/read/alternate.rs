@@ -6,7 +6,7 @@ use crate::molecule::model::atom::{Atom, squared_distance};
 use crate::molecule::model::report::{AlternateChoice, DropKind, ReadReport};
 use crate::molecule::read::policy::AlternateLocation;
 
-/// What tells a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
+/// What distinguishes a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
 /// (microheterogeneity), and one choice must hold for both names.
 type Position<'a> = (&'a str, i64, Option<char>);
 

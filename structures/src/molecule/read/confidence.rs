@@ -39,7 +39,7 @@ fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
     }
 }
 
-/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is asked for, and `trusted` says that the user's word is taken.
+/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is requested, and `trusted` says that the user's word is taken.
 ///
 /// # Errors
 /// Why the B column is taken for none.
@@ -64,7 +64,7 @@ fn values(
     match contradiction(atoms, provenance) {
         Some(reason) => Err(reason),
         None if provenance == Provenance::Confidence => Ok((ConfidenceSource::Header, values)),
-        None if evidence::tells(atoms, residues, mean(&values), scale) => {
+        None if evidence::is_prediction(atoms, residues, mean(&values), scale) => {
             Ok((ConfidenceSource::Values, values))
         }
         None if atoms.iter().all(|atom| atom.b_factor == first) => {
@@ -96,7 +96,7 @@ pub(crate) fn weigh(
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Vec<Atom> {
     let groups = residues(&atoms);
-    let (told_by, values) =
+    let (source, values) =
         match values(&atoms, &groups, provenance, (least.unwrap_or(0.0), trusted)) {
             Ok(known) => known,
             Err(reason) => {
@@ -104,7 +104,7 @@ pub(crate) fn weigh(
                 return atoms;
             }
         };
-    if told_by == ConfidenceSource::User {
+    if source == ConfidenceSource::User {
         report.warnings.push(
             "the B values are taken for pLDDT because --min-plddt is given: neither the file nor they say so"
                 .to_owned(),
@@ -112,7 +112,7 @@ pub(crate) fn weigh(
     }
     let below = |limit: f64| values.iter().filter(move |value| **value < limit).count();
     report.confidence = Some(Confidence {
-        told_by,
+        source,
         mean: mean(&values),
         residues: values.len(),
         below_50: below(LOW),

@@ -76,8 +76,8 @@ pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one
 pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, JoinedModels) {
     let mut of_chain: HashMap<&str, BTreeSet<usize>> = HashMap::new();
     for record in &parsed {
-        let models = of_chain.entry(&record.carried.chain).or_default();
-        models.insert(record.carried.model);
+        let models = of_chain.entry(&record.raw.chain).or_default();
+        models.insert(record.raw.model);
     }
     let in_file: HashSet<&str> = of_chain.keys().copied().collect();
     let names: HashMap<(usize, &str), String> = of_chain
@@ -91,30 +91,30 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
     let mut seen: HashMap<_, Vec<(usize, [f64; 3])>> = HashMap::new();
     let mut repeats = Vec::with_capacity(parsed.len());
     for record in &parsed {
-        let (carried, position) = (&record.carried, record.exact.position);
+        let (raw, position) = (&record.raw, record.exact.position);
         let key = (
-            carried.chain.as_str(),
-            carried.residue_number,
-            carried.insertion_code,
-            (carried.residue_name.as_str(), record.name.as_str()),
-            carried.alternate_location,
+            raw.chain.as_str(),
+            raw.residue_number,
+            raw.insertion_code,
+            (raw.residue_name.as_str(), record.name.as_str()),
+            raw.alternate_location,
         );
         let there = seen.entry(key).or_default();
         let coincides = |(model, other): &(usize, [f64; 3])| {
-            *model != carried.model && squared_distance(*other, position) < ON_AXIS * ON_AXIS
+            *model != raw.model && squared_distance(*other, position) < ON_AXIS * ON_AXIS
         };
         let repeat = relation == Relation::Parts && there.iter().any(coincides);
         repeats.push(repeat);
         if !repeat {
-            there.push((carried.model, position));
+            there.push((raw.model, position));
         }
     }
     let renamed: Vec<Option<String>> = parsed
         .iter()
-        .map(|record| names.get(&(record.carried.model, record.carried.chain.as_str())))
+        .map(|record| names.get(&(record.raw.model, record.raw.chain.as_str())))
         .map(|name| name.cloned())
         .collect();
-    let models: BTreeSet<usize> = parsed.iter().map(|record| record.carried.model).collect();
+    let models: BTreeSet<usize> = parsed.iter().map(|record| record.raw.model).collect();
     let report = JoinedModels {
         models: models.len(),
         on_axes: repeats.iter().filter(|repeat| **repeat).count(),
@@ -124,7 +124,7 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
         .filter(|(_, repeat)| !repeat)
         .map(|((mut record, name), _)| {
             if let Some(name) = name {
-                record.carried.chain = name;
+                record.raw.chain = name;
             }
             record
         })

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn content_tells_the_format_before_the_name() {
+    fn content_decides_the_format_before_the_name() {
         let format = |name: &str, text: &str| format_of(Path::new(name), text);
         assert_eq!(format("x.pdb", "data_1ABC\nloop_\n"), Some(Format::Mmcif));
         assert_eq!(format("x.cif", "REMARK\nATOM      1\n"), Some(Format::Pdb));

@@ -85,14 +85,14 @@ pub fn write_renamed<W: Write>(
         .chains
         .iter()
         .filter(|chain| chain.written != chain.original);
-    let told = renamed.map(|chain| {
+    let notes = renamed.map(|chain| {
         format!(
             "chain {} was {}",
             chain.written,
             show_chain(&chain.original)
         )
     });
-    let remarks: Vec<String> = remarks.iter().cloned().chain(told).collect();
+    let remarks: Vec<String> = remarks.iter().cloned().chain(notes).collect();
     write_rows(writer, format, &complex_rows(&[molecule], &map), &remarks)
 }
 
@@ -126,7 +126,7 @@ fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'
             ends_chain: false,
         })
         .collect();
-    for end in chain_ends(atoms) {
+    for end in polymer_ends(atoms) {
         if let Some(row) = rows.get_mut(end) {
             row.ends_chain = true;
         }
@@ -136,7 +136,7 @@ fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'
 
 /// Indices of the last atoms of the chains' polymers: the last residue of ATOM records in each chain, and the modified
 /// residues that follow it directly. What comes after (cofactors, metals, free amino acids) is not part of the polymer.
-fn chain_ends(atoms: &[Atom]) -> Vec<usize> {
+fn polymer_ends(atoms: &[Atom]) -> Vec<usize> {
     struct End<'a> {
         chain: &'a str,
         residue: usize,

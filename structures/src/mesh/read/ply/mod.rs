@@ -12,7 +12,7 @@ mod text;
 use ply_rs_bw::ply::Encoding;
 
 use crate::mesh::error::MeshErrorKind;
-use crate::mesh::read::ply::elements::{Listed, fault};
+use crate::mesh::read::ply::elements::{FaceLists, fault};
 use crate::mesh::read::soup::Soup;
 
 pub use crate::mesh::read::ply::header::begins;
@@ -23,9 +23,9 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {
     if !header.elements.iter().any(|(name, _)| name == "vertex") {
         return Err(fault("the header has no element vertex"));
     }
-    let listed = match header.encoding {
+    let faces = match header.encoding {
         Encoding::Ascii => text::read(&header, payload, lines),
         _ => binary::read(&header, payload),
     };
-    listed.and_then(Listed::into_soup)
+    faces.and_then(FaceLists::into_soup)
 }

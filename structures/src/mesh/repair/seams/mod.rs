@@ -60,7 +60,7 @@ pub fn join(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::repair::seams::grid::apart;
+    use crate::mesh::repair::seams::grid::axis_distance;
 
     fn joined(positions: &[[f64; 3]], faces: &[&[u32]], reach: f64) -> Option<Vec<u32>> {
         let mut all = Faces::default();
@@ -101,7 +101,7 @@ mod tests {
         let faces: Vec<&[u32]> = faces.iter().map(|face| face.as_slice()).collect();
         let names = joined(&positions, &faces, 1.0).unwrap();
         for (vertex, &name) in names.iter().enumerate() {
-            assert!(apart(positions[vertex], positions[name as usize]) <= 1.0);
+            assert!(axis_distance(positions[vertex], positions[name as usize]) <= 1.0);
         }
         // Within reach of too many, nothing is done.
         assert_eq!(joined(&positions[..], &faces, 1e-3), None);

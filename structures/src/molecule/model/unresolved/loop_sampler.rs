@@ -1,4 +1,4 @@
-//! Courses of a chain grown residue by residue, each CA at random where there is room for it.
+//! Conformers of a chain grown residue by residue, each CA at random where there is room for it.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -16,43 +16,43 @@ pub(crate) const NEXT: f64 = 3.8;
 /// 120° to 130°).
 pub(crate) const TURN: [f64; 2] = [-0.17, 0.87];
 
-/// How near a CA comes to atoms of the body, and to an earlier CA; and how near to those of the residues that the stretch begins and ends at (Å).
+/// How near a CA comes to atoms of the body, and to an earlier CA; and how near to those of the residues that the segment begins and ends at (Å).
 pub(crate) const ROOM: f64 = 4.0;
 pub(crate) const ROOM_BESIDE: f64 = 3.0;
 
-/// Courses of a stretch; fewer than the least say little of where it may be.
-const COURSES: usize = 64;
-const FEWEST: usize = 8;
+/// Conformers of a segment; fewer than the least say little of where it may be.
+const CONFORMERS: usize = 64;
+const MIN_CONFORMERS: usize = 8;
 
-/// Directions tried for a residue before a course is given up, where its other end is free and where it is not; and courses begun in all.
+/// Directions tried for a residue before a conformer is given up, where its other end is free and where it is not; and conformers begun in all.
 const TRIES: [usize; 2] = [12, 60];
-const BEGUN: usize = 5000;
+const MAX_TRIALS: usize = 5000;
 
-/// Courses begun after which a stretch is given up that has no first residue by then, and no whole course.
-const HOPELESS: [usize; 2] = [100, 1000];
+/// Conformers begun after which a segment is given up that has no first residue by then, and no whole conformer.
+const GIVE_UP_AFTER: [usize; 2] = [100, 1000];
 
 /// How far a residue takes a loop towards its other end (Å), of the 3.8 that it could at most: straight chains close no gap.
 const CLOSING: f64 = 3.6;
 const CLOSED: f64 = 2.9;
 
 /// All atoms of a body, by place.
-pub(crate) struct Growth {
+pub(crate) struct LoopSampler {
     positions: Vec<[f64; 3]>,
     cells: SpatialHash<usize>,
 }
 
-/// A course as it grows, and what it must keep clear of.
-struct Course<'a> {
-    growth: &'a Growth,
+/// A conformer as it grows, and what it must keep clear of.
+struct Trace<'a> {
+    sampler: &'a LoopSampler,
     frame: &'a Conformers,
-    /// The atoms of the residues that the stretch begins and ends at.
+    /// The atoms of the residues that the segment begins and ends at.
     anchors: &'a [usize],
     /// The N that it ends at, in its own frame.
     target: Option<[f64; 3]>,
     length: usize,
 }
 
-impl Growth {
+impl LoopSampler {
     pub fn new(positions: Vec<[f64; 3]>) -> Self {
         Self {
             cells: SpatialHash::of_points(positions.iter().copied(), ROOM),
@@ -60,65 +60,65 @@ impl Growth {
         }
     }
 
-    /// Courses of so many residues from a frame's origin on, to an N if one is given; of the atoms `anchors` are those of the residues at their
+    /// Conformers of so many residues from a frame's origin on, to an N if one is given; of the atoms `anchors` are those of the residues at their
     /// ends. `None` where the body leaves no room.
-    pub fn courses(
+    pub fn traces(
         &self,
         mut frame: Conformers,
         anchors: &[usize],
         target: Option<[f64; 3]>,
         length: usize,
     ) -> Option<Conformers> {
-        let course = Course {
-            growth: self,
+        let trace = Trace {
+            sampler: self,
             anchors,
             target: target.map(|point| frame.local(point)),
             frame: &frame,
             length,
         };
-        // The same for each stretch, so that it depends on the body alone.
+        // The same for each segment, so that it depends on the body alone.
         let mut random = Pcg32::new(0, 0);
-        let mut courses = Vec::with_capacity(COURSES);
+        let mut traces = Vec::with_capacity(CONFORMERS);
         let mut longest = 0;
-        for begun in 0..BEGUN {
-            let found = [longest, courses.len()];
-            let hopeless = |(limit, found)| begun >= limit && found == 0;
-            if courses.len() == COURSES || HOPELESS.into_iter().zip(found).any(hopeless) {
+        for trial in 0..MAX_TRIALS {
+            let found = [longest, traces.len()];
+            let is_hopeless = |(limit, found)| trial >= limit && found == 0;
+            if traces.len() == CONFORMERS || GIVE_UP_AFTER.into_iter().zip(found).any(is_hopeless) {
                 break;
             }
-            let grown = course.grow(&mut random);
+            let grown = trace.grow(&mut random);
             longest = longest.max(grown.len());
-            courses.extend((grown.len() == length).then_some(grown));
+            traces.extend((grown.len() == length).then_some(grown));
         }
-        frame.courses = courses;
-        (frame.courses.len() >= FEWEST).then_some(frame)
+        frame.traces = traces;
+        (frame.traces.len() >= MIN_CONFORMERS).then_some(frame)
     }
 }
 
-impl Course<'_> {
-    /// One more course, as far as it comes before it runs into something.
+impl Trace<'_> {
+    /// One more conformer, as far as it comes before it runs into something.
     fn grow(&self, random: &mut Pcg32) -> Vec<[f64; 3]> {
-        let mut course: Vec<[f64; 3]> = Vec::with_capacity(self.length);
+        let mut trace: Vec<[f64; 3]> = Vec::with_capacity(self.length);
         let mut direction = None;
         let tries = TRIES[usize::from(self.target.is_some())];
-        while course.len() < self.length {
-            let last = course.last().copied().unwrap_or([0.0; 3]);
-            let step = if course.is_empty() { FIRST } else { NEXT };
+        while trace.len() < self.length {
+            let last = trace.last().copied().unwrap_or([0.0; 3]);
+            let step = if trace.is_empty() { FIRST } else { NEXT };
             let room = (0..tries).find_map(|_| {
                 let along = unit(random);
                 let next: [f64; 3] = std::array::from_fn(|axis| last[axis] + step * along[axis]);
                 let bends = direction.is_none_or(|before| turns(before, along));
-                (bends && self.closes(next, course.len()) && self.is_free(next, &course))
+                (bends && self.closes(next, trace.len()) && self.is_free(next, &trace))
                     .then_some((next, along))
             });
             let Some((next, along)) = room else {
                 break;
             };
             // The first step is no line between two CA atoms.
-            direction = (!course.is_empty()).then_some(along);
-            course.push(next);
+            direction = (!trace.is_empty()).then_some(along);
+            trace.push(next);
         }
-        course
+        trace
     }
 
     /// Whether what is left of a loop can still reach its end.
@@ -130,18 +130,17 @@ impl Course<'_> {
         })
     }
 
-    /// Whether a CA has room beside the body and the course up to it.
-    fn is_free(&self, alpha: [f64; 3], course: &[[f64; 3]]) -> bool {
-        let bonded =
-            course.is_empty() || (self.target.is_some() && course.len() + 1 == self.length);
+    /// Whether a CA has room beside the body and the conformer up to it.
+    fn is_free(&self, alpha: [f64; 3], trace: &[[f64; 3]]) -> bool {
+        let bonded = trace.is_empty() || (self.target.is_some() && trace.len() + 1 == self.length);
         let at = self.frame.in_file(alpha);
-        let growth = self.growth;
-        let free_of_body = growth.cells.around(at).copied().all(|atom| {
-            let squared = squared_distance(growth.positions[atom], at);
+        let sampler = self.sampler;
+        let free_of_body = sampler.cells.around(at).copied().all(|atom| {
+            let squared = squared_distance(sampler.positions[atom], at);
             squared >= ROOM * ROOM
                 || self.anchors.contains(&atom) && (bonded || squared >= ROOM_BESIDE * ROOM_BESIDE)
         });
-        let earlier = course.split_last().map_or(&[][..], |(_, earlier)| earlier);
+        let earlier = trace.split_last().map_or(&[][..], |(_, earlier)| earlier);
         free_of_body
             && earlier
                 .iter()

@@ -42,7 +42,12 @@ const ABOUT: f64 = 6.0;
 const MAX_SAMPLE: usize = 2000;
 
 /// Whether values alone tell a prediction of this mean. Values are times `scale` on the scale of 0 to 100.
-pub(crate) fn tells(atoms: &[Atom], residues: &[Residue<'_>], mean: f64, scale: f64) -> bool {
+pub(crate) fn is_prediction(
+    atoms: &[Atom],
+    residues: &[Residue<'_>],
+    mean: f64,
+    scale: f64,
+) -> bool {
     let mut several = 0;
     let mut seen = HashSet::new();
     let mut by_atom = false;
@@ -59,13 +64,13 @@ pub(crate) fn tells(atoms: &[Atom], residues: &[Residue<'_>], mean: f64, scale: 
         return false;
     }
     if by_atom {
-        tells_by_atom(atoms, residues, mean, scale)
+        is_prediction_by_atom(atoms, residues, mean, scale)
     } else {
         mean > TELLING_MEAN
     }
 }
 
-fn tells_by_atom(
+fn is_prediction_by_atom(
     atoms: &[Atom],
     residues: &[Residue<'_>],
     mean_of_residues: f64,

@@ -8,7 +8,7 @@ use crate::molecule::read::record_filter::tokens::Kind;
 pub(crate) enum Provenance {
     /// Nothing.
     #[default]
-    Untold,
+    Unstated,
     /// They were measured, or are scored by something else than pLDDT: the B column is none.
     NoConfidence,
     /// They were predicted and the B column is pLDDT.
@@ -23,7 +23,7 @@ pub(crate) fn is_measured(method: &str) -> bool {
 
 /// Items of an mmCIF file that say it.
 #[derive(Default)]
-pub(crate) struct Told {
+pub(crate) struct ProvenanceItems {
     /// A method of measurement is named.
     measured: bool,
     /// Local or global scores of a model are defined.
@@ -32,7 +32,7 @@ pub(crate) struct Told {
     by_plddt: bool,
 }
 
-impl Told {
+impl ProvenanceItems {
     /// Takes the value of an item.
     pub(crate) fn note(&mut self, tag: &str, value: Kind<'_>) {
         let Some(text) = value.value() else {
@@ -52,7 +52,7 @@ impl Told {
         match (self.measured, self.scored, self.by_plddt) {
             (true, ..) | (false, true, false) => Provenance::NoConfidence,
             (false, true, true) => Provenance::Confidence,
-            (false, false, _) => Provenance::Untold,
+            (false, false, _) => Provenance::Unstated,
         }
     }
 }
