@@ -1,9 +1,9 @@
 //! Volumes of unions of balls, and what two such unions share.
 //!
-//! Parallel lines cross the balls on a square grid; the pieces that a line has inside are known exactly, and their summed length
-//! times the area of a cell is the volume. Three sets of lines, along x, y and z, give three values: their mean is what is
-//! reported, and the farthest of them from it is the error. Volumes are in the cube of the knots' unit (Å^3); weights play no
-//! part. O(balls x lines through one).
+//! Parallel lines cross the balls on a square grid; the pieces that a line has inside are known exactly, and their
+//! summed length times the area of a cell is the volume. Three sets of lines, along x, y and z, give three values:
+//! their mean is what is reported, and the farthest of them from it is the error. Volumes are in the cube of the knots'
+//! unit (Å^3); weights play no part. O(balls x lines through one).
 
 use super::Knots;
 
@@ -45,7 +45,8 @@ impl Overlap {
 const LINES_A_RADIUS: f64 = 16.0;
 /// Balls up to which there are so many: of more the errors cancel, and fewer lines do as well.
 const MANY: f64 = 10_000.0;
-/// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer wait.
+/// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer
+/// wait.
 const MAX_LINES: f64 = 4096.0;
 
 /// Volume of the union of balls.
@@ -306,7 +307,7 @@ mod tests {
     fn many_balls_need_fewer_lines() {
         let side = 28;
         let place =
-            |i: usize, step: f64, stretch: f64| 4.4 * i as f64 + (step * i as f64).sin() * stretch;
+            |i: usize, step: f64, height: f64| 4.4 * i as f64 + (step * i as f64).sin() * height;
         let list: Vec<([f64; 3], f64)> = (0..side * side * side)
             .map(|i| {
                 let [x, y, z] = [i % side, i / side % side, i / side / side];

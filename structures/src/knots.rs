@@ -4,8 +4,9 @@ use num_complex::Complex64;
 
 /// A set of balls with complex weights: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
 ///
-/// The arrays have the same length; labels may be absent altogether. Shape alone needs weights of one; the double-skin affinity
-/// function (B&I eq. 51) needs complex ones, which is why they are complex here. Labels are what further effects act on.
+/// The arrays have the same length; labels may be absent altogether. Shape alone needs weights of one; the double-skin
+/// affinity function (B&I eq. 51) needs complex ones, which is why they are complex here. Labels are what further
+/// effects act on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Knots {
     /// Ball centres x_i, in Å (or the mesh's unit).
@@ -18,7 +19,8 @@ pub struct Knots {
     pub charges: Vec<f64>,
     /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
     pub contact_types: Vec<Option<u8>>,
-    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where the knots carry none.
+    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where
+    /// the knots carry none.
     pub atom_kinds: Vec<Option<u8>>,
 }
 

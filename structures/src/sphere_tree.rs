@@ -1,8 +1,8 @@
 //! A hierarchy of bounding balls over a set of balls, and levels of detail cut from it.
 //!
-//! Hubbard's bottom-up merging (ACM Transactions on Graphics 15:3, 1996), as B&I suggest for A3: the two balls whose smallest
-//! enclosing ball is least become its children, until one is left. Every ball holds those below it, so any cut through the
-//! tree covers whatever the leaves cover.
+//! Hubbard's bottom-up merging (ACM Transactions on Graphics 15:3, 1996), as B&I suggest for A3: the two balls whose
+//! smallest enclosing ball is least become its children, until one is left. Every ball holds those below it, so any cut
+//! through the tree covers whatever the leaves cover.
 //!
 //! Building takes O(n^2) time as a rule and O(n) memory: half a second for 3,000 balls.
 
@@ -120,8 +120,8 @@ impl SphereTree {
         self.leaves
     }
 
-    /// The level of detail with at most `count` balls (one at least): from the root down, the largest ball is replaced by the
-    /// two below it. It covers what the leaves cover.
+    /// The level of detail with at most `count` balls (one at least): from the root down, the largest ball is replaced
+    /// by the two below it. It covers what the leaves cover.
     pub fn level(&self, count: usize) -> Vec<Ball> {
         let mut cut = vec![self.nodes.len() - 1];
         while cut.len() < count {

@@ -11,7 +11,8 @@ use knotdock_structures::molecule::{
 };
 use pdb_text::{ATOM, Line, text};
 
-/// Two glycine carbons of chain A, at (5, 1, 2) and (6, 1, 2), one of chain B and a zinc of chain A on the axis, (0, 0, 2).
+/// Two glycine carbons of chain A, at (5, 1, 2) and (6, 1, 2), one of chain B and a zinc of chain A on the axis, (0, 0,
+/// 2).
 fn chains() -> String {
     let zinc = "HETATM    9 ZN    ZN A 301       0.000   0.000   2.000  0.50 20.00          ZN  \n";
     let atoms = [
@@ -319,7 +320,8 @@ fn mmcif_goes_by_the_names_of_the_archive() {
             ("A-2", 301, [17.0, 1.0, 2.0]),
         ]
     );
-    // Lists that are text fields of several lines, rows of a loop that add up to one assembly, names that are no numbers.
+    // Lists that are text fields of several lines, rows of a loop that add up to one assembly, names that are no
+    // numbers.
     let rows = "loop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n\
                 PAU 1-3\n;X,\nY\n;\nPAU P Z";
     let molecule = built(rows, "PAU");

@@ -1,4 +1,5 @@
-//! Vertices in one place are one: bridges of polygons with holes, seams within the rounding of numbers, and what must stay apart.
+//! Vertices in one place are one: bridges of polygons with holes, seams within the rounding of numbers, and what must
+//! stay apart.
 
 #![cfg(feature = "mesh")]
 
@@ -66,8 +67,9 @@ fn hole(middle: [f64; 2], radius: f64, corners: usize, first: f64) -> Vec<[f64; 
         .collect()
 }
 
-/// A cap with a hole is one polygon, whose bridge is run through both ways. Where the corners of the bridge were other vertices in the
-/// same places, as exporters without shared vertices write, the hole was filled: a plate of 168 had a volume of 200.
+/// A cap with a hole is one polygon, whose bridge is run through both ways. Where the corners of the bridge were other
+/// vertices in the same places, as exporters without shared vertices write, the hole was filled: a plate of 168 had a
+/// volume of 200.
 #[test]
 fn polygons_with_bridges_to_holes() {
     let rim = [[0., 0.], [10., 0.], [10., 10.], [0., 10.]];
@@ -125,8 +127,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         .sqrt()
 }
 
-/// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number that looks random
-/// from `low` to `high`; every other triangle turned over if `turned`.
+/// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number
+/// that looks random from `low` to `high`; every other triangle turned over if `turned`.
 fn meshed_separately(
     surface: &Surface,
     low: i64,
@@ -164,8 +166,8 @@ fn ulps(x: f64, steps: i64) -> f64 {
     f64::from(f32::from_bits(((x as f32).to_bits() as i64 + steps) as u32))
 }
 
-/// A ball at an offset of 100, its faces meshed apart: corners differ by a last bit of `float`, and triangles face either way. It was open
-/// throughout, had a volume of 9.2 in place of 4100, and took minutes.
+/// A ball at an offset of 100, its faces meshed apart: corners differ by a last bit of `float`, and triangles face
+/// either way. It was open throughout, had a volume of 9.2 in place of 4100, and took minutes.
 #[test]
 fn seams_within_the_rounding_of_a_float_are_closed() {
     let ball = sphere([100.0; 3], 10.0, 16).mapped(|p| p.map(|x| f64::from(x as f32)));
@@ -276,7 +278,8 @@ fn thin_features_are_no_seams() {
     assert!((mesh.volume() - 1.0).abs() < 1e-6);
 }
 
-/// Whole numbers are no rounding: a tray of 10 by 10 by 2 stays open at the top, and a slit as wide as a unit stays a slit.
+/// Whole numbers are no rounding: a tray of 10 by 10 by 2 stays open at the top, and a slit as wide as a unit stays a
+/// slit.
 #[test]
 fn few_digits_do_not_close_what_is_open() {
     let mut tray = cuboid([0.0; 3], [10.0, 10.0, 2.0]);
@@ -296,8 +299,8 @@ fn few_digits_do_not_close_what_is_open() {
     );
 }
 
-/// Open meshes finer than their numbers' rounding are left alone but for what lies within it, and no chain of vertices collapses:
-/// a sheet of many small triangles keeps its extent.
+/// Open meshes finer than their numbers' rounding are left alone but for what lies within it, and no chain of vertices
+/// collapses: a sheet of many small triangles keeps its extent.
 #[test]
 fn a_dense_sheet_does_not_collapse() {
     // Triangles a unit of rounding wide, each by itself, and a far one that makes the unit.

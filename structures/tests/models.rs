@@ -81,7 +81,8 @@ fn warned(molecule: &Molecule) -> bool {
     warnings.contains("--model all reads them as one")
 }
 
-/// Found by a user: of an assembly as the archive has it (`.pdb1`) half was read, and the report said no more than that a model was ignored.
+/// Found by a user: of an assembly as the archive has it (`.pdb1`) half was read, and the report said no more than that
+/// a model was ignored.
 #[test]
 fn models_beside_one_another_are_parts() {
     let dimer = read(

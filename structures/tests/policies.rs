@@ -73,7 +73,8 @@ fn groups_are_kept_and_dropped_as_requested() {
     );
 }
 
-/// United-atom radii stand for hydrogens; where these are there, each atom has its own (Bondi 1964; Rowland and Taylor 1996).
+/// United-atom radii stand for hydrogens; where these are there, each atom has its own (Bondi 1964; Rowland and Taylor
+/// 1996).
 #[test]
 fn radii_are_all_atom_ones_only_where_hydrogens_are() {
     let options = ReadOptions {

@@ -155,8 +155,8 @@ fn an_experiment_rules_a_prediction_out() {
     );
 }
 
-/// ModelCIF names its scores: with pLDDT among them values may differ from atom to atom (AlphaFold 3), without it the column is
-/// something else, whatever it looks like.
+/// ModelCIF names its scores: with pLDDT among them values may differ from atom to atom (AlphaFold 3), without it the
+/// column is something else, whatever it looks like.
 #[test]
 fn scores_that_a_model_names_go_before_its_values() {
     let metrics = |first: &str, second: &str| {
@@ -245,7 +245,8 @@ fn residues_below_the_limit_are_left_out_and_named() {
     assert_eq!(read(&spec, &options(90.0)).unwrap().atoms.len(), 40);
 }
 
-/// The free inhibitor as Chai-1 and AlphaFold 3 write a prediction: a pLDDT for each atom, of residues 1 to 4 about 35 and of the others about 88.
+/// The free inhibitor as Chai-1 and AlphaFold 3 write a prediction: a pLDDT for each atom, of residues 1 to 4 about 35
+/// and of the others about 88.
 fn by_atom(scale: f64) -> String {
     let path = format!(
         "{}/examples/1ppe_ligand_unbound.pdb",

@@ -107,8 +107,8 @@ fn every_protrusion_factor_and_order_keeps_the_bounds() {
     check_bounds(&solid, 2, DecompositionOptions::default());
 }
 
-/// Lemma 4 of the paper takes every point of S to lie within eps of an inside node. Under a face just below a plane of nodes
-/// it is sqrt(2) eps.
+/// Lemma 4 of the paper takes every point of S to lie within eps of an inside node. Under a face just below a plane of
+/// nodes it is sqrt(2) eps.
 #[test]
 fn a_face_just_under_a_plane_of_nodes() {
     let (n, h) = (16, 1.0 / 15.0);
@@ -338,8 +338,8 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
         center: frame.inward(center),
         radius: radius / frame.unit,
     }]);
-    // By hand: a point at rho from the ring's axis has the square distance 100 + r^2 - d^2 - rho (20 - 2 d cos phi) from
-    // its core, d the centre's own distance from the axis, so that the farthest point lies on the axis.
+    // By hand: a point at rho from the ring's axis has the square distance 100 + r^2 - d^2 - rho (20 - 2 d cos phi)
+    // from its core, d the centre's own distance from the axis, so that the farthest point lies on the axis.
     let square = 100.0 + radius * radius - center[0].powi(2) - center[1].powi(2);
     let farthest = square.sqrt() - 3.0;
     assert!((farthest - 22.51).abs() < 0.01, "{farthest}");

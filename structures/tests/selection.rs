@@ -9,8 +9,8 @@ use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 #[test]
 fn alternate_locations_go_by_summed_occupancy_and_then_alphabet() {
-    // Residue 1: B wins, 0.9 to 0.7, though A's first atom is the fuller. Residue 2: a tie of sums that differ in the last
-    // bit in floating point (0.1 + 0.2 and 0.3 + 0.0), so A. Atoms without a location stay once.
+    // Residue 1: B wins, 0.9 to 0.7, though A's first atom is the fuller. Residue 2: a tie of sums that differ in the
+    // last bit in floating point (0.1 + 0.2 and 0.3 + 0.0), so A. Atoms without a location stay once.
     let lines = [
         Line::at(1, " N  ", ' ', 1.0),
         Line::at(1, " CA ", 'A', 0.6),

@@ -3,17 +3,19 @@
 //! # Conventions
 //!
 //! - Lengths are in Å, in the file's own frame.
-//! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and `pdbx_PDB_ins_code` in
-//!   mmCIF).
+//! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and
+//!   `pdbx_PDB_ins_code` in mmCIF).
 //! - Hydrogens are dropped, and radii are united-atom radii, which stand for them, unless [`ReadOptions`] ask for them.
 //! - Lines are counted from 1 in the unpacked text.
 //!
 //! # Rooms
 //!
-//! - `read`: from a file to atoms: path -> `source` (open, unpack, detect the format) -> `record_filter` (atoms of the wanted
-//!   models, in a form that pdbtbx is sure to read) -> `parse` (pdbtbx) -> `assembly`, where one is requested -> `select` (by
-//!   `policy`: chains, waters, additives, alternate locations, confidence of predictions) -> [`Molecule`] with its [`ReadReport`].
-//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved segments.
+//! - `read`: from a file to atoms: path -> `source` (open, unpack, detect the format) -> `record_filter` (atoms of the
+//!   wanted models, in a form that pdbtbx is sure to read) -> `parse` (pdbtbx) -> `assembly`, where one is requested ->
+//!   `select` (by `policy`: chains, waters, additives, alternate locations, confidence of predictions) -> [`Molecule`]
+//!   with its [`ReadReport`].
+//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
+//!   segments.
 //! - `chemistry`: tables of names, elements, radii, charges and contact types.
 //! - `write`: molecules and complexes as PDB or mmCIF.
 

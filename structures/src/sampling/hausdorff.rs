@@ -135,7 +135,8 @@ impl<'a> HausdorffMeter<'a> {
         }
     }
 
-    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one has no point inside, as of a thin plate.
+    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one
+    /// has no point inside, as of a thin plate.
     pub fn volume(&self) -> f64 {
         let count: u64 = self
             .inside

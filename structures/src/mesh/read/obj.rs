@@ -24,7 +24,8 @@ pub fn begins(text: &str) -> bool {
     false
 }
 
-/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines counted.
+/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines
+/// counted.
 fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
         return Cow::Borrowed(text);

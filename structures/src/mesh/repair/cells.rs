@@ -112,8 +112,8 @@ impl Fan {
     }
 }
 
-/// For two patches that run close beside each other: how far the second stands from the first, seen along the
-/// first's own direction.
+/// Distance of the second of two patches that run close beside each other from the first, seen along the first's own
+/// direction.
 struct Beside<'a> {
     patches: &'a Patches,
     sums: HashMap<(u32, u32), f64>,

@@ -1,8 +1,10 @@
 //! Vertices at one place made one vertex, so that triangles share edges.
 //!
 //! 1. Vertices within [`WELD_TOLERANCE`] become one: copies with the same digits.
-//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have the rules.
-//! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is one.
+//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have
+//!    the rules.
+//! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is
+//!    one.
 
 use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::faces::Faces;
@@ -10,8 +12,8 @@ use crate::mesh::repair::rounding::Digits;
 use crate::mesh::repair::{polygon, rounding, seams};
 use crate::neighbours::SpatialHash;
 
-/// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a vertex
-/// with the same digits, so this needs to take up no more than the rounding of one conversion of units.
+/// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a
+/// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
 pub const WELD_TOLERANCE: f64 = 1e-12;
 
 /// A mesh whose vertices are distinct.

@@ -1,4 +1,5 @@
-//! Peptide chains as they are bonded, whatever their names: where one begins and ends, and where residues are missing in between.
+//! Peptide chains as they are bonded, whatever their names: where one begins and ends, and where residues are missing
+//! in between.
 
 use crate::molecule::chemistry::charged_termini::{BOND, Caps};
 use crate::molecule::model::atom::squared_distance;
@@ -15,14 +16,15 @@ const LONGEST: f64 = 40.0;
 /// Longest gap in Å where numbers show none: a residue or two that the numbering does not count.
 const MAX_UNCOUNTED_LENGTH: f64 = 12.0;
 
-/// Fewest residues of a chain whose ends are taken to go on and to be loose: a peptide is docked as it is.
+/// Fewest residues of a chain whose ends are taken to go on and to be flexible: a peptide is docked as it is.
 const CHAIN: usize = 20;
 
 /// A peptide chain: its residues in order, with gaps between some of them.
 pub(crate) struct Chain<'a> {
     pub residues: Vec<&'a Residue<'a>>,
     pub gaps: Vec<Gap>,
-    /// The N and C past which it may go on: the chain's own ends, where they are in the file and nothing is bonded to them.
+    /// The N and C past which it may go on: the chain's own ends, where they are in the file and nothing is bonded to
+    /// them.
     pub ends: [Option<[f64; 3]>; 2],
 }
 

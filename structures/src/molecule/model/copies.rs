@@ -29,8 +29,9 @@ pub enum CopiesError {
 }
 
 impl Molecule {
-    /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies follow one another in the file, each with
-    /// all its chains in the same order, as complexes are written; residues are matched by their number.
+    /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies
+    /// follow one another in the file, each with all its chains in the same order, as complexes are written; residues
+    /// are matched by their number.
     ///
     /// # Errors
     /// [`CopiesError`] where there are not so many.

@@ -117,7 +117,8 @@ pub struct Dropped {
     pub kind: DropKind,
     /// Atoms dropped.
     pub atoms: usize,
-    /// Residues (for chains: their names, for sites without mass: the atoms') with the number of atoms dropped from each.
+    /// Residues (for chains: their names, for sites without mass: the atoms') with the number of atoms dropped from
+    /// each.
     pub names: BTreeMap<String, usize>,
 }
 
@@ -205,7 +206,8 @@ pub struct BuiltAssembly {
 pub struct JoinedModels {
     /// Models that have atoms.
     pub models: usize,
-    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they lie on an axis of symmetry.
+    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they lie on an axis of
+    /// symmetry.
     pub on_axes: usize,
 }
 

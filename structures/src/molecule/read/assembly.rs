@@ -1,9 +1,9 @@
 //! Biological assemblies: the molecule as it works, built from the copies that a file says of its chains.
 //!
-//! What stands in a crystal structure's file is the asymmetric unit, which may be half of a dimer or hold four copies of a monomer. The file
-//! says which chains, moved how, make the biological assembly (REMARK 350 of PDB, `_pdbx_struct_assembly_gen` and
-//! `_pdbx_struct_oper_list` of mmCIF). The first copy of a chain keeps its name and the k-th of chain A is called `A-k`, as the archive's own
-//! files of assemblies have it.
+//! What stands in a crystal structure's file is the asymmetric unit, which may be half of a dimer or hold four copies
+//! of a monomer. The file says which chains, moved how, make the biological assembly (REMARK 350 of PDB,
+//! `_pdbx_struct_assembly_gen` and `_pdbx_struct_oper_list` of mmCIF). The first copy of a chain keeps its name and the
+//! k-th of chain A is called `A-k`, as the archive's own files of assemblies have it.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -40,7 +40,8 @@ fn polymers(parsed: &[Parsed]) -> HashSet<&str> {
     parsed.iter().filter(is_polymer).map(part_name).collect()
 }
 
-/// Builds the assembly of this name, where the file says anything of assemblies; where it does not, its atoms stay as they are.
+/// Builds the assembly of this name, where the file says anything of assemblies; where it does not, its atoms stay as
+/// they are.
 ///
 /// `dropped` hears of atoms whose chains have no part in it.
 ///

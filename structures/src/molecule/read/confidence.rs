@@ -1,12 +1,12 @@
 //! Predicted models: the confidence (pLDDT) that their B column carries, and residues of which it knows no place.
 //!
-//! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of each residue's
-//! surroundings: pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589, 2021) or, of some programs, from 0 to 1.
-//! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): where it stands is no fact, and
-//! as a solid it blocks what it may not touch.
+//! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of
+//! each residue's surroundings: pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589, 2021)
+//! or, of some programs, from 0 to 1. Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596,
+//! 590-596, 2021): where it stands is no fact, and as a solid it blocks what it may not touch.
 //!
-//! What the column holds is known from what the file says of itself ([`Provenance`]), or where it says nothing from the values ([`evidence`]), or
-//! else from the user, who gives a least pLDDT.
+//! What the column holds is detected from what the file says of itself ([`Provenance`]). Where it says nothing, the
+//! values decide ([`evidence`]), or the user does by giving a least pLDDT.
 
 mod evidence;
 
@@ -39,7 +39,8 @@ fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
     }
 }
 
-/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is requested, and `trusted` says that the user's word is taken.
+/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is requested, and `trusted` says that the
+/// user's word is taken.
 ///
 /// # Errors
 /// Why the B column is taken for none.
@@ -55,7 +56,8 @@ fn values(
     let of_residue = |residue: &Residue<'_>| {
         let members = residue.atoms.iter().filter_map(|&index| atoms.get(index));
         let sum: f64 = members.map(|atom| atom.b_factor).sum();
-        // Files have two decimals: what a mean adds to them by rounding must not carry a residue below the limit that it stands at.
+        // Files have two decimals: what a mean adds to them by rounding must not carry a residue below the limit that
+        // it stands at.
         (scale * sum / residue.atoms.len() as f64 * 1e6).round() / 1e6
     };
     let values: Vec<f64> = residues.iter().map(of_residue).collect();
@@ -86,7 +88,8 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Notes in the report how sure a prediction is of its residues, and leaves out those of a pLDDT below `least`.
 ///
-/// `trusted` says that the B column is pLDDT wherever it can be. `dropped` hears of the atoms left out. Of what is no prediction all stays.
+/// `trusted` says that the B column is pLDDT wherever it can be. `dropped` hears of the atoms left out. Of what is no
+/// prediction all stays.
 pub(crate) fn weigh(
     atoms: Vec<Atom>,
     provenance: Provenance,

@@ -44,10 +44,12 @@ pub struct AtomFate {
 
 /// Reads the atoms to dock from a PDB or mmCIF file, plain or gzip-compressed.
 ///
-/// By default the first model; the chains requested; hydrogens, waters and a listed set of buffer and cryo additives left out;
-/// one alternate location a residue, the one of the highest summed occupancy and the alphabetically first of equals; atoms of
-/// zero occupancy kept. Cofactors, metals, glycans, modified residues and nucleic acids are kept. The molecule's report says
-/// what was kept, dropped and altered.
+/// By default it keeps the first model, the chains requested, atoms of zero occupancy, cofactors, metals, glycans,
+/// modified residues and nucleic acids. It leaves out hydrogens, waters and a known set of buffer and cryo additives.
+/// Of alternate locations it keeps one a residue: that of the highest summed occupancy, and the alphabetically first of
+/// equals.
+///
+/// The molecule's report says what was kept, dropped and altered.
 ///
 /// # Errors
 /// [`ReadError`], with the file, the line where there is one, and a remedy.

@@ -1,8 +1,8 @@
 //! Models that are parts of one thing, and models that are alternatives.
 //!
-//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or of a complex with a partner
-//! in each lie beside one another: two atoms that are not bonded keep some 3 Å apart. So the models of a file are parts where hardly any atom
-//! shares a cell of 2 Å with an atom of another model.
+//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or of
+//! a complex with a partner in each lie beside one another: two atoms that are not bonded keep some 3 Å apart. So the
+//! models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -13,10 +13,12 @@ use crate::molecule::read::assembly::{ON_AXIS, copy_name};
 use crate::molecule::read::parse::Parsed;
 use crate::neighbours::cell::{Cell, cell_of};
 
-/// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold one.
+/// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold
+/// one.
 const CELL: f64 = 2.0;
 
-/// Share of a model's atoms up to which it lies beside the others: some 40% do so of two models that lie on one another.
+/// Share of a model's atoms up to which it lies beside the others: some 40% do so of two models that lie on one
+/// another.
 const MAX_SHARED: f64 = 0.05;
 
 /// What the models of a file are to one another.
@@ -71,8 +73,9 @@ pub(crate) fn warning(models: usize, read: usize, ignored: usize) -> String {
 pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one another, as alternatives do, and --model all reads them as one \
      molecule, in which they are counted one by one: --model 1 reads the first";
 
-/// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly are: the second of chain A is
-/// `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier model is left out.
+/// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly
+/// are: the second of chain A is `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier
+/// model is left out.
 pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, JoinedModels) {
     let mut of_chain: HashMap<&str, BTreeSet<usize>> = HashMap::new();
     for record in &parsed {

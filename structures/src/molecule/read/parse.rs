@@ -1,10 +1,12 @@
 //! Atoms from filtered text, by pdbtbx.
 //!
-//! Names, record kinds (ATOM or HETATM) and, of PDB files, coordinates, occupancies and temperature factors are taken from
-//! pdbtbx. All else it changes, as the table of the record filter lists, and comes from the [`AtomRecord`] of the same serial number.
+//! Names, record kinds (ATOM or HETATM) and, of PDB files, coordinates, occupancies and temperature factors are taken
+//! from pdbtbx. All else it changes, as the table of the record filter lists, and comes from the [`AtomRecord`] of the
+//! same serial number.
 //!
-//! pdbtbx panics on much that files hold. The record filter gives it nothing of that kind, so a panic here is a defect of the
-//! filter: it becomes [`ReadError::Parser`], which asks to report the file. Panic hooks belong to the program and stay as they are.
+//! pdbtbx panics on much that files hold. The record filter gives it nothing of that kind, so a panic here is a defect
+//! of the filter: it becomes [`ReadError::Parser`], which asks to report the file. Panic hooks belong to the program
+//! and stay as they are.
 
 use std::io::BufReader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -161,8 +163,8 @@ mod tests {
 
     #[test]
     fn pdbtbx_itself_panics_where_the_record_filter_guards() {
-        // A blank residue name panics in pdbtbx 0.12 ("Invalid characters in Conformer creation"). When this test fails the
-        // guard is no longer needed for it.
+        // A blank residue name panics in pdbtbx 0.12 ("Invalid characters in Conformer creation"). When this test fails
+        // the guard is no longer needed for it.
         let line =
             "ATOM      0  N       A   1       0.000   0.000   0.000  1.00  0.00              \n";
         let refusal = read_guarded(line, Format::Pdb).err().unwrap();

@@ -1,10 +1,11 @@
 //! Pseudo-atoms: records that mark places and are no atoms. They are dropped, and reported.
 //!
-//! - **Markers** are residues of their own: membrane planes, pockets, shapes, frames. Their names are those of real ligands, too (MEM is
-//!   meropenem, SHA salicylhydroxamic acid), so that a residue is a marker only if all its atoms have the names that the program gives them.
-//! - **Sites without mass** stand in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water, virtual and centroid
-//!   atoms. What has an element in its column is an atom, but for the names of a standard residue's own
-//!   virtual atoms.
+//! - **Markers** are residues of their own: membrane planes, pockets, shapes, frames. Their names are those of real
+//!   ligands, too (MEM is meropenem, SHA salicylhydroxamic acid), so that a residue is a marker only if all its atoms
+//!   have the names that the program gives them.
+//! - **Sites without mass** stand in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water,
+//!   virtual and centroid atoms. What has an element in its column is an atom, but for the names of a standard
+//!   residue's own virtual atoms.
 
 use crate::molecule::chemistry::elements;
 use crate::molecule::chemistry::elements::{NameColumn, column_symbol};
@@ -59,8 +60,8 @@ fn key(record: &Parsed) -> Key<'_> {
     )
 }
 
-/// Which records are pseudo-atoms, and under what name they are counted: `known` has the names under which the tables have each record's
-/// residue.
+/// Which records are pseudo-atoms, and under what name they are counted: `known` has the names under which the tables
+/// have each record's residue.
 pub(crate) fn find(parsed: &[Parsed], known: &[&str]) -> Vec<Option<String>> {
     let markers = markers(parsed);
     let all = parsed.iter().zip(known).zip(markers).enumerate();

@@ -1,5 +1,5 @@
-//! From parsed records to the atoms that are docked: chains requested, by default no hydrogens, no waters, no additives, one
-//! alternate location a residue, of predictions the residues that they are sure enough of.
+//! From parsed records to the atoms that are docked: chains requested, by default no hydrogens, no waters, no
+//! additives, one alternate location a residue, of predictions the residues that they are sure enough of.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -24,8 +24,8 @@ use crate::molecule::read::wanted::Wanted;
 
 /// Applies all selections and notes in the report what they dropped.
 ///
-/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file order but
-/// for alternate locations and residues of low confidence, which come last.
+/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file
+/// order but for alternate locations and residues of low confidence, which come last.
 pub(crate) fn select(
     file: &Path,
     parsed: Vec<Parsed>,
@@ -217,8 +217,8 @@ fn modified_residues(parsed: &[Parsed]) -> HashSet<ResidueKey> {
     whole.map(|(key, _)| key).collect()
 }
 
-/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known` are the names under which the
-/// tables have the records' residues.
+/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known`
+/// are the names under which the tables have the records' residues.
 fn keeps_alignment(parsed: &[Parsed], known: &[&str]) -> bool {
     parsed
         .iter()

@@ -1,4 +1,4 @@
-//! The chains and residues that are asked of a file, and where these cut a chain.
+//! The chains and residues that are requested of a file.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -60,7 +60,7 @@ impl Wanted {
         Ok(Self(wanted))
     }
 
-    /// Why an atom is not requested, if it is not.
+    /// Why an atom is left out, if it was not requested.
     pub(crate) fn leaves_out(&self, raw: &AtomRecord) -> Option<DropKind> {
         let Some(parts) = self.0.get(&raw.chain) else {
             return Some(DropKind::Chain);

@@ -1,8 +1,8 @@
 //! Writing molecules and complexes, as PDB or mmCIF.
 //!
-//! Atoms keep their order, names, residue numbers, insertion codes, elements, occupancies and temperature factors. A complex
-//! gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, or PDB's single column
-//! cannot hold it. The map stands in the file's remarks and is returned.
+//! Atoms keep their order, names, residue numbers, insertion codes, elements, occupancies and temperature factors. A
+//! complex gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, or PDB's
+//! single column cannot hold it. The map stands in the file's remarks and is returned.
 
 pub(crate) mod chains;
 pub(crate) mod error;
@@ -70,7 +70,8 @@ pub fn write_molecule<W: Write>(
     write_rows(writer, format, &rows, remarks)
 }
 
-/// Writes one molecule; of chains whose names the format cannot hold, such as `A-2` in PDB, the remarks say what they are called instead.
+/// Writes one molecule; of chains whose names the format cannot hold, such as `A-2` in PDB, the remarks say what they
+/// are called instead.
 ///
 /// # Errors
 /// As [`write_complex`].

@@ -1,8 +1,8 @@
-//! PLY, text and binary: elements `vertex` (x, y, z of any number type), `face` and `tristrips` (`vertex_indices` or `vertex_index`, a
-//! list of any number type).
+//! PLY, text and binary: elements `vertex` (x, y, z of any number type), `face` and `tristrips` (`vertex_indices` or
+//! `vertex_index`, a list of any number type).
 //!
-//! The crate `ply-rs-bw` reads headers and binary data. Text is read here: the crate refuses numbers that real files have in properties
-//! that no mesh needs, such as `nan`, and blank lines.
+//! The crate `ply-rs-bw` reads headers and binary data. Text is read here: the crate refuses numbers that real files
+//! have in properties that no mesh needs, such as `nan`, and blank lines.
 
 mod binary;
 mod elements;

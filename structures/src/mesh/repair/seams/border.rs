@@ -105,8 +105,8 @@ impl Border {
         })
     }
 
-    /// Open edges whose ends lie within reach of one another, in the order in which they are joined. Edges no longer than the
-    /// reach are left out: either end of one might be either end of another.
+    /// Open edges whose ends lie within reach of one another, in the order in which they are joined. Edges no longer
+    /// than the reach are left out: either end of one might be either end of another.
     pub fn pairs(&self, reach: f64) -> Vec<Pair> {
         let between =
             |p: u32, q: u32| axis_distance(self.positions[p as usize], self.positions[q as usize]);

@@ -1,15 +1,18 @@
 //! Seams: open edges in one place but for rounding, made one.
 //!
-//! Programs that mesh each face of a body by itself, or that move a part after meshing it, round the two copies of a vertex
-//! differently. The rule:
+//! Programs that mesh each face of a body by itself, or that move a part after meshing it, round the two copies of a
+//! vertex differently. The rule:
 //!
 //! - Only ends of **open edges** (of one face alone) are joined, so a closed mesh stays as it is, however thin.
-//! - Two open edges longer than the reach are joined when both their ends lie within reach of one another. What has the fewest
-//!   edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in the file.
+//! - Two open edges longer than the reach are joined when both their ends lie within reach of one another. What has the
+//!   fewest edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in
+//!   the file.
 //! - All the vertices that become one lie in a cube as wide as the reach: no chain leads farther.
 //! - Two vertices that follow each other on a face are not joined, so no sliver is lost.
-//! - Where more than [`MAX_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and nothing is joined.
-//! - Last, a hole that lies in a cube as wide as the reach is closed: its rim becomes one vertex, unless a whole face lies in it.
+//! - Where more than [`MAX_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and
+//!   nothing is joined.
+//! - Last, a hole that lies in a cube as wide as the reach is closed: its rim becomes one vertex, unless a whole face
+//!   lies in it.
 //!
 //! The earliest vertex stands for those joined with it. Time and memory are about proportional to the number of edges.
 

@@ -1,4 +1,4 @@
-//! Conformers of a chain grown residue by residue, each CA at random where there is room for it.
+//! Sampling of loop conformers: CA traces grown residue by residue at random where there is room.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -7,47 +7,53 @@ use crate::Conformers;
 use crate::molecule::model::atom::squared_distance;
 use crate::neighbours::SpatialHash;
 
-/// Distance in Å of a CA from the C before or the N after it in the residues beside it, and of two in a row (Engh and Huber, Acta Cryst. A47
-/// (1991) 392-400: bonds of 1.33, 1.46 and 1.52 Å at 122° and 117°).
+/// Distances in Å: of a CA from the C before or the N after it in the adjacent residues, and of two CA in a row.
+///
+/// Engh and Huber, Acta Cryst. A47 (1991) 392-400: bonds of 1.33, 1.46 and 1.52 Å at 122° and 117°.
 pub(crate) const FIRST: f64 = 2.45;
 pub(crate) const NEXT: f64 = 3.8;
 
-/// Cosines of the least and greatest turn between two steps in a row: 30° and 100°, angles at a CA of 150° and 80° (helices have 91°, strands
-/// 120° to 130°).
+/// Cosines of the largest and smallest bend between two steps in a row: 100° and 30°.
+///
+/// These are angles at a CA of 80° and 150°; helices have 91°, strands 120° to 130°.
 pub(crate) const TURN: [f64; 2] = [-0.17, 0.87];
 
-/// How near a CA comes to atoms of the body, and to an earlier CA; and how near to those of the residues that the segment begins and ends at (Å).
+/// Smallest distances in Å of a CA from atoms of the body and from an earlier CA, and from atoms of the residues at the
+/// segment's ends.
 pub(crate) const ROOM: f64 = 4.0;
 pub(crate) const ROOM_BESIDE: f64 = 3.0;
 
-/// Conformers of a segment; fewer than the least say little of where it may be.
+/// Conformers sampled for a segment, and the fewest that are of use: fewer say little of where it may be.
 const CONFORMERS: usize = 64;
 const MIN_CONFORMERS: usize = 8;
 
-/// Directions tried for a residue before a conformer is given up, where its other end is free and where it is not; and conformers begun in all.
+/// Directions tried for a residue before a trial ends: without a target, and with one. Then the trials of a segment at
+/// most.
 const TRIES: [usize; 2] = [12, 60];
 const MAX_TRIALS: usize = 5000;
 
-/// Conformers begun after which a segment is given up that has no first residue by then, and no whole conformer.
+/// Trials after which a segment is given up: that has no first residue by then, and that has no whole conformer by
+/// then.
 const GIVE_UP_AFTER: [usize; 2] = [100, 1000];
 
-/// How far a residue takes a loop towards its other end (Å), of the 3.8 that it could at most: straight chains close no gap.
+/// Distance in Å by which a residue brings a loop towards its target at most, and that of the last CA from the target.
+/// Straight chains, with 3.8 Å a residue, close no gap.
 const CLOSING: f64 = 3.6;
 const CLOSED: f64 = 2.9;
 
-/// All atoms of a body, by place.
+/// Samples conformers that keep clear of a body.
 pub(crate) struct LoopSampler {
     positions: Vec<[f64; 3]>,
     cells: SpatialHash<usize>,
 }
 
-/// A conformer as it grows, and what it must keep clear of.
+/// What the trials of one segment have in common.
 struct Trace<'a> {
     sampler: &'a LoopSampler,
     frame: &'a Conformers,
     /// The atoms of the residues that the segment begins and ends at.
     anchors: &'a [usize],
-    /// The N that it ends at, in its own frame.
+    /// The N that it ends at, in the segment's own frame.
     target: Option<[f64; 3]>,
     length: usize,
 }
@@ -60,8 +66,10 @@ impl LoopSampler {
         }
     }
 
-    /// Conformers of so many residues from a frame's origin on, to an N if one is given; of the atoms `anchors` are those of the residues at their
-    /// ends. `None` where the body leaves no room.
+    /// Conformers of `length` residues from a frame's origin on, to the N at `target` (file's frame, Å) if one is
+    /// given.
+    ///
+    /// `anchors` are the atoms of the residues at the segment's ends. `None` where the body leaves no room.
     pub fn traces(
         &self,
         mut frame: Conformers,
@@ -76,7 +84,7 @@ impl LoopSampler {
             frame: &frame,
             length,
         };
-        // The same for each segment, so that it depends on the body alone.
+        // The same seed for each segment, so that conformers depend on the body alone.
         let mut random = Pcg32::new(0, 0);
         let mut traces = Vec::with_capacity(CONFORMERS);
         let mut longest = 0;
@@ -96,7 +104,7 @@ impl LoopSampler {
 }
 
 impl Trace<'_> {
-    /// One more conformer, as far as it comes before it runs into something.
+    /// Grows one trace; it is shorter than the segment where it runs into something.
     fn grow(&self, random: &mut Pcg32) -> Vec<[f64; 3]> {
         let mut trace: Vec<[f64; 3]> = Vec::with_capacity(self.length);
         let mut direction = None;
@@ -121,7 +129,7 @@ impl Trace<'_> {
         trace
     }
 
-    /// Whether what is left of a loop can still reach its end.
+    /// Whether the residues left of a loop can still reach its target.
     fn closes(&self, alpha: [f64; 3], place: usize) -> bool {
         self.target.is_none_or(|target| {
             let left = (self.length - 1 - place) as f64;
@@ -130,7 +138,7 @@ impl Trace<'_> {
         })
     }
 
-    /// Whether a CA has room beside the body and the conformer up to it.
+    /// Whether a CA keeps clear of the body and of the trace up to it.
     fn is_free(&self, alpha: [f64; 3], trace: &[[f64; 3]]) -> bool {
         let bonded = trace.is_empty() || (self.target.is_some() && trace.len() + 1 == self.length);
         let at = self.frame.in_file(alpha);
@@ -148,13 +156,13 @@ impl Trace<'_> {
     }
 }
 
-/// Whether a chain bends so from one step to the next.
+/// Whether a chain may bend so from one step to the next.
 fn turns(before: [f64; 3], along: [f64; 3]) -> bool {
     let cosine: f64 = before.iter().zip(&along).map(|(a, b)| a * b).sum();
     (TURN[0]..=TURN[1]).contains(&cosine)
 }
 
-/// A direction drawn from all.
+/// A unit vector, uniform over all directions.
 fn unit(random: &mut Pcg32) -> [f64; 3] {
     let mut share = || f64::from(random.next_u32()) / f64::from(u32::MAX);
     let z = 2.0 * share() - 1.0;
@@ -163,7 +171,8 @@ fn unit(random: &mut Pcg32) -> [f64; 3] {
     [radius * cosine, radius * sine, z]
 }
 
-/// Axes of a right-handed frame: from `first` on to `origin`, and across to where `other` lies; `None` if all are on one line.
+/// Axes of a right-handed frame: from `first` on to `origin`, and across to where `other` lies; `None` if all are on
+/// one line.
 pub(crate) fn axes(origin: [f64; 3], first: [f64; 3], other: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     let towards = |from: [f64; 3], to: [f64; 3]| std::array::from_fn(|axis| to[axis] - from[axis]);
     let x = normalized(towards(first, origin))?;

@@ -92,7 +92,8 @@ fn conformers_are_chains_that_have_room() {
     }
 }
 
-/// Conformers cross a gap from end to end and pass where the loop was, two in five of them within 5 Å of each of its CA atoms in the mean.
+/// Conformers cross a gap from end to end and pass where the loop was, two in five of them within 5 Å of each of its CA
+/// atoms in the mean.
 #[test]
 fn loops_lead_across_gaps_where_they_were() {
     let (molecule, alphas) = without_a_loop();

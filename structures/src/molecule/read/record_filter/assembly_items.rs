@@ -113,7 +113,8 @@ fn part<'a>(
     Ok((value("assembly_id")?, part))
 }
 
-/// Operators of an expression such as `1`, `1,3`, `(1-60)`, `(X0)(1-5,9)`: of groups in brackets every combination, the last group first.
+/// Operators of an expression such as `1`, `1,3`, `(1-60)`, `(X0)(1-5,9)`: of groups in brackets every combination, the
+/// last group first.
 fn expression(text: &str, operators: &HashMap<&str, Operator>) -> Result<Vec<Operator>, String> {
     let mut combined = vec![Operator::IDENTITY];
     let groups = text

@@ -1,7 +1,7 @@
 //! The atom table of an mmCIF file.
 //!
-//! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the PDB
-//! format; atom and residue names are `label_atom_id` and `label_comp_id`.
+//! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the
+//! PDB format; atom and residue names are `label_atom_id` and `label_comp_id`.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -17,7 +17,8 @@ use crate::molecule::read::record_filter::tokens::Token;
 /// Prefix of the tags of the atom table, in lower case; tags are case-insensitive.
 const CATEGORY: &str = "_atom_site.";
 
-/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues small.
+/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues
+/// small.
 const SHOWN_NUMBERS: i64 = 1000;
 
 /// The header of the table as pdbtbx expects it.
@@ -270,8 +271,8 @@ impl<'a> Row<'_, 'a> {
         self.quote(&mut filtered.text, "label_alt_id", &shown_alternate)?;
         self.quote(&mut filtered.text, "label_comp_id", residue_name)?;
         self.quote(&mut filtered.text, "auth_asym_id", chain)?;
-        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What it takes for one residue
-        // is of no matter: the number travels past it.
+        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What
+        // it takes for one residue is of no matter: the number travels past it.
         let shown_number = residue_number.rem_euclid(SHOWN_NUMBERS);
         filtered.text.push_str(&format!("{shown_number} "));
         match insertion {
@@ -310,7 +311,8 @@ impl<'a> Row<'_, 'a> {
         Ok(())
     }
 
-    /// Writes a value in quotes that pdbtbx ends where they end: it stops at the first quote of the kind it started with.
+    /// Writes a value in quotes that pdbtbx ends where they end: it stops at the first quote of the kind it started
+    /// with.
     fn quote(&self, text: &mut String, item: &'static str, value: &str) -> Result<(), ReadError> {
         let is_plain = value.bytes().all(|byte| (32..127).contains(&byte));
         let quote = match (value.contains('"'), value.contains('\'')) {

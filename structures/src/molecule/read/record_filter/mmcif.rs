@@ -1,4 +1,5 @@
-//! The record filter for mmCIF files: the `_atom_site` table of the first data block that has one, and what the file says beside it.
+//! The record filter for mmCIF files: the `_atom_site` table of the first data block that has one, and what the file
+//! says beside it.
 
 use std::path::Path;
 

@@ -295,8 +295,8 @@ fn atom(
 
 /// Whether two coordinates run into one another, so that the columns no longer say where one ends.
 ///
-/// Programs that print 1e6 Å with `%8.3f` shift the columns and leave numbers that parse but are wrong. In a sound record
-/// a number may touch the one before only if that one has its three decimals.
+/// Programs that print 1e6 Å with `%8.3f` shift the columns and leave numbers that parse but are wrong. In a sound
+/// record a number may touch the one before only if that one has its three decimals.
 fn run_together(positions: [&str; 3]) -> Option<String> {
     let touches = |left: &str, right: &str| {
         let decimals = left

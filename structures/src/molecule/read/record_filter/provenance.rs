@@ -1,5 +1,5 @@
-//! What a file says of where its coordinates come from: methods of experiments, and scores of predictions (ModelCIF, Vallat et al.,
-//! J. Mol. Biol. 435, 168021, 2023).
+//! What a file says of where its coordinates come from: methods of experiments, and scores of predictions (ModelCIF,
+//! Vallat et al., J. Mol. Biol. 435, 168021, 2023).
 
 use crate::molecule::read::record_filter::tokens::Kind;
 
@@ -15,7 +15,8 @@ pub(crate) enum Provenance {
     Confidence,
 }
 
-/// Whether a method of `EXPDTA` or `_exptl.method` is a measurement: any but the theoretical models of old and of predictors.
+/// Whether a method of `EXPDTA` or `_exptl.method` is a measurement: any but the theoretical models of old and of
+/// predictors.
 pub(crate) fn is_measured(method: &str) -> bool {
     let method = method.trim().to_ascii_uppercase();
     !method.is_empty() && !method.contains("THEORETICAL")
