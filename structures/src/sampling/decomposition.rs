@@ -217,8 +217,8 @@ mod tests {
         }
     }
 
-    /// As printed, step 3 drops every ball, since each lies in its own growth, and of a chain in which each ball lies
-    /// in the next one's growth only the last, so that nothing is left near the first.
+    /// As printed, step 3 drops every ball, since each lies in its own growth. Of a chain in which each ball lies in
+    /// the next one's growth it keeps only the last, so that nothing is left near the first.
     #[test]
     fn what_is_dropped_lies_in_a_ball_that_is_kept() {
         let epsilon = 0.1;

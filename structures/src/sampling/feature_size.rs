@@ -1,10 +1,11 @@
 //! How thick a solid is: its local feature size.
 //!
 //! The local feature size at a point q of the surface is the radius of the largest ball inside the solid that touches
-//! the surface at q: the distance from q to the inner medial axis (Amenta and Bern, Discrete Comput. Geom. 22, 1999,
-//! take both sides of the surface). It is half the thickness of a plate and the radius of a rod, and falls to zero at
-//! edges and corners, of which every polyhedron is full. So the feature size of a solid is the median over its surface:
-//! what is typical of it.
+//! the surface at q. That is the distance from q to the inner medial axis; Amenta and Bern, Discrete Comput. Geom. 22,
+//! 1999, take both sides of the surface.
+//!
+//! It is half the thickness of a plate and the radius of a rod, and falls to zero at edges and corners, of which every
+//! polyhedron is full. So the feature size of a solid is the median over its surface: what is typical of it.
 
 use rayon::prelude::*;
 
@@ -73,7 +74,7 @@ mod tests {
     use crate::sampling::grid::Grid;
     use crate::test_support::cuboid;
 
-    /// A plate is as thick as it is nearly everywhere on its surface; a cube's largest ball at a face is as large as
+    /// A plate is as thick as it is nearly everywhere on its surface. A cube's largest ball at a face is as large as
     /// its edges allow: over the surface the median of half - max(|u|, |v|), which is half (1 - 1 / sqrt 2).
     #[test]
     fn plates_and_cubes_have_the_sizes_known_by_hand() {

@@ -1,9 +1,10 @@
 //! The grid of nodes that a solid is sampled on, and the solid's depth at them.
 //!
 //! B&I, Algorithm 1, step 0: the cube of the bounding box's longest edge 2 L, centred on it, with n nodes along each
-//! edge, both ends included, so that the spacing is h = 2 L / (n - 1) and no point of the cube is farther from a node
-//! than eps = sqrt(3) L / (n - 1). (The paper prints [-L, L) and eps = sqrt(3) L / n; its counts of inside nodes are
-//! those of n - 1.)
+//! edge, both ends included. The spacing is h = 2 L / (n - 1), and no point of the cube is farther from a node than eps
+//! = sqrt(3) L / (n - 1).
+//!
+//! The paper prints [-L, L) and eps = sqrt(3) L / n; its counts of inside nodes are those of n - 1.
 
 use rayon::prelude::*;
 

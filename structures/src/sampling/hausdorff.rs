@@ -1,13 +1,15 @@
 //! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
 //! outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface
-//! no farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter
-//! of the spacing in each of the eight directions). Samples with nothing of the solid on either side are no points
-//! of it. *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over the same grid's
-//! points in the balls, over the point of each ball's sphere on the far side of the surface point nearest to its
-//! centre, and where that leaves room, over the whole sphere (`outward`); a ball of radius R at depth d
-//! reaches no farther out than R - d, which is reported as the bound.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of the
+//! surface no farther than eps / 10 apart, and over the inside points of a grid of 8 m points: every node moved by a
+//! quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either side are no
+//! points of it.
+//!
+//! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
+//! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
+//! its centre. Where that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
+//! no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
 

@@ -1,12 +1,14 @@
 //! Weights that make the summed bumps come closest to one inside the solid and to zero outside.
 //!
-//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times and the
-//! volume integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum of (sum_i c_i
-//! psi(|x - x_i| / r_i) - 1_S(x))^2 over the nodes: nonnegative least squares with a sparse matrix, by coordinate
-//! descent (each weight in turn to its best value or zero), which falls at every step and whose limit is the minimum,
-//! the problem being convex. Nodes outside have a part in it because without them the balls that reach out of the solid
-//! are free: on the bunny at m = 2^12 their weights then made the integral 3.9 times the volume, where weights of one
-//! make it 2.3 times.
+//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times, and the
+//! volume integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum over the
+//! nodes of (sum_i c_i psi(|x - x_i| / r_i) - 1_S(x))^2: nonnegative least squares with a sparse matrix.
+//!
+//! Coordinate descent sets each weight in turn to its best value or zero. The sum falls at every step, and the limit is
+//! the minimum since the problem is convex.
+//!
+//! Nodes outside take part because without them the balls that reach out of the solid are free. On the bunny at m =
+//! 2^12 the integral was then 3.9 times the volume, where weights of one make it 2.3 times.
 
 use rayon::prelude::*;
 use serde::Serialize;

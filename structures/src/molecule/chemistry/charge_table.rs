@@ -7,9 +7,10 @@
 //!   phosphorylated and other modified residues, heme and ions: the formal charge, spread evenly over the atoms that
 //!   share it.
 //!
-//! Which state an acid or base is in follows from its residue name where that says so (ASH, GLH, HIP, LYN, CYM, ...),
-//! else from the pH and the pKa of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci. 15 (2006)
-//! 1214-1218 (arginine: 13.8, Fitch, Platzer, Okon, Garcia-Moreno & McIntosh, Protein Sci. 24 (2015) 752-761).
+//! The state of an acid or base follows from its residue name where that says so (ASH, GLH, HIP, LYN, CYM, ...), else
+//! from the pH and a pKa. The pKa are those of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci.
+//! 15 (2006) 1214-1218. Arginine has 13.8: Fitch, Platzer, Okon, Garcia-Moreno & McIntosh, Protein Sci. 24 (2015)
+//! 752-761.
 
 use crate::molecule::chemistry::residues::is_amino_acid;
 

@@ -229,8 +229,8 @@ mod tests {
     }
 
     /// Found by a user: HADDOCK's merged antibodies, whose second chain is numbered from 500 on, lost the charge of its
-    /// amino end beside the CDRs, because a gap in the numbers was taken for unresolved residues though the chain
-    /// before had its last oxygen.
+    /// amino end beside the CDRs. A gap in the numbers was taken for unresolved residues though the chain before had
+    /// its last oxygen.
     #[test]
     fn a_last_oxygen_ends_a_chain_whatever_the_numbers_say() {
         let merged = |oxygen: Option<&str>| {

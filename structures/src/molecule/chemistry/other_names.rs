@@ -83,9 +83,10 @@ const OTHER_NAMES: [(&str, &str); 53] = [
     ("TYRU", "TYR-"),
 ];
 
-/// Names that the wwPDB gives to other molecules whose heavy atoms are named like those of a standard amino acid: beta-
-/// and didehydro-amino acids, aldehydes, alcohols, isomers of the side chain (Chemical Component Dictionary, searched
-/// in November 2026).
+/// Names that the wwPDB gives to other molecules whose heavy atoms are named like those of a standard amino acid.
+///
+/// They are beta- and didehydro-amino acids, aldehydes, alcohols and isomers of the side chain (Chemical Component
+/// Dictionary, searched in November 2026).
 const OTHER_MOLECULES: &str = "0XC 0XD 1VR 23F 2KZ 2PI 41Q 4VI 5XU 7F4 8F4 8GZ 8LJ A1CAB A1H2D AKZ ALC ALV AR7 ASA ASJ B2N B3D B3X BAL \
     BB9 BTA DCL DHA DYA DYL ECC EHP ETA F9D FGA GAU GGL GLJ GLK GLQ GLZ HHI HPH HSO HSV I4G IAR IAS IB9 IL0 ITR KBE KFB LCZ LOL LPH LYH \
     LYJ LYK MEU MH6 MTY NLY NVA OAR PDH PHA PHL PQ4 QCI RGL RON RX9 RXL SFE SGI SOW SRI THO TYB TYE TYW UN2 VAI VOL";

@@ -23,9 +23,11 @@ const MAX_DISPLACEMENT: f64 = 12.0;
 /// The same where the other location has another residue: backbones stay where they are.
 const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 
-/// The locations of atoms that have no letter beside lettered atoms of their residue, by index: where a lettered atom
-/// of the same name is elsewhere, those of the letters that lack it, whose letter was left out, or else the blank one,
-/// to which all of a residue belongs on whose backbone letters have another residue.
+/// The locations of atoms that have no letter beside lettered atoms of their residue, by index.
+///
+/// Where a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name:
+/// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
+/// residue on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
     let mut lettered: HashMap<Position<'_>, Vec<(&Atom, char)>> = HashMap::new();
     for atom in atoms {

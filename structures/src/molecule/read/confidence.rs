@@ -1,9 +1,11 @@
 //! Predicted models: the confidence (pLDDT) that their B column carries, and residues of which it knows no place.
 //!
 //! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of
-//! each residue's surroundings: pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589, 2021)
-//! or, of some programs, from 0 to 1. Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596,
-//! 590-596, 2021): where it stands is no fact, and as a solid it blocks what it may not touch.
+//! each residue's surroundings. This is pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589,
+//! 2021) or, of some programs, from 0 to 1.
+//!
+//! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): where it stands is
+//! no fact, and as a solid it blocks what it may not touch.
 //!
 //! What the column holds is detected from what the file says of itself ([`Provenance`]). Where it says nothing, the
 //! values decide ([`evidence`]), or the user does by giving a least pLDDT.

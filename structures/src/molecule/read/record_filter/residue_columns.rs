@@ -8,11 +8,12 @@ use crate::molecule::read::record_filter::atom_line::is_atom;
 
 /// Residue and chain names from columns 18-22.
 ///
-/// By the format the residue has 18-20 and the chain 22. Some programs put a fourth letter of the residue into column
-/// 21 (`TIP3`), others the first of two of the chain (large entries cut from mmCIF): it is the chain's where 18-20
-/// leave a blank or spell a residue known by itself, which it is not with a fourth letter, and the chain's own column
-/// is filled. In a file of `wide_chains` it is the chain's wherever both columns are filled: `HISAA` is histidine
-/// there, and GROMOS' `HISA` elsewhere.
+/// By the format the residue has columns 18-20 and the chain 22. Some programs put a fourth letter of the residue into
+/// column 21 (`TIP3`), others the first of two letters of the chain (large entries cut from mmCIF).
+///
+/// Column 21 is the chain's if column 22 is filled, and if 18-20 leave a blank or spell a residue that is known by
+/// itself and not with a fourth letter. In a file of `wide_chains` it is the chain's wherever both columns are filled:
+/// `HISAA` is histidine there, and GROMOS' `HISA` elsewhere.
 pub(crate) fn residue_and_chain(columns: &str, wide_chains: bool) -> (&str, &str) {
     let slice = |start: usize, end: usize| columns.get(start..end.min(columns.len())).unwrap_or("");
     let (three, four) = (slice(0, 3), slice(0, 4).trim());
