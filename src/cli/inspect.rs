@@ -10,7 +10,7 @@ use knotdock::rank::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    Format, InputSpec, LabelReport, Termini, UnresolvedResidues, fits,
 };
 use serde_json::{Map, Value, json};
 
@@ -74,7 +74,7 @@ impl Inspect {
             None => None,
         };
         let (input, listed) = if self.atoms.is_some() {
-            let (input, listed) = Input::read_listed(&self.file, &reading)?;
+            let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
             (input, Some(listed))
         } else {
             let [input] = Input::read_all([&self.file], &reading)?;
@@ -94,8 +94,8 @@ impl Inspect {
             .iter()
             .sum();
         let findings = PRIORS.map(|prior| prior.findings(molecule));
-        let unresolved = molecule.missing_residues();
-        let termini = molecule.chain_ends();
+        let unresolved = molecule.unresolved_residues();
+        let termini = molecule.termini();
         let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
         let counts = counts.map_err(Failure::input)?;
         let labels = labels.report;
@@ -174,7 +174,7 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
 /// Labels, flexible regions, surface and findings in words.
 fn labels_text(
     labels: &LabelReport,
-    (unresolved, termini): (&MissingResidues, &ChainEnds),
+    (unresolved, termini): (&UnresolvedResidues, &Termini),
     ph: f64,
     area: f64,
     volume: Volume,

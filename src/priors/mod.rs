@@ -1,7 +1,7 @@
 //! Priors: what is known of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
 //!
-//! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in [`PRIORS`]; the
-//! scene of a docking run and `knotdock inspect` walk the registry.
+//! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in
+//! [`PRIORS`]; the scene of a docking run and `knotdock inspect` walk the registry.
 
 pub mod active_residues;
 pub mod antibody;

@@ -2,12 +2,12 @@
 //!
 //! A peptidase cuts proteins, so a protein that binds it, an inhibitor above all, mostly does so at its active site.
 //!
-//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing together in
-//! space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be turned, flipped or
-//! missing, and a nucleophile mutated, modified or left out.
+//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing
+//! together in space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be
+//! turned, flipped or missing, and a nucleophile mutated, modified or left out.
 //!
-//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules besides
-//! (lipases, esterases) are left out.
+//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules
+//! besides (lipases, esterases) are left out.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -41,7 +41,8 @@ pub struct ActiveSite {
 }
 
 impl ActiveSite {
-    /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one each.
+    /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one
+    /// each.
     pub fn all(molecule: &Molecule) -> Vec<Self> {
         let chains = molecule.peptide_chains();
         let chains: Vec<(&PeptideChain<'_>, Vec<char>)> = chains
@@ -208,7 +209,8 @@ mod tests {
     use crate::priors::test_chains;
     use knotdock_structures::molecule::{Atom, Format};
 
-    /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and from each other.
+    /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and
+    /// from each other.
     fn chain(chain: &str, sequence: &str, first: i64, bent: &[i64]) -> Vec<Atom> {
         let position = |number: i64| {
             if bent.contains(&number) {
@@ -234,8 +236,8 @@ mod tests {
         residues.iter().map(|name| (*name).to_owned()).collect()
     }
 
-    /// The segments about the catalytic residues of an enzyme of each family, by its usual numbers: chymotrypsin, subtilisin BPN', papain,
-    /// pepsin, collagenase of fibroblasts and carboxypeptidase A.
+    /// The segments about the catalytic residues of an enzyme of each family, by its usual numbers: chymotrypsin,
+    /// subtilisin BPN', papain, pepsin, collagenase of fibroblasts and carboxypeptidase A.
     #[test]
     fn an_enzyme_of_each_family_is_detected() {
         type Piece = (&'static str, i64);
@@ -385,8 +387,8 @@ mod tests {
         }
     }
 
-    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two copies, whose
-    /// residues go with the nearer.
+    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two
+    /// copies, whose residues go with the nearer.
     #[test]
     fn sites_span_chains_and_do_without_the_serine() {
         let base = || chain("B", "WVVTAAHCGVTTSD", 51, &[57]);

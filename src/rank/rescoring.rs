@@ -44,7 +44,7 @@ impl<'a> Rescoring<'a> {
                 unresolved: regions
                     .unresolved
                     .each_ref()
-                    .map(|side| side.stretches.as_slice()),
+                    .map(|side| side.segments.as_slice()),
                 termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
             },
             weights: *weights.clone().with("active_residues", active.weight).all(),

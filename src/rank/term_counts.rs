@@ -3,7 +3,7 @@
 use crate::priors::{self, SiteRole};
 use knotdock_scoring::terms::pose::{POSE_TERMS, TermDefinition, TermInputs};
 use knotdock_structures::knots::KnotsError;
-use knotdock_structures::molecule::{ChainEnds, Labels, MissingResidues, Molecule};
+use knotdock_structures::molecule::{Labels, Molecule, Termini, UnresolvedResidues};
 
 /// Each pose term with the number of parts that it reads of a molecule, in the order of the registry.
 ///
@@ -14,8 +14,8 @@ use knotdock_structures::molecule::{ChainEnds, Labels, MissingResidues, Molecule
 pub fn of(
     molecule: &Molecule,
     labels: &Labels,
-    unresolved: &MissingResidues,
-    termini: &ChainEnds,
+    unresolved: &UnresolvedResidues,
+    termini: &Termini,
 ) -> Result<Vec<(&'static TermDefinition, usize)>, KnotsError> {
     let knots = molecule.knots()?;
     let knots = knots.with_labels(Vec::new(), labels.contact_types.clone())?;
@@ -28,7 +28,7 @@ pub fn of(
         fine_contact_potential: None,
         atom_pair_potential: None,
         active_residues: &active,
-        unresolved: [&unresolved.stretches, &[]],
+        unresolved: [&unresolved.segments, &[]],
         termini: [&termini.atoms, &[]],
     };
     let count = |term: &'static TermDefinition| {

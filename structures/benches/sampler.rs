@@ -1,7 +1,9 @@
-//! The paper's Tables 1 and 2 again, on the Stanford bunny: how many balls each sampler needs, how near they come, and the time.
+//! The paper's Tables 1 and 2 again, on the Stanford bunny: how many balls each sampler needs, how near they come, and
+//! the time.
 //!
-//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/sampling.md; `-- 15` goes no further than m = 2^15. Counts are given
-//! only where the inclusions and the Hausdorff bounds were measured to hold; anything else ends the run with an error.
+//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/sampling.md; `-- 15` goes no further
+//! than m = 2^15. Counts are given only where the inclusions and the Hausdorff bounds were measured to hold; anything
+//! else ends the run with an error.
 
 use std::path::Path;
 
@@ -68,11 +70,11 @@ fn run(solid: &Solid, per_axis: usize, method: Method) -> Run {
     let (start, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let sampling = sample(solid, per_axis, method).expect("the bunny has an inside");
     let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
-    let referee = HausdorffMeter::new(solid, &sampling.field);
+    let meter = HausdorffMeter::new(solid, &sampling.field);
     let fits = sampling
         .sets
         .iter()
-        .map(|set| referee.judge(&set.balls))
+        .map(|set| meter.measure(&set.balls))
         .collect();
     Run {
         sampling,
@@ -169,14 +171,14 @@ fn main() {
                 run.cpu
             );
             if index == 0 {
-                let referee = HausdorffMeter::new(&solid, &run.sampling.field);
+                let meter = HausdorffMeter::new(&solid, &run.sampling.field);
                 others.push(row(
                     paper,
                     "B&I A3, mu 0.25",
                     &format!("{}", paper.n3[0]),
                     &run,
                     2,
-                    referee.volume(),
+                    meter.volume(),
                 ));
             }
         }

@@ -101,9 +101,9 @@ fn seconds((positions, triangles): &Surface) -> [f64; 4] {
     let method = Method::BehandishIlies(DecompositionOptions::default());
     let sampling = sample(&solid, 16, method).expect("it has an inside");
     let sampled = start.elapsed();
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     for set in &sampling.sets {
-        referee.judge(&set.balls);
+        meter.measure(&set.balls);
     }
     let judged = start.elapsed();
     let [read, sampled, judged] = [read, sampled, judged].map(|time| time.as_secs_f64());

@@ -92,11 +92,11 @@ fn weights_meet_the_conditions_of_the_minimum() {
     let fitted = fit(field, balls, bump(2.0), volume);
     let value = |ball: &Ball, node: usize| {
         let place = field.grid.node(node);
-        let apart = (0..3)
+        let spacing = (0..3)
             .map(|axis| (place[axis] - ball.center[axis]).powi(2))
             .sum::<f64>()
             .sqrt();
-        bump(2.0).value(apart / ball.radius)
+        bump(2.0).value(spacing / ball.radius)
     };
     let nodes: Vec<usize> = (0..field.grid.nodes())
         .filter(|&node| field.depth[node] != 0.0)

@@ -168,7 +168,7 @@ pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
                     "{ends} termini past which residues may be unresolved"
                 )),
             }
-            if !unresolved.stretches.is_empty() {
+            if !unresolved.segments.is_empty() {
                 options.push("--unresolved-weight 0");
             } else if let Some(last) = parts.last_mut() {
                 last.push_str(", for which the body leaves no room");

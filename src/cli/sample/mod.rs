@@ -142,7 +142,7 @@ impl Sample {
         let fits: Vec<Fit> = sampling
             .sets
             .iter()
-            .map(|set| referee.judge(&set.balls))
+            .map(|set| referee.measure(&set.balls))
             .collect();
         let step = Step::since("measuring the fit", start);
         sampling.steps.push(step);
@@ -235,7 +235,7 @@ impl Sample {
             if let Some(tree) = SphereTree::new(&finished.balls) {
                 finished.balls = tree.level(count);
             }
-            finished.level = Some(referee.judge(&finished.balls));
+            finished.level = Some(referee.measure(&finished.balls));
             finished.step = Some(Step::since("sphere tree", start));
         }
         Ok(finished)

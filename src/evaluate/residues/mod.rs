@@ -66,7 +66,7 @@ impl Residues {
         }
         let mut all = Self::default();
         for (name, atoms) in chains {
-            all.add_chain(name, &atoms, &molecule.chain_ends);
+            all.add_chain(name, &atoms, &molecule.chain_breaks);
         }
         if all.residues.is_empty() {
             return Err(EvaluateError::NoResidues { molecule: role });

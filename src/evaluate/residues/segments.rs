@@ -196,7 +196,7 @@ mod tests {
 
     fn sizes_with(atoms: Vec<Atom>, ends: Vec<usize>) -> Vec<usize> {
         let mut molecule = molecule(atoms);
-        molecule.chain_ends = ends;
+        molecule.chain_breaks = ends;
         let residues = Residues::of(&molecule, "receptor").unwrap();
         let segments = residues.segments.iter();
         segments.map(|segment| segment.members.len()).collect()

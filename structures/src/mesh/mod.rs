@@ -1,4 +1,4 @@
-//! Meshes: the surface of a solid as triangles, and what can be asked of it.
+//! Meshes: the surface of a solid as triangles, with volume, area, distance and winding number.
 //!
 //! # Conventions
 //!
@@ -11,13 +11,13 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to polygons) -> `repair` -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the surface,
-//! `winding` number, and the sign by it.
+//! path -> `read` (bytes to polygons) -> `repair` -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the
+//! surface, `winding` number, and the sign by it.
 //!
-//! `repair` welds vertices (`weld`, with `rounding` and `seams`), cuts polygons into triangles, drops a whole surface that is
-//! there twice (`repeats`) and finds open and non-manifold edges and parts (`topology`). Where triangles meet at non-manifold
-//! edges or are there several times, `shells` cuts space into `cells` and `labels` the solid ones. `facing` turns surfaces
-//! outward by their volume and `nesting`.
+//! `repair` welds vertices (`weld`, with `rounding` and `seams`), cuts polygons into triangles, drops a whole surface
+//! that is there twice (`repeats`) and finds open and non-manifold edges and parts (`topology`). Where triangles meet
+//! at non-manifold edges or are there several times, `shells` cuts space into `cells` and `labels` the solid ones.
+//! `facing` turns surfaces outward by their volume and `nesting`.
 
 mod distance;
 mod error;

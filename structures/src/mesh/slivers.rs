@@ -1,8 +1,8 @@
 //! Long thin triangles cut into shorter pieces, so that trees over them have compact clusters.
 //!
-//! A cylinder of thousands of sides is as long at every side, whatever the number of sides; a tree can only part
-//! its triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface
-//! stays the same; only its pieces change.
+//! A cylinder of thousands of sides is as long at every side, whatever the number of sides. A tree can only part its
+//! triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface stays
+//! the same; only its pieces change.
 
 use crate::mesh::triangle_mesh::Mesh;
 use crate::mesh::vector::{along, distance, subtract};

@@ -9,7 +9,7 @@ use crate::mesh::{slivers, winding};
 
 /// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
 ///
-/// The origin is the middle of the bounding box, so that an offset costs no digits; the unit is a power of two, so that it
+/// The origin is the middle of the bounding box, so that an offset costs no digits. The unit is a power of two: it
 /// costs none either, and doubling every length of a file changes no bit of what is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

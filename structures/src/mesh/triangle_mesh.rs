@@ -58,8 +58,8 @@ impl Mesh {
             .fold(0.0, f64::max)
     }
 
-    /// Volume inside, in the file's unit cubed, by the divergence theorem; parts that overlap count twice, and that of an
-    /// open mesh depends on where its bounding box stands.
+    /// Volume inside, in the file's unit cubed, by the divergence theorem; parts that overlap count twice, and that of
+    /// an open mesh depends on where its bounding box stands.
     pub fn volume(&self) -> f64 {
         let (low, high) = self.bounds();
         let middle = scale(add(low, high), 0.5);

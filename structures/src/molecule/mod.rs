@@ -3,17 +3,26 @@
 //! # Conventions
 //!
 //! - Lengths are in Å, in the file's own frame.
-//! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and `pdbx_PDB_ins_code` in
-//!   mmCIF).
+//! - Chains, residue numbers and insertion codes are the author's (`auth_asym_id`, `auth_seq_id` and
+//!   `pdbx_PDB_ins_code` in mmCIF).
 //! - Hydrogens are dropped, and radii are united-atom radii, which stand for them, unless [`ReadOptions`] ask for them.
 //! - Lines are counted from 1 in the unpacked text.
 //!
 //! # Rooms
 //!
-//! - `read`: from a file to atoms: path -> `source` (open, unpack, detect the format) -> `record_filter` (atoms of the wanted
-//!   models, in a form that pdbtbx is sure to read) -> `parse` (pdbtbx) -> `assembly`, where one is requested -> `select` (by
-//!   `policy`: chains, waters, additives, alternate locations, confidence of predictions) -> [`Molecule`] with its [`ReadReport`].
-//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved segments.
+//! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `record_filter` passes the atoms of
+//!   the wanted models in a form that pdbtbx is sure to read; `parse` calls pdbtbx. `assembly` builds an assembly where
+//!   one is requested. `select` applies the `policy` on chains, waters, additives, alternate locations and confidence.
+//!   The result is a [`Molecule`] with its [`ReadReport`].
+//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
+//!   segments.
+//! - `chemistry`: tables of names, elements, radii, charges and contact types.
+//! - `write`: molecules and complexes as PDB or mmCIF.
+//!   wanted models, in a form that pdbtbx is sure to read) -> `parse` (pdbtbx) -> `assembly`, where one is requested ->
+//!   `select` (by `policy`: chains, waters, additives, alternate locations, confidence of predictions) -> [`Molecule`]
+//!   with its [`ReadReport`].
+//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
+//!   segments.
 //! - `chemistry`: tables of names, elements, radii, charges and contact types.
 //! - `write`: molecules and complexes as PDB or mmCIF.
 
@@ -38,8 +47,8 @@ pub use self::model::report::{
 };
 pub use self::model::residue_selection::{ResidueSelection, UnknownResidues};
 pub use self::model::sequence::{PeptideChain, PeptideResidue, one_letter};
-pub use self::model::termini::ChainEnds;
-pub use self::model::unresolved::MissingResidues;
+pub use self::model::termini::Termini;
+pub use self::model::unresolved::UnresolvedResidues;
 pub use self::read::confidence::LOW;
 pub use self::read::error::ReadError;
 pub use self::read::input::InputSpec;
@@ -47,7 +56,7 @@ pub use self::read::policy::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
 };
 pub use self::read::source::file_bytes;
-pub use self::read::{Listed, read, read_bytes, read_bytes_listed, read_listed};
+pub use self::read::{AtomFate, read, read_bytes, read_bytes_with_fates, read_with_fates};
 pub use self::write::error::WriteError;
 pub use self::write::{
     ChainMap, ChainName, Partner, complex_format, fits, write_complex, write_molecule,

@@ -84,8 +84,8 @@ impl BallTree {
         Self { balls, nodes }
     }
 
-    /// Distance from `point` to the union of the balls, below zero inside one of them (then the depth in the one that it is
-    /// deepest in); infinite without balls.
+    /// Distance from `point` to the union of the balls, below zero inside one of them (then the depth in the one that
+    /// it is deepest in); infinite without balls.
     ///
     /// The search stops at the first ball found within `enough`, so a value up to that says no more than "within".
     pub fn distance(&self, point: [f64; 3], enough: f64) -> f64 {

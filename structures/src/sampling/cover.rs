@@ -1,9 +1,9 @@
 //! Balls added so that no point of the solid is farther than eps from the balls inside it.
 //!
-//! Covering every inside node is not enough (see [`super::decomposition`]), and a needle or a shell may have none. Samples of
-//! the surface stand no farther than a tenth of eps apart; whichever is farther than nine tenths of eps from all balls gets
-//! the ball of the deepest point that lies within that distance under it. Then inside points on a grid of half the spacing that
-//! are farther than eps get balls of their own.
+//! Covering every inside node is not enough (see [`super::decomposition`]), and a needle or a shell may have none.
+//! Samples of the surface stand no farther than a tenth of eps apart. A sample farther than nine tenths of eps from all
+//! balls gets the ball of the deepest point that lies within that distance under it. Then inside points on a grid of
+//! half the spacing that are farther than eps get balls of their own.
 
 use rayon::prelude::*;
 
@@ -29,7 +29,8 @@ pub struct Covering {
     pub unreachable: usize,
 }
 
-/// Adds balls to `balls` until every sample of the surface, and then every inside point of the half grid, is near enough.
+/// Adds balls to `balls` until every sample of the surface, and then every inside point of the half grid, is near
+/// enough.
 pub fn cover(solid: &Solid, field: &DepthField, balls: &mut Vec<Ball>) -> Covering {
     let epsilon = field.grid.epsilon();
     let reach = epsilon * (1.0 - SAMPLE_SPACING);
@@ -94,8 +95,9 @@ pub fn cover(solid: &Solid, field: &DepthField, balls: &mut Vec<Ball>) -> Coveri
 
 /// Points of the grid of half the spacing that are inside and farther than eps from the balls.
 ///
-/// Such a point is on an edge, a face or in the middle of a cell, so no node at the cell's corners about it is farther than
-/// eps; since inside nodes are covered, none of these may be inside, and between it and each of them the surface passes.
+/// Such a point is on an edge, a face or in the middle of a cell, so no node at the cell's corners about it is farther
+/// than eps. Inside nodes are covered, so none of these may be inside, and between it and each of them the surface
+/// passes.
 fn far_inside(solid: &Solid, field: &DepthField, tree: &BallTree) -> Vec<[f64; 3]> {
     let grid = field.grid;
     let n = grid.per_axis();

@@ -1,25 +1,28 @@
 //! Spherical decomposition: B&I, Algorithm 1, with what its listing gets wrong put right.
 //!
-//! 1. **A1.** Nodes inside are taken by falling priority; each gives the ball of its distance to the surface, marks the nodes
-//!    in it as covered, and strikes from the queue the nodes x' with r(x') <= r(x) and |x - x'| - (r(x) - r(x')) <= mu r(x').
-//!    This ends when every inside node is covered. Then [`super::cover`] adds balls until no point of the surface is farther
-//!    than eps from A1.
+//! 1. **A1.** Nodes inside are taken by falling priority; each gives the ball of its distance to the surface, marks the
+//!    nodes in it as covered, and strikes from the queue the nodes x' with r(x') <= r(x) and |x - x'| - (r(x) - r(x'))
+//!    <= mu r(x'). This ends when every inside node is covered. Then [`super::cover`] adds balls until no point of the
+//!    surface is farther than eps from A1.
 //! 2. **A2** is A1 grown by eps.
 //! 3. **A3** is A2 without the balls whose original lies in the grown ball of one that is kept, the largest first.
 //!
 //! What differs from the listing, and why:
 //!
 //! - *r(x') <= r(x).* The listing takes |r(x) - r(x')|, by which a small ball strikes a larger one that contains it.
-//! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered: |x - x'| <= r(x) - (1 - mu) r(x').
-//! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its listing,
-//!   its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which keeps more balls.
-//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball: its own to begin with, and chains of
-//!   which each lies in the next, so that nothing need be left near the first.
-//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest to x lies
-//!   outside S: under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1 to 3 rest on it.
+//! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
+//!   |x - x'| <= r(x) - (1 - mu) r(x').
+//! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its
+//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which keeps
+//!   more balls.
+//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball: its own to begin with, and
+//!   chains of which each lies in the next, so that nothing need be left near the first.
+//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest to
+//!   x lies outside S: under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1 to 3
+//!   rest on it.
 //!
-//! What holds then for a closed mesh, with S(A) for the union of the balls: S(A1) in S in S(A2), S(A1) in S(A3) in S(A2), and
-//! each within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
+//! What holds then for a closed mesh, with S(A) for the union of the balls: S(A1) in S in S(A2), S(A1) in S(A3) in
+//! S(A2), and each within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
 
 use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
@@ -187,8 +190,8 @@ mod tests {
     use crate::sampling::grid::Grid;
     use crate::test_support::cuboid;
 
-    /// As printed, |r(x) - r(x')| lets a small ball strike a larger one that contains it: with the smallest balls taken first
-    /// the middle of the cube then goes missing. And whatever the order and mu, every node must end up covered.
+    /// As printed, |r(x) - r(x')| lets a small ball strike a larger one that contains it: with the smallest balls taken
+    /// first the middle of the cube then goes missing. And whatever the order and mu, every node must end up covered.
     #[test]
     fn a_small_ball_never_strikes_a_larger_one() {
         let solid = cuboid([0.5; 3]);
@@ -217,8 +220,8 @@ mod tests {
         }
     }
 
-    /// As printed, step 3 drops every ball, since each lies in its own growth, and of a chain in which each ball lies in the
-    /// next one's growth only the last, so that nothing is left near the first.
+    /// As printed, step 3 drops every ball, since each lies in its own growth. Of a chain in which each ball lies in
+    /// the next one's growth it keeps only the last, so that nothing is left near the first.
     #[test]
     fn what_is_dropped_lies_in_a_ball_that_is_kept() {
         let epsilon = 0.1;

@@ -1,22 +1,25 @@
 //! How thick a solid is: its local feature size.
 //!
-//! The local feature size at a point q of the surface is the radius of the largest ball inside the solid that touches the surface at q:
-//! the distance from q to the inner medial axis (Amenta and Bern, Discrete Comput. Geom. 22, 1999, take both sides of the surface). It is
-//! half the thickness of a plate and the radius of a rod, and falls to zero at edges and corners, of which every polyhedron is full. So the
-//! feature size of a solid is the median over its surface: what is typical of it.
+//! The local feature size at a point q of the surface is the radius of the largest ball inside the solid that touches
+//! the surface at q. That is the distance from q to the inner medial axis; Amenta and Bern, Discrete Comput. Geom. 22,
+//! 1999, take both sides of the surface.
+//!
+//! It is half the thickness of a plate and the radius of a rod, and falls to zero at edges and corners, of which every
+//! polyhedron is full. So the feature size of a solid is the median over its surface: what is typical of it.
 
 use rayon::prelude::*;
 
 use crate::mesh::Solid;
 use crate::sampling::grid::DepthField;
 
-/// Points of the surface that are asked, about.
+/// Number of points of the surface that are sampled, about.
 const SAMPLES: usize = 1500;
 
 /// Halvings of the interval in which a radius lies: to a thousandth of the longest side.
 const HALVINGS: usize = 10;
 
-/// A ball touches the surface at q alone as long as the surface is no nearer to its centre than this share of its radius.
+/// A ball touches the surface at q alone as long as the surface is no nearer to its centre than this share of its
+/// radius.
 const TOUCHING: f64 = 0.98;
 
 /// The median local feature size, in the solid's unit; zero when no node is inside.
@@ -27,8 +30,8 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
         .filter(|&node| field.depth[node] > 1e-6 * h && field.depth[node] <= 1.5 * h)
         .collect();
     let stride = near.len().div_ceil(SAMPLES).max(1);
-    let asked: Vec<usize> = near.into_iter().step_by(stride).collect();
-    let mut radii: Vec<f64> = asked
+    let sampled: Vec<usize> = near.into_iter().step_by(stride).collect();
+    let mut radii: Vec<f64> = sampled
         .par_iter()
         .map(|&node| touching_radius(solid, field.grid.node(node), field.grid.half()))
         .collect();
@@ -71,8 +74,8 @@ mod tests {
     use crate::sampling::grid::Grid;
     use crate::test_support::cuboid;
 
-    /// A plate is as thick as it is nearly everywhere on its surface; a cube's largest ball at a face is as large as its edges allow: over
-    /// the surface the median of half - max(|u|, |v|), which is half (1 - 1 / sqrt 2).
+    /// A plate is as thick as it is nearly everywhere on its surface. A cube's largest ball at a face is as large as
+    /// its edges allow: over the surface the median of half - max(|u|, |v|), which is half (1 - 1 / sqrt 2).
     #[test]
     fn plates_and_cubes_have_the_sizes_known_by_hand() {
         for (half, expected) in [

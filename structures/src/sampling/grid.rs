@@ -1,8 +1,10 @@
 //! The grid of nodes that a solid is sampled on, and the solid's depth at them.
 //!
-//! B&I, Algorithm 1, step 0: the cube of the bounding box's longest edge 2 L, centred on it, with n nodes along each edge,
-//! both ends included, so that the spacing is h = 2 L / (n - 1) and no point of the cube is farther from a node than
-//! eps = sqrt(3) L / (n - 1). (The paper prints [-L, L) and eps = sqrt(3) L / n; its counts of inside nodes are those of n - 1.)
+//! B&I, Algorithm 1, step 0: the cube of the bounding box's longest edge 2 L, centred on it, with n nodes along each
+//! edge, both ends included. The spacing is h = 2 L / (n - 1), and no point of the cube is farther from a node than eps
+//! = sqrt(3) L / (n - 1).
+//!
+//! The paper prints [-L, L) and eps = sqrt(3) L / n; its counts of inside nodes are those of n - 1.
 
 use rayon::prelude::*;
 
@@ -74,8 +76,8 @@ impl Grid {
         (z * self.per_axis + y) * self.per_axis + x
     }
 
-    /// Calls `visit` with the index of every node within `radius` of `center` (both in the solid's unit) and its squared
-    /// distance; nodes that rounding puts on either side of the sphere count as within.
+    /// Calls `visit` with the index of every node within `radius` of `center` (both in the solid's unit) and its
+    /// squared distance; nodes that rounding puts on either side of the sphere count as within.
     pub fn visit_ball(&self, center: [f64; 3], radius: f64, mut visit: impl FnMut(usize, f64)) {
         let h = self.spacing();
         let limit = radius * radius * (1.0 + 1e-14);
@@ -121,8 +123,8 @@ pub struct DepthField {
 impl DepthField {
     /// Measures the depth at every node, rows in parallel.
     ///
-    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours lie on one side
-    /// when their distances together exceed the spacing, so winding numbers are taken near the surface only.
+    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours lie on one
+    /// side when their distances together exceed the spacing, so winding numbers are taken near the surface only.
     pub fn new(solid: &Solid, grid: Grid) -> Self {
         let n = grid.per_axis();
         let h = grid.spacing();
@@ -150,7 +152,8 @@ impl DepthField {
                         _ if inside => distance,
                         _ => -distance,
                     };
-                    // On the surface the sign says nothing about the next node; zero plus any distance up to h asks again.
+                    // On the surface the sign says nothing about the next node; zero plus any distance up to h asks
+                    // again.
                     last = Some(*depth);
                 }
             });

@@ -1,13 +1,15 @@
 //! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
 //! outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls, over samples of the surface
-//! no farther than eps / 10 apart and over the inside points of a grid of 8 m points (every node moved by a quarter
-//! of the spacing in each of the eight directions). Samples with nothing of the solid on either side are no points
-//! of it. *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid, over the same grid's
-//! points in the balls, over the point of each ball's sphere on the far side of the surface point nearest to its
-//! centre, and where that leaves room, over the whole sphere (`outward`); a ball of radius R at depth d
-//! reaches no farther out than R - d, which is reported as the bound.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of the
+//! surface no farther than eps / 10 apart, and over the inside points of a grid of 8 m points: every node moved by a
+//! quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either side are no
+//! points of it.
+//!
+//! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
+//! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
+//! its centre. Where that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
+//! no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
 
@@ -27,7 +29,7 @@ use crate::sampling::outward::farthest;
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
-/// What [`HausdorffMeter::judge`] measures. Lengths and volumes are in the solid's unit and its cube.
+/// What [`HausdorffMeter::measure`] measures. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Farthest distance of a point of the solid from the balls.
@@ -135,7 +137,8 @@ impl<'a> HausdorffMeter<'a> {
         }
     }
 
-    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one has no point inside, as of a thin plate.
+    /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one
+    /// has no point inside, as of a thin plate.
     pub fn volume(&self) -> f64 {
         let count: u64 = self
             .inside
@@ -149,13 +152,13 @@ impl<'a> HausdorffMeter<'a> {
     }
 
     /// Measures a set of balls.
-    pub fn judge(&self, balls: &[Ball]) -> Fit {
+    pub fn measure(&self, balls: &[Ball]) -> Fit {
         let tree = BallTree::new(balls);
         let covered = self.covered(balls);
         let cell = self.fine.step.powi(3);
         let (missed, outside, inner, outer) = (0..self.fine.rows())
             .into_par_iter()
-            .map(|row| self.judge_row(row, &covered, &tree))
+            .map(|row| self.measure_row(row, &covered, &tree))
             .reduce(
                 || (0, 0, 0.0, 0.0),
                 |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
@@ -221,7 +224,12 @@ impl<'a> HausdorffMeter<'a> {
     }
 
     /// Points missed and outside in a row, and the farthest of either.
-    fn judge_row(&self, row: usize, covered: &[u64], tree: &BallTree) -> (usize, usize, f64, f64) {
+    fn measure_row(
+        &self,
+        row: usize,
+        covered: &[u64],
+        tree: &BallTree,
+    ) -> (usize, usize, f64, f64) {
         let words = row * self.fine.words..(row + 1) * self.fine.words;
         let (mut missed, mut outside, mut inner, mut outer) = (0, 0, 0.0f64, 0.0f64);
         for (word, (&inside, &covered)) in self.inside[words.clone()]

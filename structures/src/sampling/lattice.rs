@@ -1,11 +1,13 @@
 //! Balls of one radius on a lattice: a solid as a smooth density, no finer than whoever looks at it can tell.
 //!
-//! Cells of k x k x k nodes tile the grid, evenly about its middle. Every cell with nodes inside the solid gives one ball, at the mean of
-//! these nodes, so that a cell which the surface cuts has its ball where its share of the solid is. With weights fitted to the
-//! nodes ([`super::weights`]) the summed bumps then count volume: about one inside and zero outside, however the lattice lies.
+//! Cells of k x k x k nodes tile the grid, evenly about its middle. Every cell with nodes inside the solid gives one
+//! ball, at the mean of these nodes, so that a cell which the surface cuts has its ball where its share of the solid
+//! is. With weights fitted to the nodes ([`super::weights`]) the summed bumps then count volume: about one inside and
+//! zero outside, however the lattice lies.
 //!
-//! The balls are no cover and no packing: for these take [`super::decomposition`]. They are what a correlation of known resolution
-//! needs: cells narrower than half the finest wavelength it keeps are to it as good as the nodes themselves, at 1 / k^3 of their number.
+//! The balls are no cover and no packing: for these take [`super::decomposition`]. They are what a correlation of known
+//! resolution needs: cells narrower than half the finest wavelength it keeps are to it as good as the nodes themselves,
+//! at 1 / k^3 of their number.
 
 use crate::sampling::ball_tree::Ball;
 use crate::sampling::grid::DepthField;
@@ -47,7 +49,8 @@ mod tests {
     use crate::sampling::weights;
     use crate::test_support::cuboid;
 
-    /// Cells of one node are the nodes; larger ones keep their number of nodes and first moments: no volume is lost or moved.
+    /// Cells of one node are the nodes; larger ones keep their number of nodes and first moments: no volume is lost or
+    /// moved.
     #[test]
     fn every_inside_node_is_in_one_cell() {
         let solid = cuboid([0.5, 0.4, 0.23]);
@@ -66,7 +69,8 @@ mod tests {
         }
     }
 
-    /// With fitted weights the sum of the bumps is one in the depths to a quarter (cells show) and its integral the volume to a tenth.
+    /// With fitted weights the sum of the bumps is one in the depths to a quarter (cells show) and its integral the
+    /// volume to a tenth.
     #[test]
     fn fitted_weights_count_volume() {
         let solid = cuboid([0.5, 0.45, 0.4]);

@@ -2,17 +2,20 @@
 //!
 //! # Conventions
 //!
-//! - All coordinates, lengths and volumes are in the solid's own [`crate::mesh::Frame`]; what is written for users is in the
-//!   file's unit.
+//! - All coordinates, lengths and volumes are in the solid's own [`crate::mesh::Frame`]; what is written for users is
+//!   in the file's unit.
 //! - A depth is a signed distance to the surface, above zero inside.
 //! - S is the solid, S(A) the union of the balls of a set A, X the nodes of the grid strictly inside S.
 //!
 //! # The samplers
 //!
-//! Behandish and Ilieş' ([`decomposition`]), Weller and Zachmann's distance-greedy packing ([`packing`]), balls about the
-//! cells of an octree ([`octree`]) and about voxels ([`voxels`]): all on one [`grid`], all covering the same nodes X, and all
-//! judged by the same [`hausdorff`] measurement. [`lattice`] gives balls of one radius for whoever correlates solids at a known
-//! resolution, and [`feature_size`] says how thick a solid is.
+//! - [`decomposition`]: Behandish and Ilieş' Algorithm 1.
+//! - [`packing`]: Weller and Zachmann's distance-greedy packing.
+//! - [`octree`], [`voxels`]: balls about the cells of an octree, and about voxels.
+//! - [`lattice`]: balls of one radius, for correlating solids at a known resolution.
+//!
+//! The first four share one [`grid`], cover the same nodes X and are measured by [`hausdorff`]. [`feature_size`] says
+//! how thick a solid is.
 
 pub mod ball_tree;
 mod beyond;

@@ -1,8 +1,8 @@
 //! Balls about the cells of an octree (as the sphere trees of Hubbard and of Palmer and Grimsdale begin).
 //!
-//! The finest cells are the cubes of one spacing about the nodes. From the root down, a cell without inside nodes is left out;
-//! one whose circumscribed ball reaches no farther than eps out of the solid gives that ball; any other is cut in eight. The
-//! finest cells always give theirs, of radius eps, so every inside node is covered.
+//! The finest cells are the cubes of one spacing about the nodes. From the root down, a cell without inside nodes is
+//! left out; one whose circumscribed ball reaches no farther than eps out of the solid gives that ball; any other is
+//! cut in eight. The finest cells always give theirs, of radius eps, so every inside node is covered.
 
 use rayon::prelude::*;
 

@@ -1,7 +1,8 @@
-//! Distance-greedy packing, after Weller and Zachmann (Inner Sphere Trees, TU Clausthal IfI-08-09, 2008), as B&I compare with.
+//! Distance-greedy packing, after Weller and Zachmann (Inner Sphere Trees, TU Clausthal IfI-08-09, 2008), as B&I
+//! compare with.
 //!
-//! Balls that do not overlap: each has its centre at the node that is farthest from the surface and from all balls before it,
-//! and reaches to the nearest of these. It ends when every node inside is in a ball.
+//! Balls that do not overlap: each has its centre at the node that is farthest from the surface and from all balls
+//! before it, and reaches to the nearest of these. It ends when every node inside is in a ball.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;

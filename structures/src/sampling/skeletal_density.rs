@@ -6,18 +6,18 @@
 //! share(x) = 1 / (4 pi d^2)  integral over the surface of  exp(-((|x - q| / d - 1) / s)^2) dA(q),     d = d(x)
 //! ```
 //!
-//! with d(x) the distance to the surface and s the [`SHARE_WIDTH`]: the area of the surface that is nearly nearest to x, over
-//! the area of the sphere that just touches it. It is
+//! with d(x) the distance to the surface and s the [`SHARE_WIDTH`]: the area of the surface that is nearly nearest to
+//! x, over the area of the sphere that just touches it. It is
 //!
 //! - smooth wherever d is, and the same for a solid of twice the size;
 //! - exactly 1 at the centre of a ball, for any s;
-//! - s (sqrt(pi) + s) / 4 near a flat face and twice that half-way between two, so high on the medial axis and low off it:
-//!   it counts, smoothly, how often the touching sphere touches;
+//! - s (sqrt(pi) + s) / 4 near a flat face and twice that half-way between two, so high on the medial axis and low off
+//!   it: it counts, smoothly, how often the touching sphere touches;
 //! - stable: to move the surface by t << d moves it by the order of t / (s d), where the medial axis itself may jump.
 //!
-//! It rests on the definition of the medial axis as the points with more than one nearest surface point (Blum, 1967), with
-//! "nearest" softened by a Gaussian. Weighting it by a power of d(x), 1/2, 1 or 2, changed the number of balls kept of the
-//! Stanford bunny by no more than 8% either way, so it stands alone.
+//! It rests on the definition of the medial axis as the points with more than one nearest surface point (Blum, 1967),
+//! with "nearest" softened by a Gaussian. Weighting it by a power of d(x), 1/2, 1 or 2, changed the number of balls
+//! kept of the Stanford bunny by no more than 8% either way, so it stands alone.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,5 @@
-//! Uniform sampling: the ball about the cube of one spacing around every inside node, all of radius eps. B&I's own baseline.
+//! Uniform sampling: the ball about the cube of one spacing around every inside node, all of radius eps. B&I's own
+//! baseline.
 
 use crate::sampling::ball_tree::Ball;
 use crate::sampling::grid::DepthField;

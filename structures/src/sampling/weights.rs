@@ -1,11 +1,14 @@
 //! Weights that make the summed bumps come closest to one inside the solid and to zero outside.
 //!
-//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times and the volume
-//! integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum of
-//! (sum_i c_i psi(|x - x_i| / r_i) - 1_S(x))^2 over the nodes: nonnegative least squares with a sparse matrix, by coordinate
-//! descent (each weight in turn to its best value or zero), which falls at every step and whose limit is the minimum, the
-//! problem being convex. Nodes outside have a part in it because without them the balls that reach out of the solid are free:
-//! on the bunny at m = 2^12 their weights then made the integral 3.9 times the volume, where weights of one make it 2.3 times.
+//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times, and the
+//! volume integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum over the
+//! nodes of (sum_i c_i psi(|x - x_i| / r_i) - 1_S(x))^2: nonnegative least squares with a sparse matrix.
+//!
+//! Coordinate descent sets each weight in turn to its best value or zero. The sum falls at every step, and the limit is
+//! the minimum since the problem is convex.
+//!
+//! Nodes outside take part because without them the balls that reach out of the solid are free. On the bunny at m =
+//! 2^12 the integral was then 3.9 times the volume, where weights of one make it 2.3 times.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -20,8 +23,10 @@ const ROUNDS: usize = 300;
 /// Ends when no weight of a round moves by more than this.
 const SETTLED: f64 = 1e-4;
 
-/// A ball whose bump squared sums to less than this over the nodes is one that the grid hardly sees: the tail of a bump at a
-/// node or two would decide its weight, and could make it thousands.
+/// Smallest sum over the nodes of a ball's bump squared: a ball below it keeps weight one.
+///
+/// The grid hardly sees such a ball. The tail of its bump at a node or two would decide its weight, and could make it
+/// thousands.
 const SEEN: f64 = 0.1;
 
 /// What fitting did.
@@ -49,7 +54,8 @@ pub struct FittedWeights {
 /// One ball's bump at the nodes that it reaches: node, and value.
 type Column = Vec<(u32, f32)>;
 
-/// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that the nodes hardly see keeps weight one.
+/// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that the nodes hardly see
+/// keeps weight one.
 pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> FittedWeights {
     let columns: Vec<Column> = balls
         .par_iter()

@@ -188,7 +188,7 @@ mod tests {
         let segment = [Conformers {
             origin: [0.0; 3],
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            courses: vec![vec![[1.0, 0.0, 0.0]]],
+            traces: vec![vec![[1.0, 0.0, 0.0]]],
         }];
         let nothing = TermInputs {
             bodies: [&bare, &bare],

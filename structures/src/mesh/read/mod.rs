@@ -1,8 +1,11 @@
 //! From a file to a mesh: STL (text and binary), OBJ, PLY (text and binary) and OFF.
 //!
-//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each: the crates for STL take a binary
-//! file whose header begins with `solid` for text, keep only the first solid and 24 bits of a number, and neither they nor
-//! those for OBJ say on which line a file breaks.
+//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each, because their crates fall
+//! short:
+//!
+//! - those for STL take a binary file whose header begins with `solid` for text, and keep only the first solid and 24
+//!   bits of a number;
+//! - neither they nor those for OBJ say on which line a file breaks.
 //!
 //! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
 
@@ -33,7 +36,7 @@ const LARGEST_FILE: u64 = 2 << 30;
 
 /// Reads a mesh, welds its vertices, turns its triangles to face outward and reports what was found.
 ///
-/// The format is told by the first bytes, else by the name's ending. Numbers keep all the digits of the file.
+/// The format is detected from the first bytes, else from the name's ending. Numbers keep all the digits of the file.
 ///
 /// # Errors
 /// [`MeshError`] when the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a
@@ -76,7 +79,7 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     Ok(bytes)
 }
 
-/// As [`read`], of a file's bytes; the path's ending tells the format where they leave it open.
+/// As [`read`], of a file's bytes; the path's ending decides the format where they leave it open.
 ///
 /// # Errors
 /// As [`read`].

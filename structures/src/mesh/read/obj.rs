@@ -24,7 +24,8 @@ pub fn begins(text: &str) -> bool {
     false
 }
 
-/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines counted.
+/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines
+/// counted.
 fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
         return Cow::Borrowed(text);
@@ -36,8 +37,8 @@ fn joined(text: &str) -> Cow<'_, str> {
             false => line.trim_end_matches(['\r', '\n']).strip_suffix('\\'),
         };
         match continued {
-            Some(begun) if line.ends_with('\n') => {
-                joined.push_str(begun);
+            Some(started) if line.ends_with('\n') => {
+                joined.push_str(started);
                 joined.push_str(" \u{b}");
             }
             _ => joined.push_str(line),

@@ -1,7 +1,8 @@
-//! OFF of Geomview: an optional keyword, three counts, vertices, faces; `COFF`, `NOFF` and `STOFF` carry more a vertex, which
-//! is skipped. `4OFF`, `nOFF` and binary ones are not read.
+//! OFF of Geomview: an optional keyword, three counts, vertices, faces; `COFF`, `NOFF` and `STOFF` carry more a vertex,
+//! which is skipped. `4OFF`, `nOFF` and binary ones are not read.
 //!
-//! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be wrapped, or be one.
+//! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be
+//! wrapped, or be one.
 
 use crate::mesh::error::MeshErrorKind;
 use crate::mesh::read::soup::{At, Soup};
@@ -65,8 +66,8 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
     by_line_or_stream(&lines, by_line, &attempts, body)
 }
 
-/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without transparency,
-/// places in a picture. None where the file is not read.
+/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without
+/// transparency, places in a picture. None where the file is not read.
 fn numbers_after(prefix: &str) -> Option<Vec<usize>> {
     let left = prefix.strip_prefix("ST").unwrap_or(prefix);
     let is_known = left.chars().all(|c| "CN".contains(c));

@@ -119,7 +119,8 @@ pub fn is_finite(position: [f64; 3]) -> bool {
 }
 
 impl Soup {
-    /// Adds a vertex. One that no distance can be computed from must not be used by a face; see [`settle`](Self::settle).
+    /// Adds a vertex. One that no distance can be computed from must not be used by a face; see
+    /// [`settle`](Self::settle).
     pub fn push_vertex(
         &mut self,
         position: [f64; 3],

@@ -97,8 +97,8 @@ impl Fan {
             let mut changed = false;
             for place in 1..count {
                 let (a, b) = (places[place - 1], places[place]);
-                let apart = (self.angles[b] - self.angles[a]).rem_euclid(std::f64::consts::TAU);
-                let near = !(NEAR..=std::f64::consts::TAU - NEAR).contains(&apart);
+                let angle = (self.angles[b] - self.angles[a]).rem_euclid(std::f64::consts::TAU);
+                let near = !(NEAR..=std::f64::consts::TAU - NEAR).contains(&angle);
                 if near && order(&self.edges[a], &self.edges[b]) < 0.0 {
                     places.swap(place - 1, place);
                     changed = true;
@@ -112,8 +112,8 @@ impl Fan {
     }
 }
 
-/// For two patches that run close beside each other: how far the second stands from the first, seen along the
-/// first's own direction.
+/// Distance of the second of two patches that run close beside each other from the first, seen along the first's own
+/// direction.
 struct Beside<'a> {
     patches: &'a Patches,
     sums: HashMap<(u32, u32), f64>,
@@ -137,10 +137,10 @@ impl Beside<'_> {
         for (i, a) in fan.edges.iter().enumerate() {
             for (j, b) in fan.edges.iter().enumerate() {
                 let (p, q) = (self.patch(a), self.patch(b));
-                let apart = fan.angles[j] - fan.angles[i];
-                let apart = apart - (apart / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-                if p < q && apart.abs() < NEAR {
-                    *self.sums.entry((p, q)).or_default() += apart * self.direction(a);
+                let angle = fan.angles[j] - fan.angles[i];
+                let angle = angle - (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+                if p < q && angle.abs() < NEAR {
+                    *self.sums.entry((p, q)).or_default() += angle * self.direction(a);
                 }
             }
         }

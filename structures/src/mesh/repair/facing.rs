@@ -1,8 +1,8 @@
 //! Which way surfaces face: what faces inward is turned, but for the walls of cavities.
 //!
-//! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another: a piece of a
-//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a
-//! surface that lies
+//! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another. A piece of a
+//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a surface
+//! that lies
 //!
 //! - in no other faces outward; if it is turned, so is all that lies within it;
 //! - where the surfaces about it leave the space empty faces outward, too: an island in a cavity;

@@ -1,6 +1,6 @@
 //! Which cells of a cluster are solid.
 //!
-//! What is asked, until something gives an answer without contradiction:
+//! Evidence in this order, until one gives labels without contradiction:
 //!
 //! 1. How triangles face. Through a triangle the winding number changes by the copies that face one way less those
 //!    that face the other; a cell is solid where it is not zero. A cell of winding number zero is solid, too, if
@@ -230,7 +230,8 @@ impl Cluster<'_> {
         Some(labelled)
     }
 
-    /// Every region solid, all facing as most of their outer walls do; none where a triangle that is there once has one cell on both sides.
+    /// Every region solid, all facing as most of their outer walls do; none where a triangle that is there once has one
+    /// cell on both sides.
     fn all_solid(
         &self,
         is_region: impl Fn(u32) -> bool,

@@ -1,14 +1,14 @@
 //! Polygons cut into triangles by ear clipping (Meisters, American Mathematical Monthly 82, 1975).
 //!
-//! A fan from the first corner, which most readers use, lays triangles outside a face that is not convex: the distance to
-//! them is not the distance to the solid.
+//! A fan from the first corner, which most readers use, lays triangles outside a face that is not convex: the distance
+//! to them is not the distance to the solid.
 
 use crate::mesh::vector::{cross, dot, subtract};
 
 /// Appends the triangles of a polygon with three or more corners, in its own orientation.
 ///
-/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are told apart by
-/// their numbers, so those in one place must be one.
+/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are
+/// distinguished by their numbers, so those in one place must be one.
 ///
 /// A polygon that crosses itself, is far from plane or has no area gives a fan for what cannot be clipped.
 pub fn triangulate(positions: &[[f64; 3]], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {

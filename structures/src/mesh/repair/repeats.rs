@@ -1,13 +1,16 @@
-//! Meshes that hold their whole surface more than once: both sides of every triangle, as programs for pictures write them, or all of it again.
+//! Meshes that hold their whole surface more than once: both sides of every triangle, as programs for pictures write
+//! them, or all of it again.
 //!
-//! A surface and its reverse bound nothing, and one that is there twice has twice its volume, though it is plain what was meant.
+//! A surface and its reverse bound nothing, and one that is there twice has twice its volume, though it is plain what
+//! was meant.
 
 use std::collections::HashMap;
 
-/// Keeps the first of the triangles on the same three vertices, if there are as many on all such sets, all one way round or half of them each way.
-/// Returns how often each was there; 1 where nothing is changed.
+/// Keeps the first of the triangles on the same three vertices, if there are as many on all such sets, all one way
+/// round or half of them each way. Returns how often each was there; 1 where nothing is changed.
 ///
-/// Where some triangles alone are repeated, bodies touch or surfaces overlap, and they stay: winding numbers know what to make of them.
+/// Where some triangles alone are repeated, bodies touch or surfaces overlap, and they stay: winding numbers know what
+/// to make of them.
 pub(in crate::mesh) fn keep_first(triangles: &mut Vec<[u32; 3]>) -> usize {
     let mut sides: HashMap<[u32; 3], [usize; 2]> = HashMap::with_capacity(triangles.len());
     for &triangle in triangles.iter() {

@@ -3,20 +3,21 @@
 //! The unit of rounding is the largest of these that holds, at the mesh's largest coordinate in magnitude:
 //!
 //! - the last digit written, in a text format;
-//! - the last bit of a `float`, where all coordinates are `float`s (binary STL, most PLY) or have no more than nine digits;
+//! - the last bit of a `float`, where all coordinates are `float`s (binary STL, most PLY) or have no more than nine
+//!   digits;
 //! - the last bit of a `double`.
 
 /// Units of rounding by which two copies of a vertex may differ: one up, the other down.
 const UNITS: f64 = 2.0;
 
-/// Largest unit of rounding, as a share of the longest edge of the bounding box. Beyond it the digits say how coarse the
-/// shape is, and not how far copies of a vertex are apart: a cube from 0 to 10 is not rounded to whole numbers.
+/// Largest unit of rounding, as a share of the longest edge of the bounding box. Beyond it the digits say how coarse
+/// the shape is, and not how far copies of a vertex are apart: a cube from 0 to 10 is not rounded to whole numbers.
 const LARGEST_UNIT: f64 = 1e-4;
 
 /// Decimal digits that hold every `float`.
 const FLOAT_DIGITS: i32 = 9;
 
-/// Decades on either side of one that are told apart.
+/// Decades on either side of one that are distinguished.
 const DECADES: i32 = 80;
 
 /// The finest digit written, for each decade of the number that it belongs to.

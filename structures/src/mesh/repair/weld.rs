@@ -1,8 +1,10 @@
 //! Vertices at one place made one vertex, so that triangles share edges.
 //!
 //! 1. Vertices within [`WELD_TOLERANCE`] become one: copies with the same digits.
-//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have the rules.
-//! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is one.
+//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have
+//!    the rules.
+//! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is
+//!    one.
 
 use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::faces::Faces;
@@ -10,8 +12,8 @@ use crate::mesh::repair::rounding::Digits;
 use crate::mesh::repair::{polygon, rounding, seams};
 use crate::neighbours::SpatialHash;
 
-/// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a vertex
-/// with the same digits, so this needs to take up no more than the rounding of one conversion of units.
+/// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a
+/// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
 pub const WELD_TOLERANCE: f64 = 1e-12;
 
 /// A mesh whose vertices are distinct.
@@ -171,14 +173,14 @@ mod tests {
         let b = [1.0, 0.0, 0.0];
         let c = [0.0, 1.0, 0.0];
         let almost_b = [1.0 + 0.5e-12, -0.0, 0.2e-12];
-        let apart = [1.0 + 1e-9, 0.0, 0.0];
+        let beyond = [1.0 + 1e-9, 0.0, 0.0];
         let mut faces = Faces::default();
         for triangle in [[0, 1, 2], [6, 4, 2], [1, 4, 2], [0, 5, 2]] {
             faces.push(&triangle);
         }
-        let positions = vec![a, b, c, [5.0; 3], almost_b, apart, [-0.0; 3]];
+        let positions = vec![a, b, c, [5.0; 3], almost_b, beyond, [-0.0; 3]];
         let welded = weld(positions, faces, &Digits::default()).unwrap();
-        assert_eq!(welded.positions, [a, b, c, apart]);
+        assert_eq!(welded.positions, [a, b, c, beyond]);
         assert_eq!(welded.triangles, [[0, 1, 2], [0, 1, 2], [0, 3, 2]]);
         assert_eq!(welded.seam_vertices, 0);
     }

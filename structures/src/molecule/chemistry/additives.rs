@@ -1,9 +1,9 @@
 //! Buffer and cryo additives: residue names that are dropped, and reported, on reading.
 //!
 //! These come from the crystallisation drop, not from the molecule. Names and formulas are those of the wwPDB Chemical
-//! Component Dictionary; that such ligands are artefacts of the experiment is argued in Yang, Roy & Zhang, "BioLiP", Nucleic
-//! Acids Res. 41 (2013) D1096-D1103, whose longer list also holds compounds (lipids, detergents, amino acids, sugars) that
-//! may well matter to the shape, so those are kept here. Metal ions are kept too.
+//! Component Dictionary. That such ligands are artefacts of the experiment is argued in Yang, Roy & Zhang, "BioLiP",
+//! Nucleic Acids Res. 41 (2013) D1096-D1103. Its longer list also holds compounds that may well matter to the shape
+//! (lipids, detergents, amino acids, sugars), so those are kept here. Metal ions are kept too.
 
 /// Residue names by what they are.
 const ADDITIVES: [(&str, &[&str]); 7] = [

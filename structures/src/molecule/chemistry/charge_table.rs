@@ -1,14 +1,16 @@
 //! Charges of united atoms: each heavy atom carries those of its hydrogens.
 //!
-//! - Amino acids: the polar-hydrogen parameters of CHARMM (PARAM19), Brooks, Bruccoleri, Olafson, States, Swaminathan & Karplus,
-//!   J. Comput. Chem. 4 (1983) 187-217, as completed in Neria, Fischer & Karplus, J. Chem. Phys. 105 (1996) 1902-1921, with
-//!   hydrogens added to their heavy atoms. Every residue sums to an integer.
-//! - States that PARAM19 lacks (neutral Asp, Glu, Lys and Arg, Cys and Tyr without their proton), nucleotides, phosphorylated and other
-//!   modified residues, heme and ions: the formal charge, spread evenly over the atoms that share it.
+//! - Amino acids: the polar-hydrogen parameters of CHARMM (PARAM19), Brooks, Bruccoleri, Olafson, States, Swaminathan &
+//!   Karplus, J. Comput. Chem. 4 (1983) 187-217, as completed in Neria, Fischer & Karplus, J. Chem. Phys. 105 (1996)
+//!   1902-1921, with hydrogens added to their heavy atoms. Every residue sums to an integer.
+//! - States that PARAM19 lacks (neutral Asp, Glu, Lys and Arg, Cys and Tyr without their proton), nucleotides,
+//!   phosphorylated and other modified residues, heme and ions: the formal charge, spread evenly over the atoms that
+//!   share it.
 //!
-//! Which state an acid or base is in follows from its residue name where that says so (ASH, GLH, HIP, LYN, CYM, ...), else from the
-//! pH and the pKa of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci. 15 (2006) 1214-1218 (arginine: 13.8,
-//! Fitch, Platzer, Okon, Garcia-Moreno & McIntosh, Protein Sci. 24 (2015) 752-761).
+//! The state of an acid or base follows from its residue name where that says so (ASH, GLH, HIP, LYN, CYM, ...), else
+//! from the pH and a pKa. The pKa are those of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci.
+//! 15 (2006) 1214-1218. Arginine has 13.8: Fitch, Platzer, Okon, Garcia-Moreno & McIntosh, Protein Sci. 24 (2015)
+//! 752-761.
 
 use crate::molecule::chemistry::residues::is_amino_acid;
 
@@ -181,7 +183,9 @@ pub(crate) const NUCLEOTIDE: Charges = &[
     ("O3P", -1.0),
 ];
 
-/// Cofactors whose charge is known: heme with its two propionates, Fe(II) in a porphyrin of -2; clusters of iron and sulphide as they are
+/// Cofactors whose charge is known.
+///
+/// Heme has its two propionates and Fe(II) in a porphyrin of -2. Clusters of iron and sulphide count as they are
 /// oxidised, [2Fe-2S] and [4Fe-4S] of +2 and [3Fe-4S] of +1, without the thiolates that hold them.
 const COFACTORS: [(&str, Charges); 6] = [
     ("HEM", HEME),
@@ -210,7 +214,7 @@ const HEME: Charges = &[
     ("O2D", -0.5),
 ];
 
-/// Ions by residue name where the name tells the charge, else by element.
+/// Ions by residue name where the name determines the charge, else by element.
 const IONS: [(&str, f64); 34] = [
     ("FE2", 2.0),
     ("CU1", 1.0),
@@ -266,7 +270,7 @@ pub(crate) fn side_chain(residue_name: &str, ph: f64) -> Option<Charges> {
         "CYX" | "CYZ" | "CYN" => return find(&SIDE_CHAINS, "CYS"),
         "LSN" => "LYN",
         "LYP" => return find(&SIDE_CHAINS, "LYS"),
-        // Which of the two was not told apart: half of them carry a charge, none is counted.
+        // Which of the two was not distinguished: half of them carry a charge, none is counted.
         "ASX" => "ASN",
         "GLX" => "GLN",
         other => other,

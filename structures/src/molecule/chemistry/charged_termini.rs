@@ -1,8 +1,14 @@
 //! Ends of peptide chains, which are charged where nothing is bonded to them.
 //!
-//! A chain's ends are charged, a gap in it is not: two peptide residues in a row whose C and N lie more than 2.5 Å apart end one chain
-//! and begin another if the chain's name changes, the first has its second carboxyl oxygen and the gap in the numbering does not fit, or there is none; else, where numbers are
-//! missing, so are residues, and the loose ends stand for neutral bonds. Chain names alone do not tell, since many files have chains merged.
+//! A chain's ends are charged, the ends at a gap in it are not. Two peptide residues in a row with C and N more than
+//! 2.5 Å apart end one chain and begin another in three cases:
+//!
+//! - the name of the chain changes;
+//! - the first has its second carboxyl oxygen, and the gap in the numbering does not fit;
+//! - there is no gap in the numbering.
+//!
+//! Else residues are unresolved between them, and the open ends stand for neutral bonds. Chain names alone do not
+//! decide, since many files have chains merged.
 
 use crate::molecule::chemistry::charge_table::{
     AMINO_TERMINUS, CARBOXYL_CARBON, CARBOXYL_OXYGENS, PROLINE_TERMINUS, TERMINI_PKA,
@@ -32,7 +38,7 @@ pub(crate) struct Caps<'a> {
 }
 
 impl Molecule {
-    /// Charges the ends of chains, and counts gaps.
+    /// Charges the termini, and counts gaps.
     pub(crate) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
         let peptide: Vec<&Residue<'_>> = groups
             .iter()
@@ -72,10 +78,10 @@ impl Molecule {
 
     /// Whether one chain ends and another begins between two peptide residues in a row.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
-        let apart = self.distance(before, after).is_some_and(|d| d > BOND);
+        let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number, ..) = before.key;
         let (next_chain, next_number, ..) = after.key;
-        apart && (chain != next_chain || next_number <= number.saturating_add(1))
+        is_broken && (chain != next_chain || next_number <= number.saturating_add(1))
     }
 
     /// Whether a residue has the second oxygen of a carboxyl end.
@@ -85,9 +91,10 @@ impl Molecule {
             .any(|name| self.atom(residue, name).is_some())
     }
 
-    /// Whether a residue begins a chain because the one before it ended one: that has its second oxygen, and no residues that the numbers leave out
-    /// fit between. Some programs write such an oxygen before a gap. Ligands that have an amino acid's atoms follow chains, too; of these none but
-    /// standard residues in ATOM records and those bonded to the next are of a chain.
+    /// Whether a residue begins a chain because the one before it ended one: that has its second oxygen, and no
+    /// residues that the numbers leave out fit between. Some programs write such an oxygen before a gap. Ligands that
+    /// have an amino acid's atoms follow chains, too; of these none but standard residues in ATOM records and those
+    /// bonded to the next are of a chain.
     fn follows_an_end(
         &self,
         before: &Residue<'_>,
@@ -113,8 +120,11 @@ impl Molecule {
             && is_of_chain()
     }
 
-    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar; a residue that was not picked; or the
-    /// other end of a residue that stands elsewhere in the file, as in a cyclic peptide or where residues are not in the order of the chain.
+    /// Whether an atom of another group is bonded to a terminal atom, N or C: an acetyl, an amide, a sugar, or a
+    /// residue that was not picked.
+    ///
+    /// It may also be the other end of a residue that stands elsewhere in the file: in a cyclic peptide, or where
+    /// residues are not in the order of the chain.
     pub(crate) fn capped(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> bool {
         let Some(end) = self.atom(residue, name) else {
             return true;
@@ -136,7 +146,7 @@ impl Molecule {
         })
     }
 
-    /// Atoms that may be bonded to the ends of chains.
+    /// Atoms that may be bonded to the termini.
     pub(crate) fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
         let mut atoms = Vec::new();
         for group in groups {

@@ -1,4 +1,5 @@
-//! Contact types and kinds of amino acid atoms, from the table beside this file, which the scripts that derive potentials read too.
+//! Contact types and kinds of amino acid atoms, from the table beside this file, which the scripts that derive
+//! potentials read too.
 
 use crate::molecule::chemistry::residues::{parent, standard_atom_name};
 use std::collections::HashMap;
@@ -62,8 +63,8 @@ static TYPES: LazyLock<HashMap<(&'static str, &'static str), AtomTypes>> = LazyL
 
 /// Names of the kinds of amino acid atoms, residue and atom as in `ARG_CZ`; a kind's number is its place here.
 ///
-/// Atoms that a turn or a proton's choice makes alike are of one kind: the oxygens of a carboxylate, both sides of a ring, and the
-/// two methyls of valine and of leucine, whose names files exchange.
+/// Atoms that a rotation or a proton's choice makes alike are of one kind. These are the oxygens of a carboxylate, both
+/// sides of a ring, and the two methyls of valine and of leucine, whose names files exchange.
 pub fn atom_kinds() -> &'static [&'static str] {
     &KINDS
 }

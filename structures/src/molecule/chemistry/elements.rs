@@ -34,8 +34,8 @@ pub(crate) enum Origin {
     Corrected,
 }
 
-/// Two-letter elements that occur in ligands whose file does not align atom names: those that no carbon, nitrogen or oxygen
-/// name begins with.
+/// Two-letter elements that occur in ligands whose file does not align atom names: those that no carbon, nitrogen or
+/// oxygen name begins with.
 const UNMISTAKABLE: [&str; 12] = [
     "BR", "CL", "FE", "ZN", "MG", "MN", "SE", "LI", "RU", "RB", "AL", "SI",
 ];
@@ -116,7 +116,8 @@ fn symbol(text: &str) -> Option<&'static str> {
         .find(|symbol| symbol.eq_ignore_ascii_case(text))
 }
 
-/// Elements of standard residues are one-letter ones, selenium aside, and begin the atom's name after its digits and primes.
+/// Elements of standard residues are one-letter ones, selenium aside, and begin the atom's name after its digits and
+/// primes.
 fn of_standard_residue(residue_name: &str, atom_name: &str) -> Option<&'static str> {
     if matches!(residue_name, "MSE" | "SEC") && atom_name.starts_with("SE") {
         return Some("Se");
@@ -129,7 +130,7 @@ fn of_standard_residue(residue_name: &str, atom_name: &str) -> Option<&'static s
         'S' => Some("S"),
         'P' => Some("P"),
         'H' | 'D' => Some("H"),
-        // AD1, AE2, XD1: amide oxygen or nitrogen, not told apart (old ASN, GLN; ASX, GLX).
+        // AD1, AE2, XD1: amide oxygen or nitrogen, not distinguished (old ASN, GLN; ASX, GLX).
         'A' | 'X' if amino_acid_type(residue_name, "CB").is_some() && letters.len() == 3 => {
             Some("O")
         }

@@ -38,7 +38,8 @@ pub struct LabelReport {
     pub metal_bound: usize,
     /// Breaks in a chain where residues are missing; their ends carry no charge.
     pub gaps: usize,
-    /// Residues whose charges are not known and count as zero (of a modified residue: those of its side chain), by name.
+    /// Residues whose charges are not known and count as zero (of a modified residue: those of its side chain), by
+    /// name.
     pub unknown_charges: BTreeMap<String, usize>,
     /// Residues without contact types, by name.
     pub unknown_types: BTreeMap<String, usize>,
@@ -227,8 +228,9 @@ mod tests {
         assert_eq!(labels.charges[..8], labels.charges[8..]);
     }
 
-    /// Found by a user: HADDOCK's merged antibodies, whose second chain is numbered from 500 on, lost the charge of its amino end beside the CDRs,
-    /// because a gap in the numbers was taken for missing residues though the chain before had its last oxygen.
+    /// Found by a user: HADDOCK's merged antibodies, whose second chain is numbered from 500 on, lost the charge of its
+    /// amino end beside the CDRs. A gap in the numbers was taken for unresolved residues though the chain before had
+    /// its last oxygen.
     #[test]
     fn a_last_oxygen_ends_a_chain_whatever_the_numbers_say() {
         let merged = |oxygen: Option<&str>| {
@@ -246,7 +248,8 @@ mod tests {
         }
         let report = merged(None);
         assert_eq!((report.termini, report.gaps), ([1, 1], 1));
-        // X-PLOR writes the oxygen before a gap, too (1TFH, the ligand of 1AHW in Docking Benchmark 5): seven residues fit into 10 Å.
+        // X-PLOR writes the oxygen before a gap, too (1TFH, the ligand of 1AHW in Docking Benchmark 5): seven residues
+        // fit into 10 Å.
         let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);
         atoms.push(atom("OXT", "ALA", 2, [7.0, 1.0, 0.0]));
         for mut moved in chain(&[("ALA", 10), ("ALA", 11)]) {
@@ -257,7 +260,8 @@ mod tests {
         assert_eq!((report.termini[0], report.gaps), (1, 1));
     }
 
-    /// Ligands, metals and waters behind a chain's last oxygen have no amino end, though some have an amino acid's atoms.
+    /// Ligands, metals and waters behind a chain's last oxygen have no amino end, though some have an amino acid's
+    /// atoms.
     #[test]
     fn what_follows_a_last_oxygen_without_being_a_chain_has_no_end() {
         let mut atoms = chain(&[("ALA", 1), ("ALA", 2)]);

@@ -14,7 +14,8 @@ const MIN_ATOMS: usize = 6;
 /// Most ligands that are named.
 const NAMED: usize = 3;
 
-/// A warning where ligands are kept that have neither charges nor contact types: an inhibitor fills the site that the partner would take.
+/// A warning where ligands are kept that have neither charges nor contact types: an inhibitor fills the site that the
+/// partner would take.
 pub(crate) fn warning(atoms: &[Atom], groups: &[Residue<'_>]) -> Option<String> {
     let mut found: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     let mut hetero = false;

@@ -1,8 +1,8 @@
 //! Cysteines and histidines that bind a metal, whose charge follows from it at any pH.
 //!
-//! A cysteine that binds zinc, iron, copper or their like is a thiolate: Dudev & Lim, J. Am. Chem. Soc. 124 (2002) 6759-6766. A histidine binds by the
-//! nitrogen that has no proton, and so is neutral with its proton on the other; between two metals it has none. Where a residue's name says its state
-//! (`CYM`, `HID`, `HIP`, ...), the name decides.
+//! A cysteine that binds zinc, iron, copper or their like is a thiolate: Dudev & Lim, J. Am. Chem. Soc. 124 (2002)
+//! 6759-6766. A histidine binds by the nitrogen that has no proton, and so is neutral with its proton on the other;
+//! between two metals it has none. Where a residue's name says its state (`CYM`, `HID`, `HIP`, ...), the name decides.
 
 use crate::molecule::model::atom::squared_distance;
 use crate::molecule::model::groups::{NON_METALS, Residue};
@@ -99,7 +99,8 @@ mod tests {
         Molecule::new(atoms, Format::Pdb).labels(7.0).report
     }
 
-    /// Found by a user: zinc fingers were as positive as their zinc, and a RING domain of eight cysteines was charged by 8 e too high.
+    /// Found by a user: zinc fingers were as positive as their zinc, and a RING domain of eight cysteines was charged
+    /// by 8 e too high.
     #[test]
     fn cysteines_that_bind_a_metal_are_thiolates() {
         for (name, distance, metal, charge, bound) in [

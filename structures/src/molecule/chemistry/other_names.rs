@@ -1,14 +1,18 @@
-//! Amino acids under other names than the tables have: D-amino acids, names of force fields, names for the ends of chains.
+//! Amino acids under other names than the tables have: D-amino acids, names of force fields, names for the termini.
 //!
 //! A residue is what its atoms make it:
 //!
-//! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose charges are known.
-//! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of the ends of chains
-//!   included) is read so where no atom contradicts. Where it says the charge state, too, the state is read: `ASPH` is neutral.
-//! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives names of their own to
-//!   molecules with the same atom names that are something else (norvaline has proline's); those are listed and stay as they are.
+//! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose
+//!   charges are known.
+//! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of
+//!   the termini included) is read so where no atom contradicts. Where it says the charge state, too, the state is
+//!   read: `ASPH` is neutral.
+//! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives
+//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); those
+//!   are listed and stay as they are.
 //!
-//! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types here.
+//! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types
+//! here.
 
 use crate::molecule::chemistry::atom_names::links_nucleotides;
 use crate::molecule::chemistry::charge_table::is_modified;
@@ -19,9 +23,10 @@ use crate::molecule::chemistry::site_names::is_site_name;
 
 /// Amino acids and their states by other names.
 ///
-/// D-amino acids: wwPDB Chemical Component Dictionary. The rest: GROMOS and its OPLS names in GROMACS (`LYSH` is the charged lysine, `HISA`
-/// and `HISB` carry their proton on ND1 and NE2, `CYS2` is half a disulphide), CHARMM (`HSC`), Maestro (`CYT`, `TYO`), TINKER (`TYD`, `LYD`),
-/// Rosetta (`CYD`, half a disulphide), CYANA (`LYS+`, `ASP-`), and AMBER at constant pH (`AS4`, `GL4`).
+/// D-amino acids: wwPDB Chemical Component Dictionary. The rest: GROMOS and its OPLS names in GROMACS (`LYSH` is the
+/// charged lysine, `HISA` and `HISB` carry their proton on ND1 and NE2, `CYS2` is half a disulphide), CHARMM (`HSC`),
+/// Maestro (`CYT`, `TYO`), TINKER (`TYD`, `LYD`), Rosetta (`CYD`, half a disulphide), CYANA (`LYS+`, `ASP-`), and AMBER
+/// at constant pH (`AS4`, `GL4`).
 const OTHER_NAMES: [(&str, &str); 53] = [
     ("DAL", "ALA"),
     ("DAR", "ARG"),
@@ -78,14 +83,17 @@ const OTHER_NAMES: [(&str, &str); 53] = [
     ("TYRU", "TYR-"),
 ];
 
-/// Names that the wwPDB gives to other molecules whose heavy atoms are named like those of a standard amino acid: beta- and didehydro-amino
-/// acids, aldehydes, alcohols, isomers of the side chain (Chemical Component Dictionary, searched in November 2026).
+/// Names that the wwPDB gives to other molecules whose heavy atoms are named like those of a standard amino acid.
+///
+/// They are beta- and didehydro-amino acids, aldehydes, alcohols and isomers of the side chain (Chemical Component
+/// Dictionary, searched in November 2026).
 const OTHER_MOLECULES: &str = "0XC 0XD 1VR 23F 2KZ 2PI 41Q 4VI 5XU 7F4 8F4 8GZ 8LJ A1CAB A1H2D AKZ ALC ALV AR7 ASA ASJ B2N B3D B3X BAL \
     BB9 BTA DCL DHA DYA DYL ECC EHP ETA F9D FGA GAU GGL GLJ GLK GLQ GLZ HHI HPH HSO HSV I4G IAR IAS IB9 IL0 ITR KBE KFB LCZ LOL LPH LYH \
     LYJ LYK MEU MH6 MTY NLY NVA OAR PDH PHA PHL PQ4 QCI RGL RON RX9 RXL SFE SGI SOW SRI THO TYB TYE TYW UN2 VAI VOL";
 
-/// The name under which the tables have a residue: of an amino acid under another name that of the amino acid, in the state that the other
-/// name says; of all else the name itself. `atoms` are names and elements; an element may be blank or nonsense, as in a file's column.
+/// The name under which the tables have a residue: of an amino acid under another name that of the amino acid, in the
+/// state that the other name says; of all else the name itself. `atoms` are names and elements; an element may be blank
+/// or nonsense, as in a file's column.
 pub(crate) fn known_as<'a, 'b>(
     residue_name: &'a str,
     atoms: impl Iterator<Item = (&'b str, &'b str)>,
@@ -121,11 +129,12 @@ pub(crate) fn known_as<'a, 'b>(
     }
 }
 
-/// What a name says of itself; N, C and D before a name of four letters or more are those of an end or of a D-amino acid.
+/// What a name says of itself; N, C and D before a name of four letters or more are those of an end or of a D-amino
+/// acid.
 fn by_name(name: &str) -> Option<&str> {
     let own = |name| {
-        let listed = OTHER_NAMES.iter().find(|(other, _)| *other == name);
-        match listed {
+        let known = OTHER_NAMES.iter().find(|(other, _)| *other == name);
+        match known {
             Some(&(_, standard)) => Some(standard),
             None => is_amino_acid(name).then_some(name),
         }
@@ -216,7 +225,7 @@ mod tests {
         ] {
             assert_eq!(of(name, &atoms(standard)), expected, "{name}");
         }
-        // A side chain that was not seen whole: the name tells what the atoms cannot.
+        // Of an incomplete side chain the name says what the atoms cannot.
         let all = atoms("LYS");
         assert_eq!(of("CLYS", &all[..6]), "LYS");
         assert_eq!(of("XLY", &all[..6]), "XLY");

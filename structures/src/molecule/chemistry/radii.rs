@@ -2,18 +2,19 @@
 //!
 //! One table, from five sources:
 //!
-//! - Proteins: ProtOr, Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: radii by element, number of bonds
-//!   and hydrogens, from the packing of small-molecule crystals. A protein has seven distinct ones, 1.42 to 1.88 Å.
+//! - Proteins: ProtOr, Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: radii by element, number of
+//!   bonds and hydrogens, from the packing of small-molecule crystals. A protein has seven distinct ones, 1.42 to 1.88
+//!   Å.
 //! - Nucleic acids: the same classes with phosphorus 1.80 Å, as in NucProt, Voss & Gerstein, J. Mol. Biol. 346 (2005)
 //!   477-492.
 //! - Halogens and selenium: Bondi, J. Phys. Chem. 68 (1964) 441-451.
 //! - Metals and the rest: half the equilibrium distance x_I of UFF, Rappé, Casewit, Colwell, Goddard & Skiff,
 //!   J. Am. Chem. Soc. 114 (1992) 10024-10035, Table I, rounded to 0.1 Å, so that metals add few distinct radii.
-//! - Atoms of ligands and unlisted residues, whose hydrogens are not known: the class of their element in the middle (C3H1 for
-//!   carbon) or most common in sugars and phosphate esters (O2H1 for oxygen).
+//! - Atoms of ligands and unlisted residues, whose hydrogens are not known: the class of their element in the middle
+//!   (C3H1 for carbon) or most common in sugars and phosphate esters (O2H1 for oxygen).
 //!
-//! Where hydrogens are kept, all radii are all-atom ones: Bondi's of the element (the paper above, Table I), and 1.10 Å for
-//! hydrogen, Rowland & Taylor, J. Phys. Chem. 100 (1996) 7384-7391; metals and the rest as above.
+//! Where hydrogens are kept, all radii are all-atom ones: Bondi's of the element (the paper above, Table I), and 1.10 Å
+//! for hydrogen, Rowland & Taylor, J. Phys. Chem. 100 (1996) 7384-7391; metals and the rest as above.
 //!
 //! Few distinct radii matter: each is a class of the lifted axis and costs time.
 
@@ -127,7 +128,8 @@ const OTHER: f64 = 1.7;
 
 /// United-atom radius of a heavy atom, in Å.
 ///
-/// `kind` is the residue's: those named like nucleotides are not all of them such, and modified residues have an amino acid's backbone.
+/// `kind` is the residue's: those named like nucleotides are not all of them such, and modified residues have an amino
+/// acid's backbone.
 pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: GroupKind) -> f64 {
     amino_acid_type(residue_name, atom_name)
         .or_else(|| match kind {
@@ -143,8 +145,8 @@ pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: G
 
 /// Radius of an atom beside whose kind hydrogens stand as atoms of their own, in Å.
 pub(crate) fn all_atom_radius(element: &str) -> f64 {
-    let listed = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
-    listed.map_or_else(|| of_element(element), |(_, radius)| *radius)
+    let known = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
+    known.map_or_else(|| of_element(element), |(_, radius)| *radius)
 }
 
 const fn element_of(kind: AtomType) -> &'static str {

@@ -34,7 +34,8 @@ use AtomType::{C3H0, C3H1, C4, N, O1H0, O2H1, P, S, Se};
 /// Heavy atoms of an amino acid's side chain.
 type SideChain = &'static [(&'static str, AtomType)];
 
-/// Backbone atoms of every amino acid. The second oxygen of the C terminus equals the first: the carboxylate is charged.
+/// Backbone atoms of every amino acid. The second oxygen of the C terminus equals the first: the carboxylate is
+/// charged.
 const BACKBONE: [(&str, AtomType); 5] = [
     ("N", N),
     ("CA", C4),
@@ -176,8 +177,10 @@ pub(crate) fn side_chains() -> impl Iterator<Item = (&'static str, SideChain)> {
     SIDE_CHAINS.into_iter()
 }
 
-/// The name that the tables have for an atom of an amino acid: `CD1` for isoleucine's `CD` of CHARMM and GROMOS, `OXT` for the oxygens of a
-/// chain's end as CHARMM, GROMOS, GROMACS and old entries name them.
+/// The name that the tables have for an atom of an amino acid.
+///
+/// It is `CD1` for isoleucine's `CD` of CHARMM and GROMOS, and `OXT` for the terminal oxygens as CHARMM, GROMOS,
+/// GROMACS and old entries name them.
 pub(crate) fn standard_atom_name<'a>(residue_name: &str, atom_name: &'a str) -> &'a str {
     match (parent(residue_name), atom_name) {
         ("ILE", "CD") => "CD1",

@@ -7,8 +7,10 @@ pub(crate) fn mass_center(name: &str) -> Option<&str> {
     name.strip_prefix('M')?.strip_suffix(['1', '2'])
 }
 
-/// Whether no atom of an amino acid has such a name, but sites without mass have: lone pairs and extra points (`LPOA`, `EP1`), mass centres
-/// (`MN1`, `MW1` of tryptophan), virtual and centroid atoms and orbitals of Rosetta (`NV`, `V1`, `CEN`, `ORB1`), pseudo-atoms of NMR (`QB`).
+/// Whether sites without mass have such a name, and no atom of an amino acid does.
+///
+/// These are lone pairs and extra points (`LPOA`, `EP1`), mass centres (`MN1`, `MW1` of tryptophan), virtual and
+/// centroid atoms and orbitals of Rosetta (`NV`, `V1`, `CEN`, `ORB1`), and pseudo-atoms of NMR (`QB`).
 pub(crate) fn is_site_name(name: &str, column: &str) -> bool {
     if matches!(name, "CEN" | "NV") {
         return true;

@@ -4,14 +4,15 @@ use crate::molecule::chemistry::other_names::known_as;
 use crate::molecule::chemistry::residues::{base, parent};
 use crate::molecule::model::atom::Atom;
 
-/// The plain name of a residue: of a protonation state or a disulphide's half the amino acid (`CYX` is `CYS`), of a nucleotide its base as one
-/// letter (`DA`, `ADE` and `RA3` are `A`). Of all others the name itself.
+/// The plain name of a residue: of a protonation state or a disulphide's half the amino acid (`CYX` is `CYS`), of a
+/// nucleotide its base as one letter (`DA`, `ADE` and `RA3` are `A`). Of all others the name itself.
 pub fn plain_residue_name(residue_name: &str) -> &str {
     base(residue_name).unwrap_or_else(|| parent(residue_name))
 }
 
-/// The name under which the tables have a residue: that of a standard amino acid, or of a state of one, where its atoms or its name show that it
-/// is one under another name (`DAL` is `ALA`, `NHIE` is `HIE`); else its own.
+/// The name under which the tables have a residue: that of a standard amino acid or of a state of one, else its own.
+///
+/// A standard amino acid under another name is recognised by its atoms or its name (`DAL` is `ALA`, `NHIE` is `HIE`).
 pub fn standard_residue_name<'a>(
     residue_name: &'a str,
     atoms: impl IntoIterator<Item = &'a Atom>,

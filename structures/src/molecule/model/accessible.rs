@@ -1,5 +1,5 @@
-//! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points on the atoms'
-//! expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
+//! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points
+//! on the atoms' expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
 use crate::molecule::model::atom::squared_distance;
 use crate::molecule::model::molecule::Molecule;
@@ -9,8 +9,8 @@ use crate::neighbours::SpatialHash;
 pub const PROBE: f64 = 1.4;
 
 impl Molecule {
-    /// Accessible area of each atom in Å^2, from `points` points a sphere (a spiral of Fibonacci); 200 give a total within about 1%.
-    /// O(atoms x points x neighbours).
+    /// Accessible area of each atom in Å^2, from `points` points a sphere (a spiral of Fibonacci); 200 give a total
+    /// within about 1%. O(atoms x points x neighbours).
     pub fn accessible_areas(&self, points: usize) -> Vec<f64> {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();

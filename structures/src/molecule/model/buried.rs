@@ -3,9 +3,9 @@
 use crate::molecule::model::molecule::Molecule;
 
 impl Molecule {
-    /// Accessible area in Å^2 that this molecule and `other`, where they stand, take from each other: of this one, and of the
-    /// other. `points` a sphere as in [`Molecule::accessible_areas`]; the same points are asked alone and together, so that
-    /// only those near the interface count.
+    /// Accessible area in Å^2 that this molecule and `other`, where they stand, take from each other: of this one, and
+    /// of the other. `points` a sphere as in [`Molecule::accessible_areas`]; the same points are used alone and
+    /// together, so that only those near the interface count.
     pub fn buried_areas(&self, other: &Molecule, points: usize) -> [f64; 2] {
         let atoms = self.atoms.iter().chain(&other.atoms).cloned().collect();
         let together = Molecule::new(atoms, self.format).accessible_areas(points);

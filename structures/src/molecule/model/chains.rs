@@ -1,4 +1,5 @@
-//! Peptide chains as they are bonded, whatever their names: where one begins and ends, and where residues are missing in between.
+//! Peptide chains as they are bonded, whatever their names: where one begins and ends, and where residues are missing
+//! in between.
 
 use crate::molecule::chemistry::charged_termini::{BOND, Caps};
 use crate::molecule::model::atom::squared_distance;
@@ -15,14 +16,15 @@ const LONGEST: f64 = 40.0;
 /// Longest gap in Å where numbers show none: a residue or two that the numbering does not count.
 const MAX_UNCOUNTED_LENGTH: f64 = 12.0;
 
-/// Fewest residues of a chain whose ends are taken to go on and to be loose: a peptide is docked as it is.
+/// Fewest residues of a chain whose ends are taken to go on and to be flexible: a peptide is docked as it is.
 const CHAIN: usize = 20;
 
 /// A peptide chain: its residues in order, with gaps between some of them.
 pub(crate) struct Chain<'a> {
     pub residues: Vec<&'a Residue<'a>>,
     pub gaps: Vec<Gap>,
-    /// The N and C past which it may go on: the chain's own ends, where they are in the file and nothing is bonded to them.
+    /// The N and C past which it may go on: the chain's own ends, where they are in the file and nothing is bonded to
+    /// them.
     pub ends: [Option<[f64; 3]>; 2],
 }
 
@@ -32,7 +34,7 @@ pub(crate) struct Gap {
     /// The residue that follows the gap, by its place in the chain.
     pub after: usize,
     /// How many are missing.
-    pub missing: i64,
+    pub unresolved: i64,
     /// The C before and the N after it (Å).
     pub sides: [[f64; 3]; 2],
 }
@@ -62,13 +64,13 @@ impl Molecule {
             };
             match self.between(before, residue) {
                 Between::Bond => {}
-                Between::Gap(missing, sides) => {
+                Between::Gap(unresolved, sides) => {
                     let bonded =
                         self.capped(&caps, before, "C") || self.capped(&caps, residue, "N");
                     if !bonded {
                         chain.gaps.push(Gap {
                             after: chain.residues.len(),
-                            missing,
+                            unresolved,
                             sides,
                         });
                     }
@@ -88,11 +90,11 @@ impl Molecule {
     }
 
     /// Whether the numbers between two residues in a row, so many Å apart, may be of residues that are missing.
-    pub(crate) fn may_be_gap(before: &Residue<'_>, after: &Residue<'_>, apart: f64) -> bool {
+    pub(crate) fn may_be_gap(before: &Residue<'_>, after: &Residue<'_>, spacing: f64) -> bool {
         let counted = after.key.1.saturating_sub(before.key.1).saturating_sub(1);
         (1..=MAX_RESIDUES).contains(&counted)
-            && apart <= LONGEST
-            && apart <= STRETCHED * (counted + 1) as f64
+            && spacing <= LONGEST
+            && spacing <= STRETCHED * (counted + 1) as f64
     }
 
     /// Where an end of a chain is, unless something is bonded to it.
@@ -112,27 +114,27 @@ impl Molecule {
             };
         };
         let (from, to) = (from.position, to.position);
-        let apart = squared_distance(from, to).sqrt();
+        let spacing = squared_distance(from, to).sqrt();
         let counted = next_number.saturating_sub(number).saturating_sub(1);
-        let missing = if counted >= 1 && apart <= STRETCHED * (counted + 1) as f64 {
+        let unresolved = if counted >= 1 && spacing <= STRETCHED * (counted + 1) as f64 {
             counted
         } else {
-            (apart / STRETCHED).ceil() as i64 - 1
+            (spacing / STRETCHED).ceil() as i64 - 1
         };
-        if apart <= BOND {
+        if spacing <= BOND {
             Between::Bond
         } else if chain != next_chain
             || next_number < number
-            || (missing != counted && self.has_last_oxygen(before))
-            || missing > MAX_RESIDUES
-            || apart > LONGEST
-            || (missing != counted && apart > MAX_UNCOUNTED_LENGTH)
+            || (unresolved != counted && self.has_last_oxygen(before))
+            || unresolved > MAX_RESIDUES
+            || spacing > LONGEST
+            || (unresolved != counted && spacing > MAX_UNCOUNTED_LENGTH)
         {
             Between::Ends
-        } else if missing == 0 {
+        } else if unresolved == 0 {
             Between::Bond
         } else {
-            Between::Gap(missing, [from, to])
+            Between::Gap(unresolved, [from, to])
         }
     }
 }

@@ -15,13 +15,13 @@ pub enum CopiesError {
     Chains {
         /// Its chains.
         chains: usize,
-        /// Copies asked for.
+        /// Copies requested.
         copies: usize,
     },
     /// Chains in the same place of each copy are not alike.
     #[error("{shared} residues are common to its {copies} copies, which is too few")]
     Different {
-        /// Copies asked for.
+        /// Copies requested.
         copies: usize,
         /// Residues that all of them have.
         shared: usize,
@@ -29,8 +29,9 @@ pub enum CopiesError {
 }
 
 impl Molecule {
-    /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies follow one another in the file, each with
-    /// all its chains in the same order, as complexes are written; residues are matched by their number.
+    /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies
+    /// follow one another in the file, each with all its chains in the same order, as complexes are written; residues
+    /// are matched by their number.
     ///
     /// # Errors
     /// [`CopiesError`] where there are not so many.

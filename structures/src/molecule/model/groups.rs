@@ -10,7 +10,7 @@ use crate::molecule::chemistry::other_names::known_as;
 use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
 use crate::molecule::model::atom::Atom;
 
-/// What a residue is, as far as it can be told from its name and atoms.
+/// Kind of a residue, detected from its name and atoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupKind {
@@ -61,7 +61,7 @@ pub(crate) const NON_METALS: [&str; 22] = [
     "Kr", "Te", "I", "Xe", "At",
 ];
 
-/// What tells one residue from all others in a file: chain, number, insertion code, name.
+/// What distinguishes a residue from all others in a file: chain, number, insertion code, name.
 pub(crate) type ResidueKey<'a> = (&'a str, i64, Option<char>, &'a str);
 
 /// The residue that an atom belongs to.
@@ -110,9 +110,9 @@ impl Residue<'_> {
 
 /// The residues of a list of atoms, in order of first appearance.
 ///
-/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name comes again, chains were
-/// merged under one name whose numbers begin anew: that is another residue. A name that comes again among atoms that stand together is an
-/// atom given twice, and stays.
+/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name
+/// comes again, chains were merged under one name whose numbers begin anew: that is another residue. A name that comes
+/// again among atoms that stand together is an atom given twice, and stays.
 pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut place: HashMap<ResidueKey<'_>, usize> = HashMap::new();
     let mut grouped: Vec<(ResidueKey<'_>, Vec<usize>)> = Vec::new();
@@ -142,8 +142,8 @@ pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
         .collect()
 }
 
-/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers begin again, residues
-/// that share a key stay apart.
+/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers begin
+/// again, residues that share a key stay apart.
 pub(crate) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut runs = Vec::new();
     let mut first = 0;

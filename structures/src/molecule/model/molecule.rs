@@ -13,10 +13,10 @@ pub struct Molecule {
     pub format: Format,
     /// What reading the file did: kept, dropped, altered, warned of. Empty for a molecule made in memory.
     pub report: ReadReport,
-    /// Lines at which the file itself ends a chain, rising: of TER, MODEL, ENDMDL and END records, and in mmCIF the first line
-    /// of another `label_asym_id` under the same author's name. Atoms on both sides of such a line are of two chains even
-    /// where their chain names are equal.
-    pub chain_ends: Vec<usize>,
+    /// Lines at which the file itself ends a chain, rising: of TER, MODEL, ENDMDL and END records, and in mmCIF the
+    /// first line of another `label_asym_id` under the same author's name. Atoms on both sides of such a line are of
+    /// two chains even where their chain names are equal.
+    pub chain_breaks: Vec<usize>,
 }
 
 impl Molecule {
@@ -26,7 +26,7 @@ impl Molecule {
             atoms,
             format,
             report: ReadReport::default(),
-            chain_ends: Vec::new(),
+            chain_breaks: Vec::new(),
         }
     }
 

@@ -84,11 +84,11 @@ pub struct OtherName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DropKind {
-    /// Chains that were not asked for.
+    /// Chains that were not requested.
     Chain,
-    /// Residues that were not asked for, of chains of which others were.
+    /// Residues that were not requested, of chains of which others were.
     OtherResidue,
-    /// Chains that have no part in the biological assembly asked for.
+    /// Chains that have no part in the biological assembly requested.
     Assembly,
     /// Hydrogen and deuterium: united-atom radii stand for them.
     Hydrogen,
@@ -106,7 +106,7 @@ pub enum DropKind {
     AlternateLocation,
     /// Residues of a predicted model of which it is not sure enough.
     LowConfidence,
-    /// Models that were not asked for: all but the first by default.
+    /// Models that were not requested: all but the first by default.
     Model,
 }
 
@@ -117,7 +117,8 @@ pub struct Dropped {
     pub kind: DropKind,
     /// Atoms dropped.
     pub atoms: usize,
-    /// Residues (for chains: their names, for sites without mass: the atoms') with the number of atoms dropped from each.
+    /// Residues (for chains: their names, for sites without mass: the atoms') with the number of atoms dropped from
+    /// each.
     pub names: BTreeMap<String, usize>,
 }
 
@@ -205,7 +206,8 @@ pub struct BuiltAssembly {
 pub struct JoinedModels {
     /// Models that have atoms.
     pub models: usize,
-    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they lie on an axis of symmetry.
+    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they lie on an axis of
+    /// symmetry.
     pub on_axes: usize,
 }
 
@@ -225,7 +227,7 @@ pub enum ConfidenceSource {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Confidence {
     /// How it was known that the B column is pLDDT.
-    pub told_by: ConfidenceSource,
+    pub source: ConfidenceSource,
     /// Mean pLDDT of the residues, 0 to 100, those that are left out among them.
     pub mean: f64,
     /// Residues.

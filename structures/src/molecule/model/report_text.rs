@@ -98,14 +98,14 @@ impl fmt::Display for ReadReport {
             }
         }
         if let Some(confidence) = &self.confidence {
-            let told_by = match confidence.told_by {
+            let source = match confidence.source {
                 ConfidenceSource::Header => "as the file says",
-                ConfidenceSource::Values => "told by its B column",
+                ConfidenceSource::Values => "detected from its B column",
                 ConfidenceSource::User => "as --min-plddt says",
             };
             write!(
                 f,
-                "\n  a predicted model, {told_by}: mean pLDDT {:.1}, {} of {} below 50",
+                "\n  a predicted model, {source}: mean pLDDT {:.1}, {} of {} below 50",
                 confidence.mean,
                 confidence.below_50,
                 count(confidence.residues, "residue")

@@ -64,9 +64,13 @@ impl Range {
 impl std::str::FromStr for ResidueSelection {
     type Err = String;
 
-    /// Reads parts with commas between them: `H` for a chain, `H:52` for a residue, `H:52A` for one that is inserted, `H:1-50` for a range of
-    /// numbers with all that is inserted among them, `H:52-52` for one number so; `_:12` or `:12` where chains have no name. After residues of a
-    /// chain its name may be left out, as in `H:52,54,60-65`, unless a chain is called so.
+    /// Reads parts with commas between them:
+    ///
+    /// - `H` for a chain, `H:52` for a residue, `H:52A` for an inserted one;
+    /// - `H:1-50` for a range of numbers with all that is inserted among them, `H:52-52` for one number so;
+    /// - `_:12` or `:12` where chains have no name.
+    ///
+    /// After residues of a chain its name may be left out, as in `H:52,54,60-65`, unless a chain is called so.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts: Vec<Part> = Vec::new();
         for part in text.split(',') {
@@ -224,7 +228,7 @@ impl Molecule {
     }
 }
 
-/// Residues were asked for that a molecule does not have.
+/// Residues were requested that a molecule does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownResidues {
     /// What no atom belongs to, as `H:1-50`.
@@ -234,7 +238,8 @@ pub struct UnknownResidues {
 }
 
 impl UnknownResidues {
-    /// The chains and numbers that there are, in words, and how to name a residue where a number stands without its chain.
+    /// The chains and numbers that there are, in words, and how to name a residue where a number stands without its
+    /// chain.
     pub fn present(&self) -> String {
         let chains = self.present.iter();
         let chains = chains.map(|(chain, [first, last])| {
@@ -318,7 +323,8 @@ mod tests {
         assert_eq!(chosen(":7"), Ok(vec![5]));
     }
 
-    /// Found by a user: numbers after a chain's residue were taken for chains, and the message named them in a form that looked right.
+    /// Found by a user: numbers after a chain's residue were taken for chains, and the message named them in a form
+    /// that looked right.
     #[test]
     fn the_chain_goes_on_where_its_name_is_left_out() {
         assert_eq!(chosen("H:51,52,53"), Ok(vec![0, 1, 3]));

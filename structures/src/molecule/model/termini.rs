@@ -1,5 +1,7 @@
-//! Residues near the ends of chains and near gaps in them, which move more than the rest of a body: what is seen of them in a crystal is one place of
-//! many, and wrong poses lie against that place more often than right ones.
+//! Residues near termini and gaps, which move more than the rest of a body.
+//!
+//! What a crystal resolves of them is one place of many, and wrong poses lie against that place more often than right
+//! ones.
 
 use std::ops::Range;
 
@@ -8,26 +10,30 @@ use serde::Serialize;
 use crate::molecule::model::groups::residues;
 use crate::molecule::model::molecule::Molecule;
 
-/// Most residues from an end that are near it, and the share of a chain, one in so many, that they may be: of small proteins hardly any is loose.
+/// Largest number of residues from a terminus that count as near it.
+///
+/// The second constant is the largest share of a chain, one residue in so many: of small proteins hardly any is
+/// flexible.
 const NEAR: usize = 8;
 const ONE_IN: usize = 16;
 
-/// Residues near the ends of a molecule's chains, and near gaps.
+/// Residues near the termini of a molecule's chains, and near gaps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ChainEnds {
+pub struct Termini {
     /// How many residues.
     pub residues: usize,
-    /// Their atoms, by their places in the molecule.
+    /// The indices of their atoms in the molecule.
     #[serde(serialize_with = "crate::molecule::model::unresolved::length")]
     pub atoms: Vec<usize>,
 }
 
 impl Molecule {
-    /// The residues that are at most eighth, and at most as far along as a sixteenth of the chain, from an end of it or from a gap. Ends that something is
-    /// bonded to are none, and so are those of peptides.
-    pub fn chain_ends(&self) -> ChainEnds {
+    /// The residues at most eighth, and at most as far along as a sixteenth of the chain, from a terminus or gap.
+    ///
+    /// Peptides have no termini in this sense, nor is an end one that something is bonded to.
+    pub fn termini(&self) -> Termini {
         let groups = residues(&self.atoms);
-        let mut found = ChainEnds::default();
+        let mut found = Termini::default();
         for chain in self
             .chains(&groups)
             .iter()
@@ -39,9 +45,9 @@ impl Molecule {
             let last = chain.ends[1].map(|_| length - near..length);
             let gaps = chain.gaps.iter();
             let gaps = gaps.map(|gap| gap.after.saturating_sub(near)..gap.after + near);
-            let loose: Vec<Range<usize>> = gaps.chain(first).chain(last).collect();
+            let flexible: Vec<Range<usize>> = gaps.chain(first).chain(last).collect();
             for (place, residue) in chain.residues.iter().enumerate() {
-                if loose.iter().any(|near| near.contains(&place)) {
+                if flexible.iter().any(|near| near.contains(&place)) {
                     found.residues += 1;
                     found.atoms.extend(&residue.atoms);
                 }

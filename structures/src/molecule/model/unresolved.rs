@@ -1,8 +1,8 @@
-//! Residues that a chain has and its file does not show, and where they may be.
+//! Residues that a chain has and its file does not resolve, and conformers of these segments.
 //!
-//! A loop that was not seen bridges a gap in the chain, and the ends of chains move or go on unseen; what is docked there meets them. Where they are
-//! is not known. So many courses are grown that each stretch may take from where the chain is seen last, past the body and past itself: what all of
-//! them fill is sure to be filled, and what a few of them cross is mostly free.
+//! An unresolved loop bridges a gap in the chain, and termini move or go on beyond what is resolved. A docked partner
+//! meets them. Their places are not known, so many conformers are sampled for each segment, clear of the body and of
+//! themselves. Where all conformers pass the space is filled; where few pass it is mostly free.
 
 mod loop_sampler;
 
@@ -13,50 +13,51 @@ use crate::molecule::model::atom::Atom;
 use crate::molecule::model::chains::{Chain, Gap};
 use crate::molecule::model::groups::{Residue, residues};
 use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::unresolved::loop_sampler::Growth;
+use crate::molecule::model::unresolved::loop_sampler::LoopSampler;
 
-/// Residues past an end of a chain: as many as are seen of it and taken to be loose.
+/// Residues sampled beyond a terminus: as many as count as flexible on its resolved side.
 const PAST_END: usize = 8;
 
-/// Most residues of a loop: longer ones fold back.
+/// Longest loop that is sampled, residues: longer loops fold back.
 const MAX_LOOP_LENGTH: i64 = 20;
 
-/// Residues that a molecule's chains have and its file does not show.
+/// Residues that a molecule's chains have and its file does not resolve.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct MissingResidues {
-    /// Residues that are missing in gaps.
+pub struct UnresolvedResidues {
+    /// Unresolved residues in gaps.
     pub residues: usize,
     /// Gaps.
     pub gaps: usize,
-    /// Ends of chains, past which more may follow; of peptides and where something is bonded to an end none.
+    /// Termini beyond which more residues may follow. Peptides have none, nor does an end that something is bonded to.
     pub ends: usize,
-    /// Where residues of each gap and past each end may be, of those that the body leaves room for.
-    #[serde(rename = "conformers", serialize_with = "courses")]
-    pub stretches: Vec<Conformers>,
+    /// Conformers of each gap and beyond each terminus, of those that the body leaves room for.
+    #[serde(rename = "conformers", serialize_with = "traces")]
+    pub segments: Vec<Conformers>,
 }
 
-/// A record says how many there are of a list, not what.
+/// Serialises the length of a list, not its items.
 pub(crate) fn length<T, S: Serializer>(list: &[T], to: S) -> Result<S::Ok, S::Error> {
     list.len().serialize(to)
 }
 
-fn courses<S: Serializer>(stretches: &[Conformers], to: S) -> Result<S::Ok, S::Error> {
-    let courses = stretches.iter().map(|stretch| stretch.courses.len());
-    courses.sum::<usize>().serialize(to)
+/// Serialises the number of conformers of all segments.
+fn traces<S: Serializer>(segments: &[Conformers], to: S) -> Result<S::Ok, S::Error> {
+    let traces = segments.iter().map(|segment| segment.traces.len());
+    traces.sum::<usize>().serialize(to)
 }
 
 impl Molecule {
-    /// Residues that the chains must have and the file does not show, as far as atoms and residue numbers tell.
-    pub fn missing_residues(&self) -> MissingResidues {
+    /// Detects unresolved residues from atoms and residue numbers, and samples their conformers.
+    pub fn unresolved_residues(&self) -> UnresolvedResidues {
         let groups = residues(&self.atoms);
         let chains = self.chains(&groups);
-        let growth = Growth::new(self.atoms.iter().map(|atom| atom.position).collect());
-        let mut found = MissingResidues::default();
+        let sampler = LoopSampler::new(self.atoms.iter().map(|atom| atom.position).collect());
+        let mut found = UnresolvedResidues::default();
         for chain in &chains {
             for gap in &chain.gaps {
                 found.gaps += 1;
-                found.residues += gap.missing as usize;
-                found.stretches.extend(self.bridge(&growth, chain, gap));
+                found.residues += gap.unresolved as usize;
+                found.segments.extend(self.bridge(&sampler, chain, gap));
             }
         }
         for chain in chains.iter().filter(|chain| !chain.is_short()) {
@@ -66,28 +67,28 @@ impl Molecule {
                     continue;
                 };
                 found.ends += 1;
-                found.stretches.extend(self.past(&growth, residue, name));
+                found.segments.extend(self.past(&sampler, residue, name));
             }
         }
         found
     }
 
-    /// Courses past the end of a chain.
-    fn past(&self, growth: &Growth, residue: &Residue<'_>, end: &str) -> Option<Conformers> {
+    /// Conformers beyond a terminus.
+    fn past(&self, sampler: &LoopSampler, residue: &Residue<'_>, end: &str) -> Option<Conformers> {
         let frame = self.frame(residue, end)?;
-        growth.courses(frame, &residue.atoms, None, PAST_END)
+        sampler.traces(frame, &residue.atoms, None, PAST_END)
     }
 
-    /// Courses across a gap.
-    fn bridge(&self, growth: &Growth, chain: &Chain<'_>, gap: &Gap) -> Option<Conformers> {
+    /// Conformers across a gap.
+    fn bridge(&self, sampler: &LoopSampler, chain: &Chain<'_>, gap: &Gap) -> Option<Conformers> {
         let (before, after) = (chain.residues[gap.after - 1], chain.residues[gap.after]);
         let frame = self.frame(before, "C")?;
         let anchors = [before.atoms.as_slice(), &after.atoms].concat();
-        let length = gap.missing.min(MAX_LOOP_LENGTH) as usize;
-        growth.courses(frame, &anchors, Some(gap.sides[1]), length)
+        let length = gap.unresolved.min(MAX_LOOP_LENGTH) as usize;
+        sampler.traces(frame, &anchors, Some(gap.sides[1]), length)
     }
 
-    /// The frame of a residue's main chain about its N or C, for courses to go with the body however it is turned.
+    /// The frame of a residue's main chain about its N or C, so that conformers move with the body.
     fn frame(&self, residue: &Residue<'_>, about: &str) -> Option<Conformers> {
         let other = if about == "N" { "C" } else { "N" };
         let at = |name: &str| self.atom(residue, name).map(|atom: &Atom| atom.position);
@@ -96,7 +97,7 @@ impl Molecule {
         Some(Conformers {
             origin,
             axes,
-            courses: Vec::new(),
+            traces: Vec::new(),
         })
     }
 }

@@ -6,8 +6,8 @@ use crate::molecule::model::atom::{Atom, squared_distance};
 use crate::molecule::model::report::{AlternateChoice, DropKind, ReadReport};
 use crate::molecule::read::policy::AlternateLocation;
 
-/// What tells a position in the chain from all others. The residue's name is left out: alternate locations may differ in it
-/// (microheterogeneity), and one choice must hold for both names.
+/// What distinguishes a position in the chain from all others. The residue's name is left out: alternate locations may
+/// differ in it (microheterogeneity), and one choice must hold for both names.
 type Position<'a> = (&'a str, i64, Option<char>);
 
 fn position(atom: &Atom) -> Position<'_> {
@@ -23,9 +23,11 @@ const MAX_DISPLACEMENT: f64 = 12.0;
 /// The same where the other location has another residue: backbones stay where they are.
 const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 
-/// The locations of atoms that have no letter beside lettered atoms of their residue, by index: where a lettered atom of the same name is elsewhere,
-/// those of the letters that lack it, whose letter was left out, or else the blank one, to which all of a residue belongs on whose backbone
-/// letters have another residue.
+/// The locations of atoms that have no letter beside lettered atoms of their residue, by index.
+///
+/// Where a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name:
+/// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
+/// residue on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
     let mut lettered: HashMap<Position<'_>, Vec<(&Atom, char)>> = HashMap::new();
     for atom in atoms {
@@ -83,9 +85,9 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
     unnamed
 }
 
-/// Keeps, in each residue, the atoms without an alternate location and those of one. Atoms without one beside the same atoms with a letter are
-/// the blank one's. Kept is the one named by the policy where it is
-/// offered, otherwise the location of the highest occupancy summed over its atoms, the alphabetically first of equals.
+/// Keeps, in each residue, the atoms without an alternate location and those of one. Atoms without one beside the same
+/// atoms with a letter are the blank one's. Kept is the one named by the policy where it is offered, otherwise the
+/// location of the highest occupancy summed over its atoms, the alphabetically first of equals.
 pub(crate) fn choose(
     atoms: Vec<Atom>,
     policy: AlternateLocation,

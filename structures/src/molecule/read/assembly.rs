@@ -1,9 +1,9 @@
 //! Biological assemblies: the molecule as it works, built from the copies that a file says of its chains.
 //!
-//! What stands in a crystal structure's file is the asymmetric unit, which may be half of a dimer or hold four copies of a monomer. The file
-//! says which chains, moved how, make the biological assembly (REMARK 350 of PDB, `_pdbx_struct_assembly_gen` and
-//! `_pdbx_struct_oper_list` of mmCIF). The first copy of a chain keeps its name and the k-th of chain A is called `A-k`, as the archive's own
-//! files of assemblies have it.
+//! What stands in a crystal structure's file is the asymmetric unit, which may be half of a dimer or hold four copies
+//! of a monomer. The file says which chains, moved how, make the biological assembly (REMARK 350 of PDB,
+//! `_pdbx_struct_assembly_gen` and `_pdbx_struct_oper_list` of mmCIF). The first copy of a chain keeps its name and the
+//! k-th of chain A is called `A-k`, as the archive's own files of assemblies have it.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -27,20 +27,21 @@ pub(crate) const ON_AXIS: f64 = 0.5;
 
 /// The name by which assemblies know the chain of an atom.
 fn part_name(record: &Parsed) -> &str {
-    let carried = &record.carried;
-    carried.archive_chain.as_deref().unwrap_or(&carried.chain)
+    let raw = &record.raw;
+    raw.archive_chain.as_deref().unwrap_or(&raw.chain)
 }
 
 /// Chains, by the names that assemblies know, that are protein or nucleic acid.
 fn polymers(parsed: &[Parsed]) -> HashSet<&str> {
     let is_polymer = |record: &&Parsed| {
-        let name = record.carried.residue_name.as_str();
+        let name = record.raw.residue_name.as_str();
         is_amino_acid(name) || is_nucleotide(name) && links_nucleotides(&record.name)
     };
     parsed.iter().filter(is_polymer).map(part_name).collect()
 }
 
-/// Builds the assembly of this name, where the file says anything of assemblies; where it does not, its atoms stay as they are.
+/// Builds the assembly of this name, where the file says anything of assemblies; where it does not, its atoms stay as
+/// they are.
 ///
 /// `dropped` hears of atoms whose chains have no part in it.
 ///
@@ -73,7 +74,7 @@ pub(crate) fn build(
     }
     let in_file: HashSet<&str> = parsed
         .iter()
-        .map(|record| record.carried.chain.as_str())
+        .map(|record| record.raw.chain.as_str())
         .collect();
     let mut copies: HashMap<&str, usize> = HashMap::new();
     let mut images: Vec<Vec<[f64; 3]>> = vec![Vec::new(); parsed.len()];
@@ -104,7 +105,7 @@ pub(crate) fn build(
                 if !position.iter().all(|x| x.is_finite()) {
                     let what =
                         format!("an operator of assembly {wanted} takes an atom out of all bounds");
-                    return Err(broken(file, Some(record.carried.line), what));
+                    return Err(broken(file, Some(record.raw.line), what));
                 }
                 let coincides =
                     |other: &[f64; 3]| squared_distance(*other, position) < ON_AXIS * ON_AXIS;
@@ -116,7 +117,7 @@ pub(crate) fn build(
                 let mut record = record.clone();
                 record.exact.position = position;
                 let copy = copies.get(part_name(&record)).copied().unwrap_or(1);
-                record.carried.chain = copy_name(&record.carried.chain, copy, &in_file);
+                record.raw.chain = copy_name(&record.raw.chain, copy, &in_file);
                 built.push(record);
             }
         }
@@ -129,7 +130,7 @@ pub(crate) fn build(
     });
     for (record, images) in parsed.into_iter().zip(images) {
         if images.is_empty() {
-            report.drop_atoms(DropKind::Assembly, show_chain(&record.carried.chain), 1);
+            report.drop_atoms(DropKind::Assembly, show_chain(&record.raw.chain), 1);
             dropped(select::atom(record, ""), DropKind::Assembly);
         }
     }
@@ -151,7 +152,7 @@ fn distinct_chains(parsed: &[Parsed]) -> usize {
         .iter()
         .filter(|record| polymers.contains(part_name(record)));
     let names: HashSet<&str> = of_polymers
-        .map(|record| record.carried.chain.as_str())
+        .map(|record| record.raw.chain.as_str())
         .collect();
     names.len()
 }

@@ -1,4 +1,5 @@
-//! What is missing from a structure and would make its shape a lie: side chains, whole backbones; and what is there twice.
+//! What is missing from a structure and would make its shape a lie: side chains, whole backbones; and what is there
+//! twice.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -105,7 +106,7 @@ fn missing_side_chains(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<Strin
     })
 }
 
-/// Fewest atoms that are asked whether they have places of their own.
+/// Fewest atoms among which coincident positions are looked for.
 const PLACED: usize = 10;
 
 /// Atoms none of which has a place of its own, as in files that were written before there were coordinates.

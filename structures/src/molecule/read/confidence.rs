@@ -1,12 +1,14 @@
 //! Predicted models: the confidence (pLDDT) that their B column carries, and residues of which it knows no place.
 //!
-//! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of each residue's
-//! surroundings: pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589, 2021) or, of some programs, from 0 to 1.
-//! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): where it stands is no fact, and
-//! as a solid it blocks what it may not touch.
+//! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of
+//! each residue's surroundings. This is pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589,
+//! 2021) or, of some programs, from 0 to 1.
 //!
-//! What the column holds is known from what the file says of itself ([`Provenance`]), or where it says nothing from the values ([`evidence`]), or
-//! else from the user, who gives a least pLDDT.
+//! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): where it stands is
+//! no fact, and as a solid it blocks what it may not touch.
+//!
+//! What the column holds is detected from what the file says of itself ([`Provenance`]). Where it says nothing, the
+//! values decide ([`evidence`]), or the user does by giving a least pLDDT.
 
 mod evidence;
 
@@ -39,7 +41,8 @@ fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
     }
 }
 
-/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is asked for, and `trusted` says that the user's word is taken.
+/// pLDDT, 0 to 100, of each of the residues, and how it was known; `least` is requested, and `trusted` says that the
+/// user's word is taken.
 ///
 /// # Errors
 /// Why the B column is taken for none.
@@ -55,7 +58,8 @@ fn values(
     let of_residue = |residue: &Residue<'_>| {
         let members = residue.atoms.iter().filter_map(|&index| atoms.get(index));
         let sum: f64 = members.map(|atom| atom.b_factor).sum();
-        // Files have two decimals: what a mean adds to them by rounding must not carry a residue below the limit that it stands at.
+        // Files have two decimals: what a mean adds to them by rounding must not carry a residue below the limit that
+        // it stands at.
         (scale * sum / residue.atoms.len() as f64 * 1e6).round() / 1e6
     };
     let values: Vec<f64> = residues.iter().map(of_residue).collect();
@@ -64,7 +68,7 @@ fn values(
     match contradiction(atoms, provenance) {
         Some(reason) => Err(reason),
         None if provenance == Provenance::Confidence => Ok((ConfidenceSource::Header, values)),
-        None if evidence::tells(atoms, residues, mean(&values), scale) => {
+        None if evidence::is_prediction(atoms, residues, mean(&values), scale) => {
             Ok((ConfidenceSource::Values, values))
         }
         None if atoms.iter().all(|atom| atom.b_factor == first) => {
@@ -86,7 +90,8 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Notes in the report how sure a prediction is of its residues, and leaves out those of a pLDDT below `least`.
 ///
-/// `trusted` says that the B column is pLDDT wherever it can be. `dropped` hears of the atoms left out. Of what is no prediction all stays.
+/// `trusted` says that the B column is pLDDT wherever it can be. `dropped` hears of the atoms left out. Of what is no
+/// prediction all stays.
 pub(crate) fn weigh(
     atoms: Vec<Atom>,
     provenance: Provenance,
@@ -96,7 +101,7 @@ pub(crate) fn weigh(
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Vec<Atom> {
     let groups = residues(&atoms);
-    let (told_by, values) =
+    let (source, values) =
         match values(&atoms, &groups, provenance, (least.unwrap_or(0.0), trusted)) {
             Ok(known) => known,
             Err(reason) => {
@@ -104,7 +109,7 @@ pub(crate) fn weigh(
                 return atoms;
             }
         };
-    if told_by == ConfidenceSource::User {
+    if source == ConfidenceSource::User {
         report.warnings.push(
             "the B values are taken for pLDDT because --min-plddt is given: neither the file nor they say so"
                 .to_owned(),
@@ -112,7 +117,7 @@ pub(crate) fn weigh(
     }
     let below = |limit: f64| values.iter().filter(move |value| **value < limit).count();
     report.confidence = Some(Confidence {
-        told_by,
+        source,
         mean: mean(&values),
         residues: values.len(),
         below_50: below(LOW),

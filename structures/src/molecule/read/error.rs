@@ -142,7 +142,7 @@ pub enum ReadError {
         /// Residue, chain and number.
         residue: String,
     },
-    /// A chain was asked for that the file does not have.
+    /// A chain was requested that the file does not have.
     #[error(
         "there is no chain '{chain}'; the file has {}{}",
         list_chains(present),
@@ -151,46 +151,46 @@ pub enum ReadError {
     UnknownChain {
         /// The path as given.
         file: PathBuf,
-        /// The chain asked for.
+        /// The chain requested.
         chain: String,
         /// Author names of the chains in the file, in file order.
         present: Vec<String>,
         /// Warnings of reading until then, such as that a further data block was not read.
         warnings: Vec<String>,
     },
-    /// Residues were asked for that a chain of the file does not have.
+    /// Residues were requested that a chain of the file does not have.
     #[error("there is no residue {part}; chain {chain} of the file has {} to {}", numbers[0], numbers[1])]
     UnknownResidues {
         /// The path as given.
         file: PathBuf,
-        /// The residues asked for, as `A:1-50`.
+        /// The residues requested, as `A:1-50`.
         part: String,
         /// The chain, `_` where it has no name.
         chain: String,
         /// Smallest and largest residue number of the chain.
         numbers: [i64; 2],
     },
-    /// A model was asked for that the file does not have.
+    /// A model was requested that the file does not have.
     #[error("there is no model {model}; the file has {models}")]
     UnknownModel {
         /// The path as given.
         file: PathBuf,
-        /// The model asked for, from 1.
+        /// The model requested, from 1.
         model: usize,
         /// Number of models in the file.
         models: usize,
     },
-    /// A biological assembly was asked for that the file does not have.
+    /// A biological assembly was requested that the file does not have.
     #[error("there is no assembly '{assembly}'; the file has {}", present.join(", "))]
     UnknownAssembly {
         /// The path as given.
         file: PathBuf,
-        /// The assembly asked for.
+        /// The assembly requested.
         assembly: String,
         /// Names of those that the file has.
         present: Vec<String>,
     },
-    /// A biological assembly was asked for of a file whose models are read as one molecule.
+    /// A biological assembly was requested of a file whose models are read as one molecule.
     #[error(
         "--assembly builds copies of one model, and --model all reads all models as one molecule"
     )]
@@ -216,7 +216,7 @@ pub enum ReadError {
         /// Number of atoms dropped.
         dropped: usize,
     },
-    /// The parser behind the sieve refused the file.
+    /// The parser behind the record filter refused the file.
     #[error("the parser refused the file: {what}")]
     Parser {
         /// The path as given.
@@ -349,7 +349,7 @@ impl ReadError {
                 "pick other chains, or keep what is dropped: --hetatm keep, --waters keep, --hydrogens keep, a lower --min-plddt"
             }
             Self::Parser { .. } => {
-                "please report this file: the sieve before the parser should have caught it"
+                "please report this file: the record filter before the parser should have caught it"
             }
         }
     }

@@ -1,6 +1,8 @@
-//! Files that hold something else than a structure in PDB or mmCIF: archives, other compressions, other formats of molecules.
+//! Files that hold something else than a structure in PDB or mmCIF: archives, other compressions, other formats of
+//! molecules.
 //!
-//! An archive may begin like a structure: a tar of PDB files has their records in it, and between them what no reader should see.
+//! An archive may begin like a structure: a tar of PDB files has their records in it, and between them what no reader
+//! should see.
 
 use std::path::Path;
 

@@ -6,13 +6,13 @@ use std::str::FromStr;
 use crate::molecule::model::residue_selection::ResidueSelection;
 use crate::molecule::read::error::ReadError;
 
-/// A structure file and the chains and residues asked of it.
+/// A structure file and the chains and residues requested of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputSpec {
     /// The file.
     pub path: PathBuf,
-    /// Chains to keep by their author names, case-sensitive, `_` for the blank name, and residues of chains, as parts of a
-    /// [`ResidueSelection`]: `H`, `H:1-120`; all chains when `None`.
+    /// Chains to keep by their author names, case-sensitive, `_` for the blank name, and residues of chains, as parts
+    /// of a [`ResidueSelection`]: `H`, `H:1-120`; all chains when `None`.
     pub chains: Option<Vec<String>>,
 }
 
@@ -27,13 +27,13 @@ impl InputSpec {
 
     /// Reads `file`, `file:H,L` or `file:H:1-120,L`.
     ///
-    /// A path that exists as written is never cut, nor is a Windows drive (`C:\file.pdb`) or a colon that has a path separator after it. Of
-    /// several colons the last is taken that has a file before it, or where there is no such file the first that has chains and residues
-    /// behind it. Repeated chains count once.
+    /// A path that exists as written is never cut, nor is a Windows drive (`C:\file.pdb`) or a colon that has a path
+    /// separator after it. Of several colons the last is taken that has a file before it, or where there is no such
+    /// file the first that has chains and residues behind it. Repeated chains count once.
     ///
     /// # Errors
-    /// [`ReadError::Unnamed`] without a file's name, [`ReadError::Specification`] when what follows the colon names neither chains nor residues, as
-    /// in `file.pdb:`, `file.pdb:H,,L` or `file.pdb:H:x`.
+    /// [`ReadError::Unnamed`] without a file's name, [`ReadError::Specification`] when what follows the colon names
+    /// neither chains nor residues, as in `file.pdb:`, `file.pdb:H,,L` or `file.pdb:H:x`.
     pub fn parse(text: &str) -> Result<Self, ReadError> {
         let (path, names) = match cut(text) {
             Some((path, names)) => (path, Some(names)),

@@ -35,7 +35,7 @@ use crate::molecule::read::policy::{ModelChoice, ReadOptions};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Listed {
+pub struct AtomFate {
     /// The atom; its radius is 0 and its element may be empty where it was dropped.
     pub atom: Atom,
     /// Why it was dropped; nothing where it was kept.
@@ -44,10 +44,12 @@ pub struct Listed {
 
 /// Reads the atoms to dock from a PDB or mmCIF file, plain or gzip-compressed.
 ///
-/// By default the first model; the chains asked for; hydrogens, waters and a listed set of buffer and cryo additives left out;
-/// one alternate location a residue, the one of the highest summed occupancy and the alphabetically first of equals; atoms of
-/// zero occupancy kept. Cofactors, metals, glycans, modified residues and nucleic acids are kept. The molecule's report says
-/// what was kept, dropped and altered.
+/// By default it keeps the first model, the chains requested, atoms of zero occupancy, cofactors, metals, glycans,
+/// modified residues and nucleic acids. It leaves out hydrogens, waters and a known set of buffer and cryo additives.
+/// Of alternate locations it keeps one a residue: that of the highest summed occupancy, and the alphabetically first of
+/// equals.
+///
+/// The molecule's report says what was kept, dropped and altered.
 ///
 /// # Errors
 /// [`ReadError`], with the file, the line where there is one, and a remedy.
@@ -71,30 +73,30 @@ pub fn read_bytes(
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_listed(
+pub fn read_with_fates(
     spec: &InputSpec,
     options: &ReadOptions,
-) -> Result<(Molecule, Vec<Listed>), ReadError> {
-    read_bytes_listed(spec, source::file_bytes(&spec.path)?, options)
+) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
+    read_bytes_with_fates(spec, source::file_bytes(&spec.path)?, options)
 }
 
-/// As [`read_listed`], of a file's bytes.
+/// As [`read_with_fates`], of a file's bytes.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_bytes_listed(
+pub fn read_bytes_with_fates(
     spec: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
-) -> Result<(Molecule, Vec<Listed>), ReadError> {
+) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
     let mut listed = Vec::new();
     let molecule = read_telling(spec, bytes, options, &mut |atom, kind| {
-        listed.push(Listed {
+        listed.push(AtomFate {
             atom,
             dropped: Some(kind),
         });
     })?;
-    listed.extend(molecule.atoms.iter().map(|atom| Listed {
+    listed.extend(molecule.atoms.iter().map(|atom| AtomFate {
         atom: atom.clone(),
         dropped: None,
     }));
@@ -121,25 +123,25 @@ fn read_telling(
         },
     };
     let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
-    let sieve = |model: ModelChoice| match format {
-        Format::Pdb => record_filter::pdb::sieve(file, &source.text, model),
-        Format::Mmcif => record_filter::mmcif::sieve(file, &source.text, model),
+    let filter = |model: ModelChoice| match format {
+        Format::Pdb => record_filter::pdb::filter(file, &source.text, model),
+        Format::Mmcif => record_filter::mmcif::filter(file, &source.text, model),
     };
-    let mut sieved = sieve(options.model)?;
+    let mut filtered = filter(options.model)?;
     if let ModelChoice::Number(model) = options.model {
-        if sieved.models == 1 && model != 1 {
-            sieved = sieve(ModelChoice::Number(1))?;
-        } else if sieved.models > 1 && !(1..=sieved.models).contains(&model) {
+        if filtered.models == 1 && model != 1 {
+            filtered = filter(ModelChoice::Number(1))?;
+        } else if filtered.models > 1 && !(1..=filtered.models).contains(&model) {
             return Err(ReadError::UnknownModel {
                 file: file.to_path_buf(),
                 model,
-                models: sieved.models,
+                models: filtered.models,
             });
         }
     }
     drop(source.text);
-    if sieved.carried.is_empty() {
-        return Err(if sieved.recognised {
+    if filtered.records.is_empty() {
+        return Err(if filtered.recognised {
             ReadError::NoAtoms {
                 file: file.to_path_buf(),
             }
@@ -154,35 +156,35 @@ fn read_telling(
         compressed: source.compressed,
         ..ReadReport::default()
     };
-    let is_joined = options.model == ModelChoice::All && sieved.models > 1;
+    let is_joined = options.model == ModelChoice::All && filtered.models > 1;
     if !is_joined {
-        report.altered.models_ignored = sieved.models.saturating_sub(1);
+        report.altered.models_ignored = filtered.models.saturating_sub(1);
     }
-    report.altered.defaults_filled = sieved.defaults_filled;
-    report.drop_atoms(DropKind::Model, "", sieved.atoms_ignored);
+    report.altered.defaults_filled = filtered.defaults_filled;
+    report.drop_atoms(DropKind::Model, "", filtered.atoms_ignored);
 
-    if let Some((line, name)) = sieved.other_blocks.first() {
+    if let Some((line, name)) = filtered.other_blocks.first() {
         report.warnings.push(format!(
             "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
-            count(sieved.other_blocks.len(), "further data block")
+            count(filtered.other_blocks.len(), "further data block")
         ));
     }
-    if let Some(first) = sieved.displaced.first() {
+    if let Some(first) = filtered.displaced.first() {
         report.warnings.push(format!(
             "{} out of the columns of the format, the first at line {first}: moved and read",
-            count(sieved.displaced.len(), "atom record")
+            count(filtered.displaced.len(), "atom record")
         ));
     }
-    let provenance = sieved.provenance;
-    let (models, ignored) = (sieved.models, std::mem::take(&mut sieved.ignored));
-    let assemblies = std::mem::take(&mut sieved.assemblies);
-    let chain_ends = std::mem::take(&mut sieved.chain_ends);
-    let mut parsed = parse::parse(file, format, sieved)?;
+    let provenance = filtered.provenance;
+    let (models, ignored) = (filtered.models, std::mem::take(&mut filtered.ignored));
+    let assemblies = std::mem::take(&mut filtered.assemblies);
+    let chain_breaks = std::mem::take(&mut filtered.chain_breaks);
+    let mut parsed = parse::parse(file, format, filtered)?;
     let relation = match models {
         0 | 1 => models::Relation::Single,
         _ => {
             let read = parsed.iter();
-            let read = read.map(|record| (record.carried.model, record.exact.position));
+            let read = read.map(|record| (record.raw.model, record.exact.position));
             models::relation(read.chain(ignored.iter().copied()))
         }
     };
@@ -195,11 +197,11 @@ fn read_telling(
         if relation == models::Relation::Alternatives {
             report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
         }
-        let (joined, told) = models::join(parsed, relation);
-        (parsed, report.joined_models) = (joined, Some(told));
+        let (joined, shown) = models::join(parsed, relation);
+        (parsed, report.joined_models) = (joined, Some(shown));
     } else if relation == models::Relation::Parts {
         report.altered.models_are_parts = true;
-        let read = parsed.first().map_or(1, |record| record.carried.model);
+        let read = parsed.first().map_or(1, |record| record.raw.model);
         report
             .warnings
             .push(models::warning(models, read, ignored.len()));
@@ -221,7 +223,7 @@ fn read_telling(
         dropped,
     )?;
     Ok(Molecule {
-        chain_ends,
+        chain_breaks,
         ..finish(format, atoms, report)
     })
 }

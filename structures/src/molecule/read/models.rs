@@ -1,8 +1,8 @@
 //! Models that are parts of one thing, and models that are alternatives.
 //!
-//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or of a complex with a partner
-//! in each lie beside one another: two atoms that are not bonded keep some 3 Å apart. So the models of a file are parts where hardly any atom
-//! shares a cell of 2 Å with an atom of another model.
+//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or of
+//! a complex with a partner in each lie beside one another: two atoms that are not bonded keep some 3 Å apart. So the
+//! models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -13,10 +13,12 @@ use crate::molecule::read::assembly::{ON_AXIS, copy_name};
 use crate::molecule::read::parse::Parsed;
 use crate::neighbours::cell::{Cell, cell_of};
 
-/// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold one.
+/// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold
+/// one.
 const CELL: f64 = 2.0;
 
-/// Share of a model's atoms up to which it lies beside the others: some 40% do so of two models that lie on one another.
+/// Share of a model's atoms up to which it lies beside the others: some 40% do so of two models that lie on one
+/// another.
 const MAX_SHARED: f64 = 0.05;
 
 /// What the models of a file are to one another.
@@ -71,13 +73,14 @@ pub(crate) fn warning(models: usize, read: usize, ignored: usize) -> String {
 pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one another, as alternatives do, and --model all reads them as one \
      molecule, in which they are counted one by one: --model 1 reads the first";
 
-/// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly are: the second of chain A is
-/// `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier model is left out.
+/// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly
+/// are: the second of chain A is `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier
+/// model is left out.
 pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, JoinedModels) {
     let mut of_chain: HashMap<&str, BTreeSet<usize>> = HashMap::new();
     for record in &parsed {
-        let models = of_chain.entry(&record.carried.chain).or_default();
-        models.insert(record.carried.model);
+        let models = of_chain.entry(&record.raw.chain).or_default();
+        models.insert(record.raw.model);
     }
     let in_file: HashSet<&str> = of_chain.keys().copied().collect();
     let names: HashMap<(usize, &str), String> = of_chain
@@ -91,30 +94,30 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
     let mut seen: HashMap<_, Vec<(usize, [f64; 3])>> = HashMap::new();
     let mut repeats = Vec::with_capacity(parsed.len());
     for record in &parsed {
-        let (carried, position) = (&record.carried, record.exact.position);
+        let (raw, position) = (&record.raw, record.exact.position);
         let key = (
-            carried.chain.as_str(),
-            carried.residue_number,
-            carried.insertion_code,
-            (carried.residue_name.as_str(), record.name.as_str()),
-            carried.alternate_location,
+            raw.chain.as_str(),
+            raw.residue_number,
+            raw.insertion_code,
+            (raw.residue_name.as_str(), record.name.as_str()),
+            raw.alternate_location,
         );
         let there = seen.entry(key).or_default();
         let coincides = |(model, other): &(usize, [f64; 3])| {
-            *model != carried.model && squared_distance(*other, position) < ON_AXIS * ON_AXIS
+            *model != raw.model && squared_distance(*other, position) < ON_AXIS * ON_AXIS
         };
         let repeat = relation == Relation::Parts && there.iter().any(coincides);
         repeats.push(repeat);
         if !repeat {
-            there.push((carried.model, position));
+            there.push((raw.model, position));
         }
     }
     let renamed: Vec<Option<String>> = parsed
         .iter()
-        .map(|record| names.get(&(record.carried.model, record.carried.chain.as_str())))
+        .map(|record| names.get(&(record.raw.model, record.raw.chain.as_str())))
         .map(|name| name.cloned())
         .collect();
-    let models: BTreeSet<usize> = parsed.iter().map(|record| record.carried.model).collect();
+    let models: BTreeSet<usize> = parsed.iter().map(|record| record.raw.model).collect();
     let report = JoinedModels {
         models: models.len(),
         on_axes: repeats.iter().filter(|repeat| **repeat).count(),
@@ -124,7 +127,7 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
         .filter(|(_, repeat)| !repeat)
         .map(|((mut record, name), _)| {
             if let Some(name) = name {
-                record.carried.chain = name;
+                record.raw.chain = name;
             }
             record
         })

@@ -7,7 +7,8 @@ use crate::molecule::model::groups::{Residue, ResidueKey};
 use crate::molecule::model::wording::{count, show_chain};
 use crate::neighbours::SpatialHash;
 
-/// Distance in Å below which atoms of different residues are in one place: bonded ones are more than 1.2 Å apart, hydrogens left aside.
+/// Distance in Å below which atoms of different residues are in one place: bonded ones are more than 1.2 Å apart,
+/// hydrogens left aside.
 const ON_TOP: f64 = 0.5;
 
 /// The same of fewer than [`FEW`] atoms between two chains, which come to lie so by chance where bodies overlap.
@@ -127,7 +128,8 @@ fn is_one_number(a: ResidueKey<'_>, b: ResidueKey<'_>) -> bool {
     (a.0, a.1, a.2) == (b.0, b.1, b.2) && a.3 != b.3
 }
 
-/// For each atom that lies on one of an earlier residue, its own residue, that one, and the square of their distance (Å²).
+/// For each atom that lies on one of an earlier residue, its own residue, that one, and the square of their distance
+/// (Å²).
 fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> {
     let mut residue_of = vec![usize::MAX; atoms.len()];
     for (index, residue) in residues.iter().enumerate() {

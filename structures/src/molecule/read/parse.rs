@@ -1,10 +1,12 @@
 //! Atoms from filtered text, by pdbtbx.
 //!
-//! Names, record kinds (ATOM or HETATM) and, of PDB files, coordinates, occupancies and temperature factors are taken from
-//! pdbtbx. All else it changes, as the table of the record filter lists, and comes from the [`AtomRecord`] of the same serial number.
+//! Names, record kinds (ATOM or HETATM) and, of PDB files, coordinates, occupancies and temperature factors are taken
+//! from pdbtbx. All else it changes, as the table of the record filter lists, and comes from the [`AtomRecord`] of the
+//! same serial number.
 //!
-//! pdbtbx panics on much that files hold. The record filter gives it nothing of that kind, so a panic here is a defect of the
-//! filter: it becomes [`ReadError::Parser`], which asks to report the file. Panic hooks belong to the program and stay as they are.
+//! pdbtbx panics on much that files hold. The record filter gives it nothing of that kind, so a panic here is a defect
+//! of the filter: it becomes [`ReadError::Parser`], which asks to report the file. Panic hooks belong to the program
+//! and stay as they are.
 
 use std::io::BufReader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,29 +16,33 @@ use pdbtbx::{ContainsAtomConformer, Context, PDB, PDBError, ReadOptions, Strictn
 
 use crate::molecule::model::format::Format;
 use crate::molecule::read::error::ReadError;
-use crate::molecule::read::record_filter::record::{AtomRecord, Exact, Sieved};
+use crate::molecule::read::record_filter::record::{AtomRecord, Exact, FilteredRecords};
 
-/// One atom as pdbtbx and the sieve together know it.
+/// One atom as pdbtbx and the record filter together know it.
 #[derive(Clone)]
 pub(crate) struct Parsed {
     pub(crate) name: String,
     pub(crate) hetero: bool,
     pub(crate) exact: Exact,
-    pub(crate) carried: AtomRecord,
+    pub(crate) raw: AtomRecord,
 }
 
-/// Reads sieved text by pdbtbx and joins the carried facts by serial number, in file order.
-pub(crate) fn parse(file: &Path, format: Format, sieved: Sieved) -> Result<Vec<Parsed>, ReadError> {
-    let pdb = read_guarded(&sieved.text, format).map_err(|refusal| ReadError::Parser {
+/// Reads filtered text by pdbtbx and joins the carried facts by serial number, in file order.
+pub(crate) fn parse(
+    file: &Path,
+    format: Format,
+    filtered: FilteredRecords,
+) -> Result<Vec<Parsed>, ReadError> {
+    let pdb = read_guarded(&filtered.text, format).map_err(|refusal| ReadError::Parser {
         file: file.to_path_buf(),
         line: refusal
             .record
-            .and_then(|record| sieved.carried.get(record))
-            .map(|carried| carried.line),
+            .and_then(|record| filtered.records.get(record))
+            .map(|raw| raw.line),
         what: refusal.what,
     })?;
     let mut facts: Vec<Option<Facts>> = Vec::new();
-    facts.resize_with(sieved.carried.len(), || None);
+    facts.resize_with(filtered.records.len(), || None);
     for placed in pdb.atoms_with_hierarchy() {
         let atom = placed.atom();
         let (x, y, z) = atom.pos();
@@ -52,18 +58,18 @@ pub(crate) fn parse(file: &Path, format: Format, sieved: Sieved) -> Result<Vec<P
             });
         }
     }
-    let joined = sieved.carried.into_iter().zip(facts);
+    let joined = filtered.records.into_iter().zip(facts);
     joined
-        .map(|(carried, facts)| match facts {
+        .map(|(raw, facts)| match facts {
             Some(facts) => Ok(Parsed {
                 name: facts.name,
                 hetero: facts.hetero,
-                exact: carried.exact.unwrap_or(facts.exact),
-                carried,
+                exact: raw.exact.unwrap_or(facts.exact),
+                raw,
             }),
             None => Err(ReadError::Parser {
                 file: file.to_path_buf(),
-                line: Some(carried.line),
+                line: Some(raw.line),
                 what: "it lost this atom".to_string(),
             }),
         })
@@ -156,9 +162,9 @@ mod tests {
     }
 
     #[test]
-    fn pdbtbx_itself_panics_where_the_sieve_guards() {
-        // A blank residue name panics in pdbtbx 0.12 ("Invalid characters in Conformer creation"). When this test fails the
-        // guard is no longer needed for it.
+    fn pdbtbx_itself_panics_where_the_record_filter_guards() {
+        // A blank residue name panics in pdbtbx 0.12 ("Invalid characters in Conformer creation"). When this test fails
+        // the guard is no longer needed for it.
         let line =
             "ATOM      0  N       A   1       0.000   0.000   0.000  1.00  0.00              \n";
         let refusal = read_guarded(line, Format::Pdb).err().unwrap();

@@ -21,13 +21,15 @@ pub struct ReadOptions {
     pub altloc: AlternateLocation,
     /// Which model is read, or all of them as one molecule. A file of one model has it read.
     pub model: ModelChoice,
-    /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is read as it stands.
+    /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is
+    /// read as it stands.
     pub assembly: Option<String>,
     /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
     pub min_plddt: Option<f64>,
     /// Residues of these names are left out, whatever they are.
     pub drop_residue: Vec<String>,
-    /// Whether the B column is pLDDT wherever it can be, as the user says who gives a least one and no file is known as a prediction.
+    /// Whether the B column is pLDDT wherever it can be, as the user says who gives a least one and no file is known as
+    /// a prediction.
     #[serde(skip)]
     pub trust_plddt: bool,
     /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
@@ -133,7 +135,8 @@ pub enum Hetatm {
     NoAdditives,
     /// All are kept.
     Keep,
-    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their record.
+    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their
+    /// record.
     Drop,
 }
 

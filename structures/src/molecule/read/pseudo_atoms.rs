@@ -1,10 +1,11 @@
 //! Pseudo-atoms: records that mark places and are no atoms. They are dropped, and reported.
 //!
-//! - **Markers** are residues of their own: membrane planes, pockets, shapes, frames. Their names are those of real ligands, too (MEM is
-//!   meropenem, SHA salicylhydroxamic acid), so that a residue is a marker only if all its atoms have the names that the program gives them.
-//! - **Sites without mass** stand in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water, virtual and centroid
-//!   atoms. What has an element in its column is an atom, but for the names of a standard residue's own
-//!   virtual atoms.
+//! - **Markers** are residues of their own: membrane planes, pockets, shapes, frames. Their names are those of real
+//!   ligands, too (MEM is meropenem, SHA salicylhydroxamic acid), so that a residue is a marker only if all its atoms
+//!   have the names that the program gives them.
+//! - **Sites without mass** stand in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water,
+//!   virtual and centroid atoms. What has an element in its column is an atom, but for the names of a standard
+//!   residue's own virtual atoms.
 
 use crate::molecule::chemistry::elements;
 use crate::molecule::chemistry::elements::{NameColumn, column_symbol};
@@ -50,23 +51,23 @@ const DRUDE: f64 = 0.5;
 type Key<'a> = (&'a str, i64, Option<char>, &'a str);
 
 fn key(record: &Parsed) -> Key<'_> {
-    let carried = &record.carried;
+    let raw = &record.raw;
     (
-        &carried.chain,
-        carried.residue_number,
-        carried.insertion_code,
-        &carried.residue_name,
+        &raw.chain,
+        raw.residue_number,
+        raw.insertion_code,
+        &raw.residue_name,
     )
 }
 
-/// Which records are pseudo-atoms, and under what name they are counted: `known` has the names under which the tables have each record's
-/// residue.
+/// Which records are pseudo-atoms, and under what name they are counted: `known` has the names under which the tables
+/// have each record's residue.
 pub(crate) fn find(parsed: &[Parsed], known: &[&str]) -> Vec<Option<String>> {
     let markers = markers(parsed);
     let all = parsed.iter().zip(known).zip(markers).enumerate();
     all.map(|(index, ((record, known), marker))| {
         if marker {
-            Some(record.carried.residue_name.clone())
+            Some(record.raw.residue_name.clone())
         } else if is_drude(parsed, index) {
             Some("Drude particle".to_owned())
         } else {
@@ -81,7 +82,7 @@ fn markers(parsed: &[Parsed]) -> Vec<bool> {
     let is_marker = |record: &Parsed| {
         let of_residue = MARKERS
             .iter()
-            .find(|(residue, _)| *residue == record.carried.residue_name);
+            .find(|(residue, _)| *residue == record.raw.residue_name);
         of_residue.map(|(_, atoms)| {
             let name = record.name.to_ascii_uppercase();
             atoms.contains(&name.trim_end_matches(|c: char| c.is_ascii_digit()))
@@ -130,7 +131,7 @@ fn is_site(parsed: &[Parsed], index: usize, known: &str) -> bool {
     let Some(record) = parsed.get(index) else {
         return false;
     };
-    let (name, column) = (record.name.as_str(), record.carried.element.as_str());
+    let (name, column) = (record.name.as_str(), record.raw.element.as_str());
     if is_water(known) {
         let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
         return matches!(name, "M" | "MW" | "OM" | "EP" | "EPW" | "LP");

@@ -1,5 +1,5 @@
-//! From parsed records to the atoms that are docked: chains asked for, by default no hydrogens, no waters, no additives, one
-//! alternate location a residue, of predictions the residues that they are sure enough of.
+//! From parsed records to the atoms that are docked: chains requested, by default no hydrogens, no waters, no
+//! additives, one alternate location a residue, of predictions the residues that they are sure enough of.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -24,8 +24,8 @@ use crate::molecule::read::wanted::Wanted;
 
 /// Applies all selections and notes in the report what they dropped.
 ///
-/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file order but
-/// for alternate locations and residues of low confidence, which come last.
+/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file
+/// order but for alternate locations and residues of low confidence, which come last.
 pub(crate) fn select(
     file: &Path,
     parsed: Vec<Parsed>,
@@ -47,7 +47,7 @@ pub(crate) fn select(
     let (aligned, pseudo_atoms) = {
         let names = parsed.iter().zip(&other_names);
         let known: Vec<&str> = names
-            .map(|(record, other)| other.as_deref().unwrap_or(&record.carried.residue_name))
+            .map(|(record, other)| other.as_deref().unwrap_or(&record.raw.residue_name))
             .collect();
         (
             keeps_alignment(&parsed, &known),
@@ -62,19 +62,17 @@ pub(crate) fn select(
     let mut left_out = Vec::new();
     let facts = other_names.into_iter().zip(pseudo_atoms);
     for (record, (other_name, pseudo_atom)) in parsed.into_iter().zip(facts) {
-        let carried = &record.carried;
-        let name = carried.residue_name.as_str();
+        let raw = &record.raw;
+        let name = raw.residue_name.as_str();
         let known = other_name.as_deref().unwrap_or(name);
         let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
         let resolved = || {
-            let column = &carried.element;
-            elements::resolve(known, &record.name, column, carried.name_column, aligned)
+            let column = &raw.element;
+            elements::resolve(known, &record.name, column, raw.name_column, aligned)
         };
-        let is_elsewhere = wanted
-            .as_ref()
-            .and_then(|wanted| wanted.leaves_out(carried));
+        let is_elsewhere = wanted.as_ref().and_then(|wanted| wanted.leaves_out(raw));
         let unwanted = if let Some(kind) = is_elsewhere {
-            Some((kind, show_chain(&carried.chain)))
+            Some((kind, show_chain(&raw.chain)))
         } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
             Some((DropKind::Residue, name))
         } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
@@ -105,13 +103,9 @@ pub(crate) fn select(
         }
         let element = resolved().ok_or_else(|| ReadError::UnknownElement {
             file: file.to_path_buf(),
-            line: carried.line,
+            line: raw.line,
             atom: record.name.clone(),
-            residue: format!(
-                "{name} {}{}",
-                show_chain(&carried.chain),
-                carried.residue_number
-            ),
+            residue: format!("{name} {}{}", show_chain(&raw.chain), raw.residue_number),
         })?;
         if options.hydrogens == Hydrogens::Drop && elements::is_hydrogen(element.symbol) {
             report.drop_atoms(DropKind::Hydrogen, "", 1);
@@ -146,21 +140,21 @@ pub(crate) fn select(
 
 /// The atom of a record, its radius left at zero.
 pub(crate) fn atom(record: Parsed, element: &str) -> Atom {
-    let carried = record.carried;
+    let raw = record.raw;
     Atom {
         name: record.name,
-        residue_name: carried.residue_name,
-        chain: carried.chain,
-        residue_number: carried.residue_number,
-        insertion_code: carried.insertion_code,
-        alternate_location: carried.alternate_location,
+        residue_name: raw.residue_name,
+        chain: raw.chain,
+        residue_number: raw.residue_number,
+        insertion_code: raw.insertion_code,
+        alternate_location: raw.alternate_location,
         element: element.to_string(),
         position: record.exact.position,
         occupancy: record.exact.occupancy,
         b_factor: record.exact.b_factor,
         hetero: record.hetero,
         radius: 0.0,
-        line: carried.line,
+        line: raw.line,
     }
 }
 
@@ -168,11 +162,11 @@ pub(crate) fn atom(record: Parsed, element: &str) -> Atom {
 fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
     let mut residues: HashMap<(&str, i64, Option<char>, &str), Vec<usize>> = HashMap::new();
     for (index, record) in parsed.iter().enumerate() {
-        let carried = &record.carried;
-        let name = carried.residue_name.as_str();
+        let raw = &record.raw;
+        let name = raw.residue_name.as_str();
         if !(is_amino_acid(name) || is_water(name)) {
-            let number = (carried.residue_number, carried.insertion_code);
-            let key = (carried.chain.as_str(), number.0, number.1, name);
+            let number = (raw.residue_number, raw.insertion_code);
+            let key = (raw.chain.as_str(), number.0, number.1, name);
             residues.entry(key).or_default().push(index);
         }
     }
@@ -181,7 +175,7 @@ fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
         let atoms = records.iter().filter_map(|&index| parsed.get(index));
         let known = known_as(
             name,
-            atoms.map(|record| (record.name.as_str(), record.carried.element.as_str())),
+            atoms.map(|record| (record.name.as_str(), record.raw.element.as_str())),
         );
         if known != name {
             for index in records {
@@ -194,16 +188,16 @@ fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
     found
 }
 
-/// What tells a residue from all others.
+/// What distinguishes a residue from all others.
 type ResidueKey = (String, i64, Option<char>, String);
 
 fn residue_key(record: &Parsed) -> ResidueKey {
-    let carried = &record.carried;
+    let raw = &record.raw;
     (
-        carried.chain.clone(),
-        carried.residue_number,
-        record.carried.insertion_code,
-        carried.residue_name.clone(),
+        raw.chain.clone(),
+        raw.residue_number,
+        record.raw.insertion_code,
+        raw.residue_name.clone(),
     )
 }
 
@@ -223,12 +217,12 @@ fn modified_residues(parsed: &[Parsed]) -> HashSet<ResidueKey> {
     whole.map(|(key, _)| key).collect()
 }
 
-/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known` are the names under which the
-/// tables have the records' residues.
+/// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known`
+/// are the names under which the tables have the records' residues.
 fn keeps_alignment(parsed: &[Parsed], known: &[&str]) -> bool {
     parsed
         .iter()
         .zip(known)
         .filter(|(record, known)| record.name == "CA" && is_amino_acid(known))
-        .all(|(record, _)| record.carried.name_column == NameColumn::Blank)
+        .all(|(record, _)| record.raw.name_column == NameColumn::Blank)
 }

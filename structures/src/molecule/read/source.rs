@@ -102,7 +102,7 @@ pub(crate) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadErro
 
 /// The format by content, or by the file's name where the content leaves it open.
 ///
-/// The content is asked first because names lie more often: `.pdb` files that hold mmCIF are common in pipelines.
+/// The content decides first because names lie more often: `.pdb` files that hold mmCIF are common in pipelines.
 pub(crate) fn format_of(path: &Path, text: &str) -> Option<Format> {
     by_content(text).or_else(|| by_name(path))
 }
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn content_tells_the_format_before_the_name() {
+    fn content_decides_the_format_before_the_name() {
         let format = |name: &str, text: &str| format_of(Path::new(name), text);
         assert_eq!(format("x.pdb", "data_1ABC\nloop_\n"), Some(Format::Mmcif));
         assert_eq!(format("x.cif", "REMARK\nATOM      1\n"), Some(Format::Pdb));

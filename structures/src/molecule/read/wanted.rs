@@ -1,4 +1,4 @@
-//! The chains and residues that are asked of a file, and where these cut a chain.
+//! The chains and residues that are requested of a file.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
@@ -21,9 +21,9 @@ impl Wanted {
     pub(crate) fn new(file: &Path, parsed: &[Parsed], parts: &[String]) -> Result<Self, ReadError> {
         let mut present: Vec<String> = Vec::new();
         let mut names: BTreeSet<&str> = BTreeSet::new();
-        for Parsed { carried, .. } in parsed {
-            if names.insert(&carried.chain) {
-                present.push(carried.chain.clone());
+        for Parsed { raw, .. } in parsed {
+            if names.insert(&raw.chain) {
+                present.push(raw.chain.clone());
             }
         }
         let text = parts.join(",");
@@ -41,13 +41,12 @@ impl Wanted {
                 });
             }
             let of_chain = || {
-                let records = parsed.iter().map(|record| &record.carried);
-                records.filter(|carried| carried.chain == picked.chain)
+                let records = parsed.iter().map(|record| &record.raw);
+                records.filter(|raw| raw.chain == picked.chain)
             };
-            let is_there =
-                |carried: &AtomRecord| picked.holds(carried.residue_number, carried.insertion_code);
+            let is_there = |raw: &AtomRecord| picked.holds(raw.residue_number, raw.insertion_code);
             if !of_chain().any(is_there) {
-                let numbers = || of_chain().map(|carried| carried.residue_number);
+                let numbers = || of_chain().map(|raw| raw.residue_number);
                 let (first, last) = (numbers().min(), numbers().max());
                 return Err(ReadError::UnknownResidues {
                     file: file.to_path_buf(),
@@ -61,12 +60,12 @@ impl Wanted {
         Ok(Self(wanted))
     }
 
-    /// Why an atom is not asked for, if it is not.
-    pub(crate) fn leaves_out(&self, carried: &AtomRecord) -> Option<DropKind> {
-        let Some(parts) = self.0.get(&carried.chain) else {
+    /// Why an atom is left out, if it was not requested.
+    pub(crate) fn leaves_out(&self, raw: &AtomRecord) -> Option<DropKind> {
+        let Some(parts) = self.0.get(&raw.chain) else {
             return Some(DropKind::Chain);
         };
-        let holds = |part: &Picked| part.holds(carried.residue_number, carried.insertion_code);
+        let holds = |part: &Picked| part.holds(raw.residue_number, raw.insertion_code);
         (!parts.iter().any(holds)).then_some(DropKind::OtherResidue)
     }
 }

@@ -8,7 +8,7 @@ pub enum WriteError {
     /// The file system refused.
     #[error("the structure cannot be written: {0}")]
     Io(#[from] io::Error),
-    /// PDB was asked for, and its columns cannot hold this. mmCIF can.
+    /// PDB was requested, and its columns cannot hold this. mmCIF can.
     #[error("this does not fit the PDB format: {what}; write mmCIF instead")]
     DoesNotFit {
         /// What does not fit.

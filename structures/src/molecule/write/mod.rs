@@ -1,8 +1,8 @@
 //! Writing molecules and complexes, as PDB or mmCIF.
 //!
-//! Atoms keep their order, names, residue numbers, insertion codes, elements, occupancies and temperature factors. A complex
-//! gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, or PDB's single column
-//! cannot hold it. The map stands in the file's remarks and is returned.
+//! Atoms keep their order, names, residue numbers, insertion codes, elements, occupancies and temperature factors. A
+//! complex gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, or PDB's
+//! single column cannot hold it. The map stands in the file's remarks and is returned.
 
 pub(crate) mod chains;
 pub(crate) mod error;
@@ -70,7 +70,8 @@ pub fn write_molecule<W: Write>(
     write_rows(writer, format, &rows, remarks)
 }
 
-/// Writes one molecule; of chains whose names the format cannot hold, such as `A-2` in PDB, the remarks say what they are called instead.
+/// Writes one molecule; of chains whose names the format cannot hold, such as `A-2` in PDB, the remarks say what they
+/// are called instead.
 ///
 /// # Errors
 /// As [`write_complex`].
@@ -85,14 +86,14 @@ pub fn write_renamed<W: Write>(
         .chains
         .iter()
         .filter(|chain| chain.written != chain.original);
-    let told = renamed.map(|chain| {
+    let notes = renamed.map(|chain| {
         format!(
             "chain {} was {}",
             chain.written,
             show_chain(&chain.original)
         )
     });
-    let remarks: Vec<String> = remarks.iter().cloned().chain(told).collect();
+    let remarks: Vec<String> = remarks.iter().cloned().chain(notes).collect();
     write_rows(writer, format, &complex_rows(&[molecule], &map), &remarks)
 }
 
@@ -126,7 +127,7 @@ fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'
             ends_chain: false,
         })
         .collect();
-    for end in chain_ends(atoms) {
+    for end in polymer_ends(atoms) {
         if let Some(row) = rows.get_mut(end) {
             row.ends_chain = true;
         }
@@ -136,7 +137,7 @@ fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'
 
 /// Indices of the last atoms of the chains' polymers: the last residue of ATOM records in each chain, and the modified
 /// residues that follow it directly. What comes after (cofactors, metals, free amino acids) is not part of the polymer.
-fn chain_ends(atoms: &[Atom]) -> Vec<usize> {
+fn polymer_ends(atoms: &[Atom]) -> Vec<usize> {
     struct End<'a> {
         chain: &'a str,
         residue: usize,

@@ -42,13 +42,13 @@ impl Role {
 
 /// Faces as a file lists them, which may be before the vertices that they name.
 #[derive(Debug, Default)]
-pub struct Listed {
+pub struct FaceLists {
     pub soup: Soup,
     /// Role, place and numbers of vertices.
     pub lists: Vec<(Role, At, Vec<i64>)>,
 }
 
-impl Listed {
+impl FaceLists {
     /// Faces checked and cut out of strips.
     pub fn into_soup(self) -> Result<Soup, MeshErrorKind> {
         let Self { mut soup, lists } = self;

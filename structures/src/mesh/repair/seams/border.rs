@@ -1,7 +1,7 @@
 //! The open edges of a mesh, and which of them lie within reach of one another.
 
 use crate::mesh::repair::faces::Faces;
-use crate::mesh::repair::seams::grid::{Grid, apart};
+use crate::mesh::repair::seams::grid::{Grid, axis_distance};
 
 /// Stands for no vertex.
 pub const NONE: u32 = u32::MAX;
@@ -105,11 +105,11 @@ impl Border {
         })
     }
 
-    /// Open edges whose ends lie within reach of one another, in the order in which they are joined. Edges no longer than the
-    /// reach are left out: either end of one might be either end of another.
+    /// Open edges whose ends lie within reach of one another, in the order in which they are joined. Edges no longer
+    /// than the reach are left out: either end of one might be either end of another.
     pub fn pairs(&self, reach: f64) -> Vec<Pair> {
         let between =
-            |p: u32, q: u32| apart(self.positions[p as usize], self.positions[q as usize]);
+            |p: u32, q: u32| axis_distance(self.positions[p as usize], self.positions[q as usize]);
         let grid = Grid::new(&self.positions, reach);
         let mut near = Vec::new();
         let mut pairs = Vec::new();

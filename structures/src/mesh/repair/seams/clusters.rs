@@ -2,7 +2,7 @@
 
 use crate::mesh::repair::faces::Faces;
 use crate::mesh::repair::seams::border::{Border, NONE};
-use crate::mesh::repair::seams::grid::apart;
+use crate::mesh::repair::seams::grid::axis_distance;
 
 /// Sets of vertices that become one.
 #[derive(Clone)]
@@ -41,7 +41,7 @@ impl Clusters {
     fn common_box(&self, a: [[f64; 3]; 2], b: [[f64; 3]; 2]) -> Option<[[f64; 3]; 2]> {
         let low = [0, 1, 2].map(|axis| a[0][axis].min(b[0][axis]));
         let high = [0, 1, 2].map(|axis| a[1][axis].max(b[1][axis]));
-        (apart(low, high) <= self.reach).then_some([low, high])
+        (axis_distance(low, high) <= self.reach).then_some([low, high])
     }
 
     /// Whether the sets of two vertices may be one.
@@ -96,7 +96,7 @@ impl Clusters {
         for &[a, _] in &open {
             let rim = rims.first(a) as usize;
             let [low, high] = rims.boxes[rim];
-            is_small[rim] = apart(low, high) <= self.reach;
+            is_small[rim] = axis_distance(low, high) <= self.reach;
         }
         if !is_small.contains(&true) {
             return;

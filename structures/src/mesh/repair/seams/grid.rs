@@ -6,7 +6,7 @@ use crate::neighbours::SpatialHash;
 pub const MAX_NEAR: usize = 128;
 
 /// The largest difference along an axis.
-pub fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub fn axis_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3)
         .map(|axis| (a[axis] - b[axis]).abs())
         .fold(0.0, f64::max)
@@ -40,7 +40,7 @@ impl<'a> Grid<'a> {
     pub fn near(&self, position: [f64; 3], near: &mut Vec<u32>) {
         near.clear();
         for &point in self.cells.touching(position, self.reach) {
-            if apart(self.positions[point as usize], position) <= self.reach {
+            if axis_distance(self.positions[point as usize], position) <= self.reach {
                 near.push(point);
             }
             if near.len() > MAX_NEAR {

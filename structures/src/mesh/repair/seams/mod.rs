@@ -1,15 +1,18 @@
 //! Seams: open edges in one place but for rounding, made one.
 //!
-//! Programs that mesh each face of a body by itself, or that move a part after meshing it, round the two copies of a vertex
-//! differently. The rule:
+//! Programs that mesh each face of a body by itself, or that move a part after meshing it, round the two copies of a
+//! vertex differently. The rule:
 //!
 //! - Only ends of **open edges** (of one face alone) are joined, so a closed mesh stays as it is, however thin.
-//! - Two open edges longer than the reach are joined when both their ends lie within reach of one another. What has the fewest
-//!   edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in the file.
+//! - Two open edges longer than the reach are joined when both their ends lie within reach of one another. What has the
+//!   fewest edges within reach goes first, then edges that run opposite ways, then the closest, then by their place in
+//!   the file.
 //! - All the vertices that become one lie in a cube as wide as the reach: no chain leads farther.
 //! - Two vertices that follow each other on a face are not joined, so no sliver is lost.
-//! - Where more than [`MAX_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and nothing is joined.
-//! - Last, a hole that lies in a cube as wide as the reach is closed: its rim becomes one vertex, unless a whole face lies in it.
+//! - Where more than [`MAX_NEAR`] open vertices lie within reach of one, the surface is finer than its numbers, and
+//!   nothing is joined.
+//! - Last, a hole that lies in a cube as wide as the reach is closed: its rim becomes one vertex, unless a whole face
+//!   lies in it.
 //!
 //! The earliest vertex stands for those joined with it. Time and memory are about proportional to the number of edges.
 
@@ -60,7 +63,7 @@ pub fn join(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::repair::seams::grid::apart;
+    use crate::mesh::repair::seams::grid::axis_distance;
 
     fn joined(positions: &[[f64; 3]], faces: &[&[u32]], reach: f64) -> Option<Vec<u32>> {
         let mut all = Faces::default();
@@ -101,7 +104,7 @@ mod tests {
         let faces: Vec<&[u32]> = faces.iter().map(|face| face.as_slice()).collect();
         let names = joined(&positions, &faces, 1.0).unwrap();
         for (vertex, &name) in names.iter().enumerate() {
-            assert!(apart(positions[vertex], positions[name as usize]) <= 1.0);
+            assert!(axis_distance(positions[vertex], positions[name as usize]) <= 1.0);
         }
         // Within reach of too many, nothing is done.
         assert_eq!(joined(&positions[..], &faces, 1e-3), None);

@@ -7,7 +7,7 @@ use crate::test_support::{capped, example, without};
 
 /// The places of the residues near ends, all of whose atoms must be there.
 fn near(molecule: &Molecule) -> Vec<usize> {
-    let ends = molecule.chain_ends();
+    let ends = molecule.termini();
     let mut near = Vec::new();
     for (place, run) in residue_runs(&molecule.atoms).iter().enumerate() {
         let there = run.atoms.iter().filter(|atom| ends.atoms.contains(atom));
@@ -46,7 +46,7 @@ fn an_end_that_something_is_bonded_to_is_none() {
 #[test]
 fn no_chains_have_no_ends() {
     let nothing = Molecule::new(Vec::new(), Format::Pdb);
-    assert_eq!(nothing.chain_ends(), ChainEnds::default());
+    assert_eq!(nothing.termini(), Termini::default());
     let (peptide, _) = without(&example("receptor"), 19..223);
     assert_eq!(near(&peptide), [0usize; 0]);
 }

@@ -11,11 +11,11 @@ fn trypsin() -> Molecule {
     example("receptor")
 }
 
-/// Residues, gaps, ends, and the courses of each stretch.
-fn counts(missing: &MissingResidues) -> ([usize; 3], Vec<usize>) {
-    let courses = missing.stretches.iter().map(|one| one.courses.len());
+/// Residues, gaps, ends, and the conformers of each segment.
+fn counts(missing: &UnresolvedResidues) -> ([usize; 3], Vec<usize>) {
+    let traces = missing.segments.iter().map(|one| one.traces.len());
     let found = [missing.residues, missing.gaps, missing.ends];
-    (found, courses.collect())
+    (found, traces.collect())
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -34,49 +34,49 @@ fn without_a_loop() -> (Molecule, Vec<[f64; 3]>) {
 
 /// Trypsin's first N has a pocket of its own, and nothing can go on from it.
 #[test]
-fn courses_go_on_from_an_end_that_has_room() {
+fn conformers_go_on_from_an_end_that_has_room() {
     let molecule = trypsin();
-    let missing = molecule.missing_residues();
+    let missing = molecule.unresolved_residues();
     assert_eq!(counts(&missing), ([0, 0, 2], vec![64]));
     let last = molecule.atoms.iter().rfind(|atom| atom.name == "C");
-    assert_eq!(missing.stretches[0].origin, last.unwrap().position);
-    for course in &missing.stretches[0].courses {
-        assert_eq!(course.len(), PAST_END);
+    assert_eq!(missing.segments[0].origin, last.unwrap().position);
+    for trace in &missing.segments[0].traces {
+        assert_eq!(trace.len(), PAST_END);
     }
 }
 
-/// What makes a course a chain that has room: its steps, its bends, and what it keeps clear of.
+/// What makes a conformer a chain that has room: its steps, its bends, and what it keeps clear of.
 #[test]
-fn courses_are_chains_that_have_room() {
+fn conformers_are_chains_that_have_room() {
     let (molecule, _) = without_a_loop();
-    let missing = molecule.missing_residues();
+    let missing = molecule.unresolved_residues();
     assert_eq!(counts(&missing).1, [64, 64]);
     let last_residue = molecule.atoms.last().unwrap().residue_number;
-    for (stretch, beside) in missing
-        .stretches
+    for (segment, beside) in missing
+        .segments
         .iter()
         .zip([&[144, 152][..], &[last_residue]])
     {
-        for course in &stretch.courses {
-            assert!((distance(course[0], [0.0; 3]) - FIRST).abs() < 1e-9);
-            for (place, alpha) in course.iter().enumerate() {
-                let here = stretch.in_file(*alpha);
+        for trace in &segment.traces {
+            assert!((distance(trace[0], [0.0; 3]) - FIRST).abs() < 1e-9);
+            for (place, alpha) in trace.iter().enumerate() {
+                let here = segment.in_file(*alpha);
                 for atom in &molecule.atoms {
                     let room = match beside.contains(&atom.residue_number) {
-                        true if place == 0 || place + 1 == course.len() => 0.0,
+                        true if place == 0 || place + 1 == trace.len() => 0.0,
                         true => ROOM_BESIDE,
                         false => ROOM,
                     };
                     assert!(distance(atom.position, here) >= room);
                 }
-                let earlier = course[..place.saturating_sub(1)].iter();
+                let earlier = trace[..place.saturating_sub(1)].iter();
                 assert!(
                     earlier
                         .clone()
                         .all(|other| distance(*other, *alpha) >= ROOM)
                 );
             }
-            let steps: Vec<[f64; 3]> = course
+            let steps: Vec<[f64; 3]> = trace
                 .windows(2)
                 .map(|pair| std::array::from_fn(|axis| pair[1][axis] - pair[0][axis]))
                 .collect();
@@ -92,13 +92,14 @@ fn courses_are_chains_that_have_room() {
     }
 }
 
-/// Courses cross a gap from end to end and pass where the loop was, two in five of them within 5 Å of each of its CA atoms in the mean.
+/// Conformers cross a gap from end to end and pass where the loop was, two in five of them within 5 Å of each of its CA
+/// atoms in the mean.
 #[test]
 fn loops_lead_across_gaps_where_they_were() {
     let (molecule, alphas) = without_a_loop();
-    let missing = molecule.missing_residues();
+    let missing = molecule.unresolved_residues();
     assert_eq!(counts(&missing).0, [alphas.len(), 1, 2]);
-    let bridge = &missing.stretches[0];
+    let bridge = &missing.segments[0];
     let number = |wanted: i64, name: &str| {
         let mut atoms = molecule.atoms.iter();
         atoms
@@ -108,32 +109,32 @@ fn loops_lead_across_gaps_where_they_were() {
     };
     assert_eq!(bridge.origin, number(144, "C"));
     let end = number(152, "N");
-    for course in &bridge.courses {
-        assert!(distance(bridge.in_file(*course.last().unwrap()), end) < 3.0);
+    for trace in &bridge.traces {
+        assert!(distance(bridge.in_file(*trace.last().unwrap()), end) < 3.0);
     }
     let share = |point: [f64; 3]| {
         let local = bridge.local(point);
-        let near = |course: &&Vec<[f64; 3]>| course.iter().any(|at| distance(*at, local) < 5.0);
-        bridge.courses.iter().filter(near).count() as f64 / bridge.courses.len() as f64
+        let near = |trace: &&Vec<[f64; 3]>| trace.iter().any(|at| distance(*at, local) < 5.0);
+        bridge.traces.iter().filter(near).count() as f64 / bridge.traces.len() as f64
     };
     let mean = alphas.iter().map(|alpha| share(*alpha)).sum::<f64>() / alphas.len() as f64;
     assert!(mean > 0.4, "{mean}");
 }
 
 #[test]
-fn courses_go_with_the_molecule() {
+fn conformers_go_with_the_molecule() {
     let (molecule, _) = without(&trypsin(), 100..110);
     let turned = |[x, y, z]: [f64; 3]| [0.6 * x - 0.8 * y + 1e5, 0.8 * x + 0.6 * y, z - 7.0];
     let [here, there] = [molecule.clone(), molecule.map_positions(turned)]
-        .map(|molecule| molecule.missing_residues());
+        .map(|molecule| molecule.unresolved_residues());
     assert_eq!(counts(&here), counts(&there));
-    assert!(!here.stretches.is_empty());
-    for (one, other) in here.stretches.iter().zip(&there.stretches) {
+    assert!(!here.segments.is_empty());
+    for (one, other) in here.segments.iter().zip(&there.segments) {
         for (a, b) in one
-            .courses
+            .traces
             .iter()
             .flatten()
-            .zip(other.courses.iter().flatten())
+            .zip(other.traces.iter().flatten())
         {
             assert!(distance(turned(one.in_file(*a)), other.in_file(*b)) < 1e-6);
             assert!(distance(one.local(one.in_file(*a)), *a) < 1e-9);
@@ -144,9 +145,9 @@ fn courses_go_with_the_molecule() {
 #[test]
 fn peptides_and_capped_ends_have_nothing_past_them() {
     let (peptide, _) = without(&trypsin(), 19..223);
-    assert_eq!(counts(&peptide.missing_residues()), ([0; 3], vec![]));
+    assert_eq!(counts(&peptide.unresolved_residues()), ([0; 3], vec![]));
     let capped = capped(trypsin());
-    assert_eq!(counts(&capped.missing_residues()), ([0, 0, 1], vec![]));
+    assert_eq!(counts(&capped.unresolved_residues()), ([0, 0, 1], vec![]));
 }
 
 /// Where chains are merged under one name, numbers begin again or the next residue is out of reach.
@@ -156,25 +157,28 @@ fn merged_chains_end_and_begin() {
     let far = one.map_positions(|[x, y, z]| [x + 90.0, y, z]);
     let atoms = [one.atoms, far.atoms].concat();
     let merged = Molecule::new(atoms, Format::Pdb);
-    assert_eq!(counts(&merged.missing_residues()), ([0, 0, 4], vec![64; 2]));
+    assert_eq!(
+        counts(&merged.unresolved_residues()),
+        ([0, 0, 4], vec![64; 2])
+    );
     let mut numbered_on = merged;
     let half = numbered_on.atoms.len() / 2;
     for atom in &mut numbered_on.atoms[half..] {
         atom.residue_number += 300;
     }
-    let found = counts(&numbered_on.missing_residues());
+    let found = counts(&numbered_on.unresolved_residues());
     assert_eq!(found, ([0, 0, 4], vec![64; 2]));
 }
 
 #[test]
 fn no_molecule_is_too_odd() {
     let nothing = Molecule::new(Vec::new(), Format::Pdb);
-    assert_eq!(counts(&nothing.missing_residues()), ([0; 3], vec![]));
+    assert_eq!(counts(&nothing.unresolved_residues()), ([0; 3], vec![]));
     let mut all_in_one = trypsin();
     for atom in &mut all_in_one.atoms {
         atom.position = [1.0, 2.0, 3.0];
     }
-    assert_eq!(counts(&all_in_one.missing_residues()).1, [0; 0]);
+    assert_eq!(counts(&all_in_one.unresolved_residues()).1, [0; 0]);
     // An end whose main chain is on one line has no frame.
     let mut in_line = trypsin();
     let last = in_line.atoms.last().unwrap().residue_number;
@@ -185,5 +189,5 @@ fn no_molecule_is_too_odd() {
     };
     let (first, alpha, carbon) = (*main("N"), main("CA"), *main("C"));
     *alpha = std::array::from_fn(|axis| 0.5 * (first[axis] + carbon[axis]));
-    assert_eq!(counts(&in_line.missing_residues()), ([0, 0, 2], vec![]));
+    assert_eq!(counts(&in_line.unresolved_residues()), ([0, 0, 2], vec![]));
 }

@@ -1,7 +1,7 @@
 //! What the values of a B column say of themselves: whether they are a prediction's, where the file says nothing.
 //!
-//! One value a residue is hardly ever a refined structure's. Where values differ from atom to atom (AlphaFold 3, Chai-1), four things part
-//! pLDDT from temperature factors:
+//! One value a residue is hardly ever a refined structure's. Where values differ from atom to atom (AlphaFold 3,
+//! Chai-1), four things part pLDDT from temperature factors:
 //!
 //! | | pLDDT | temperature factors |
 //! |---|---|---|
@@ -16,20 +16,22 @@ use crate::molecule::model::atom::{Atom, squared_distance};
 use crate::molecule::model::groups::Residue;
 use crate::neighbours::SpatialHash;
 
-/// Fewest residues of several atoms by which values alone tell a prediction.
+/// Fewest residues of several atoms for values alone to show a prediction.
 const ENOUGH_RESIDUES: usize = 5;
 
-/// Mean pLDDT above which one value a residue tells a prediction: models that anyone docks are above it, most refined B values below.
+/// Mean pLDDT above which one value a residue shows a prediction: models that anyone docks are above it, most refined B
+/// values below.
 const TELLING_MEAN: f64 = 60.0;
 
-/// The same of values that differ from atom to atom. Of the 424 files of Docking Benchmark 5 one is above it with a tail of low values, and that
-/// one's side chains are far above its backbone.
+/// The same of values that differ from atom to atom. Of the 424 files of Docking Benchmark 5 one is above it with a
+/// tail of low values, and that one's side chains are far above its backbone.
 const TELLING_MEAN_BY_ATOM: f64 = 70.0;
 
 /// By how many standard deviations the median lies at least above the mean.
 const LOW_TAIL: f64 = 0.1;
 
-/// By how many standard deviations side chains lie at most above their backbones; of refined structures mostly 0.1 to 0.5.
+/// By how many standard deviations side chains lie at most above their backbones; of refined structures mostly 0.1 to
+/// 0.5.
 const MAX_TIPS: f64 = 0.1;
 
 /// Least correlation of the value with the number of atoms about; of refined structures mostly -0.35 to -0.7.
@@ -41,8 +43,13 @@ const ABOUT: f64 = 6.0;
 /// Most atoms that the correlation is taken over.
 const MAX_SAMPLE: usize = 2000;
 
-/// Whether values alone tell a prediction of this mean. Values are times `scale` on the scale of 0 to 100.
-pub(crate) fn tells(atoms: &[Atom], residues: &[Residue<'_>], mean: f64, scale: f64) -> bool {
+/// Whether values alone show a prediction of this mean. Values are times `scale` on the scale of 0 to 100.
+pub(crate) fn is_prediction(
+    atoms: &[Atom],
+    residues: &[Residue<'_>],
+    mean: f64,
+    scale: f64,
+) -> bool {
     let mut several = 0;
     let mut seen = HashSet::new();
     let mut by_atom = false;
@@ -59,13 +66,13 @@ pub(crate) fn tells(atoms: &[Atom], residues: &[Residue<'_>], mean: f64, scale: 
         return false;
     }
     if by_atom {
-        tells_by_atom(atoms, residues, mean, scale)
+        is_prediction_by_atom(atoms, residues, mean, scale)
     } else {
         mean > TELLING_MEAN
     }
 }
 
-fn tells_by_atom(
+fn is_prediction_by_atom(
     atoms: &[Atom],
     residues: &[Residue<'_>],
     mean_of_residues: f64,
@@ -93,7 +100,8 @@ fn deviation(values: &[f64], mean: f64) -> f64 {
     (squares / values.len().max(1) as f64).sqrt()
 }
 
-/// By how much the value of side chains beyond CB is above that of N, CA and C, as a mean over residues; 0 where there are none.
+/// By how much the value of side chains beyond CB is above that of N, CA and C, as a mean over residues; 0 where there
+/// are none.
 fn tips(atoms: &[Atom], residues: &[Residue<'_>], scale: f64) -> f64 {
     let differences: Vec<f64> = residues
         .iter()

@@ -55,7 +55,7 @@ impl<'a> Items<'a> {
 
     /// What all of it comes to.
     pub(crate) fn assemblies(&self) -> Assemblies {
-        let mut told = Assemblies::default();
+        let mut assemblies = Assemblies::default();
         let mut operators = HashMap::new();
         for row in &self.operators.rows {
             if let (Some(id), Some(operator)) = (text(row, "id"), operator(row)) {
@@ -64,20 +64,20 @@ impl<'a> Items<'a> {
         }
         for row in &self.parts.rows {
             match part(row, &operators) {
-                Ok((id, part)) => match told.list.iter_mut().find(|one| one.id == id) {
+                Ok((id, part)) => match assemblies.list.iter_mut().find(|one| one.id == id) {
                     Some(assembly) => assembly.parts.push(part),
-                    None => told.list.push(Assembly {
+                    None => assemblies.list.push(Assembly {
                         id: id.to_owned(),
                         parts: vec![part],
                     }),
                 },
                 Err(what) => {
                     let line = row.values().map(|token| token.line).min();
-                    told.broken.get_or_insert((line, what));
+                    assemblies.broken.get_or_insert((line, what));
                 }
             }
         }
-        told
+        assemblies
     }
 }
 
@@ -113,7 +113,8 @@ fn part<'a>(
     Ok((value("assembly_id")?, part))
 }
 
-/// Operators of an expression such as `1`, `1,3`, `(1-60)`, `(X0)(1-5,9)`: of groups in brackets every combination, the last group first.
+/// Operators of an expression such as `1`, `1,3`, `(1-60)`, `(X0)(1-5,9)`: of groups in brackets every combination, the
+/// last group first.
 fn expression(text: &str, operators: &HashMap<&str, Operator>) -> Result<Vec<Operator>, String> {
     let mut combined = vec![Operator::IDENTITY];
     let groups = text

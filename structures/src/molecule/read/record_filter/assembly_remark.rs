@@ -5,7 +5,7 @@ use crate::molecule::read::assemblies::{Assemblies, Assembly, Operator, Part};
 /// Reads REMARK 350 line by line.
 #[derive(Default)]
 pub(crate) struct Remark {
-    told: Assemblies,
+    assemblies: Assemblies,
     /// How many assemblies at the end of the list the lines now speak of.
     current: usize,
     /// Rows of the operator in the making.
@@ -22,31 +22,33 @@ impl Remark {
         };
         self.line = line;
         if let Err(what) = self.take(text.trim())
-            && self.told.broken.is_none()
+            && self.assemblies.broken.is_none()
         {
-            self.told.broken = Some((Some(line), what));
+            self.assemblies.broken = Some((Some(line), what));
         }
     }
 
     /// What all lines came to.
     pub(crate) fn assemblies(mut self) -> Assemblies {
-        if !self.rows.is_empty() && self.told.broken.is_none() {
-            self.told.broken = Some((
+        if !self.rows.is_empty() && self.assemblies.broken.is_none() {
+            self.assemblies.broken = Some((
                 Some(self.line),
                 "the last BIOMT operator lacks rows".to_owned(),
             ));
         }
-        self.told
+        self.assemblies
     }
 
     fn take(&mut self, text: &str) -> Result<(), String> {
         if let Some(ids) = text.strip_prefix("BIOMOLECULE:") {
             let ids = names(ids);
             self.current = ids.len();
-            self.told.list.extend(ids.into_iter().map(|id| Assembly {
-                id,
-                parts: Vec::new(),
-            }));
+            self.assemblies
+                .list
+                .extend(ids.into_iter().map(|id| Assembly {
+                    id,
+                    parts: Vec::new(),
+                }));
         } else if let Some((_, chains)) = text.split_once("APPLY THE FOLLOWING TO CHAINS:") {
             for assembly in self.current() {
                 assembly.parts.push(Part {
@@ -105,7 +107,7 @@ impl Remark {
     }
 
     fn current(&mut self) -> impl Iterator<Item = &mut Assembly> {
-        self.told.list.iter_mut().rev().take(self.current)
+        self.assemblies.list.iter_mut().rev().take(self.current)
     }
 
     fn parts(&mut self) -> impl Iterator<Item = &mut Part> {

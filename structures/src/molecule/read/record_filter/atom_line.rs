@@ -5,7 +5,8 @@ pub(crate) fn is_atom(record: &str) -> bool {
     record.starts_with("ATOM  ") || record.starts_with("HETATM") || has_wide_serial(record)
 }
 
-/// Whether an ATOM record's serial number has grown beyond 99,999 to the left, into columns 6 and 5, as some programs write it.
+/// Whether an ATOM record's serial number has grown beyond 99,999 to the left, into columns 6 and 5, as some programs
+/// write it.
 fn has_wide_serial(record: &str) -> bool {
     let columns = record.strip_prefix("ATOM").and_then(|rest| rest.get(..7));
     columns.is_some_and(|columns| {

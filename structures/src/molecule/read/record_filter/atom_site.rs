@@ -1,7 +1,7 @@
 //! The atom table of an mmCIF file.
 //!
-//! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the PDB
-//! format; atom and residue names are `label_atom_id` and `label_comp_id`.
+//! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the
+//! PDB format; atom and residue names are `label_atom_id` and `label_comp_id`.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -10,18 +10,19 @@ use crate::molecule::chemistry::elements::NameColumn;
 use crate::molecule::read::error::ReadError;
 use crate::molecule::read::policy::ModelChoice;
 use crate::molecule::read::record_filter::record::{
-    AtomRecord, Exact, NO_ALTERNATE, Sieved, coordinate, field,
+    AtomRecord, Exact, FilteredRecords, NO_ALTERNATE, coordinate, field,
 };
 use crate::molecule::read::record_filter::tokens::Token;
 
 /// Prefix of the tags of the atom table, in lower case; tags are case-insensitive.
 const CATEGORY: &str = "_atom_site.";
 
-/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues small.
+/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues
+/// small.
 const SHOWN_NUMBERS: i64 = 1000;
 
 /// The header of the table as pdbtbx expects it.
-const HEADER: &str = "data_sieved\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.label_atom_id\n\
+const HEADER: &str = "data_filtered\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.label_atom_id\n\
 _atom_site.label_alt_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.label_seq_id\n\
 _atom_site.pdbx_PDB_ins_code\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
 
@@ -110,19 +111,19 @@ impl<'a> Table<'a> {
     }
 
     /// Passes on the rows of the models that are wanted, counted from 1 by appearance.
-    pub(crate) fn sieve(
+    pub(crate) fn filter(
         &self,
         file: &Path,
         wanted: ModelChoice,
-        sieved: &mut Sieved,
+        filtered: &mut FilteredRecords,
     ) -> Result<(), ReadError> {
         if self.values.is_empty() {
             return Ok(());
         }
-        sieved.recognised = true;
+        filtered.recognised = true;
         let columns = self.columns(file)?;
         let width = self.items.len();
-        sieved.text.push_str(HEADER);
+        filtered.text.push_str(HEADER);
         // Numbers of the models by order of appearance; rows of one model need not stand together.
         let mut models: HashMap<Option<&str>, usize> = HashMap::new();
         for row in self.values.chunks(width) {
@@ -141,12 +142,12 @@ impl<'a> Table<'a> {
             let next = models.len() + 1;
             let number = *models.entry(model).or_insert(next);
             if !wanted.takes(number) {
-                sieved.ignore(number, row.position(&columns));
+                filtered.ignore(number, row.position(&columns));
                 continue;
             }
-            row.sieve(&columns, number, sieved)?;
+            row.filter(&columns, number, filtered)?;
         }
-        sieved.models = models.len();
+        filtered.models = models.len();
         Ok(())
     }
 }
@@ -216,7 +217,12 @@ impl<'a> Row<'_, 'a> {
         Some([x?, y?, z?])
     }
 
-    fn sieve(&self, columns: &Columns, model: usize, sieved: &mut Sieved) -> Result<(), ReadError> {
+    fn filter(
+        &self,
+        columns: &Columns,
+        model: usize,
+        filtered: &mut FilteredRecords,
+    ) -> Result<(), ReadError> {
         let mut position = [0.0; 3];
         for (axis, name) in ["Cartn_x", "Cartn_y", "Cartn_z"].into_iter().enumerate() {
             let column = columns.position.get(axis).copied().unwrap_or_default();
@@ -232,7 +238,7 @@ impl<'a> Row<'_, 'a> {
             column
                 .and_then(|column| self.number(column))
                 .unwrap_or_else(|| {
-                    sieved.defaults_filled += 1;
+                    filtered.defaults_filled += 1;
                     default
                 })
         };
@@ -257,35 +263,35 @@ impl<'a> Row<'_, 'a> {
             _ => "ATOM",
         };
 
-        sieved
+        filtered
             .text
-            .push_str(&format!("{group} {} ", sieved.carried.len()));
-        self.quote(&mut sieved.text, "label_atom_id", name)?;
+            .push_str(&format!("{group} {} ", filtered.records.len()));
+        self.quote(&mut filtered.text, "label_atom_id", name)?;
         let shown_alternate = alternate.unwrap_or(NO_ALTERNATE).to_string();
-        self.quote(&mut sieved.text, "label_alt_id", &shown_alternate)?;
-        self.quote(&mut sieved.text, "label_comp_id", residue_name)?;
-        self.quote(&mut sieved.text, "auth_asym_id", chain)?;
-        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What it takes for one residue
-        // is of no matter: the number travels past it.
+        self.quote(&mut filtered.text, "label_alt_id", &shown_alternate)?;
+        self.quote(&mut filtered.text, "label_comp_id", residue_name)?;
+        self.quote(&mut filtered.text, "auth_asym_id", chain)?;
+        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What
+        // it takes for one residue is of no matter: the number travels past it.
         let shown_number = residue_number.rem_euclid(SHOWN_NUMBERS);
-        sieved.text.push_str(&format!("{shown_number} "));
+        filtered.text.push_str(&format!("{shown_number} "));
         match insertion {
-            Some(code) => self.quote(&mut sieved.text, "pdbx_PDB_ins_code", &code.to_string())?,
-            None => sieved.text.push_str("? "),
+            Some(code) => self.quote(&mut filtered.text, "pdbx_PDB_ins_code", &code.to_string())?,
+            None => filtered.text.push_str("? "),
         }
         // Element and coordinates travel past pdbtbx.
-        sieved.text.push_str("\"C\" 0 0 0\n");
+        filtered.text.push_str("\"C\" 0 0 0\n");
         let archive_chain = columns
             .archive_chain
             .and_then(|column| self.value(column))
             .filter(|name| *name != chain);
-        let before = sieved.carried.last();
+        let before = filtered.records.last();
         if before.is_some_and(|before| {
             before.chain == chain && before.archive_chain.as_deref() != archive_chain
         }) {
-            sieved.chain_ends.push(self.line());
+            filtered.chain_breaks.push(self.line());
         }
-        sieved.carried.push(AtomRecord {
+        filtered.records.push(AtomRecord {
             line: self.line(),
             model,
             chain: chain.to_string(),
@@ -305,7 +311,8 @@ impl<'a> Row<'_, 'a> {
         Ok(())
     }
 
-    /// Writes a value in quotes that pdbtbx ends where they end: it stops at the first quote of the kind it started with.
+    /// Writes a value in quotes that pdbtbx ends where they end: it stops at the first quote of the kind it started
+    /// with.
     fn quote(&self, text: &mut String, item: &'static str, value: &str) -> Result<(), ReadError> {
         let is_plain = value.bytes().all(|byte| (32..127).contains(&byte));
         let quote = match (value.contains('"'), value.contains('\'')) {

@@ -1,7 +1,8 @@
 //! Atom records out of their columns: shifted by blanks, with tabs, or in small letters.
 //!
-//! The decimal points of the coordinates say where a record's columns are: the format has them in columns 35, 43 and 51.
-//! A record is moved so that they stand there; one in which they do not keep their distance of eight has lost its columns.
+//! The decimal points of the coordinates say where a record's columns are: the format has them in columns 35, 43 and
+//! 51. A record is moved so that they stand there; one in which they do not keep their distance of eight has lost its
+//! columns.
 
 use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide, is_water};
 use crate::molecule::read::record_filter::record::coordinate;
@@ -57,8 +58,8 @@ pub(crate) fn displaced(line: &str) -> Option<Displaced> {
     (decimals >= 3).then_some(Displaced::Lost)
 }
 
-/// The record of a line that begins as one, moved where all behind its name is shifted: its coordinates and the name of its residue both stand
-/// as far beside their columns.
+/// The record of a line that begins as one, moved where all behind its name is shifted: its coordinates and the name of
+/// its residue both stand as far beside their columns.
 pub(crate) fn shifted(record: &str) -> Option<String> {
     let bytes = record.as_bytes();
     if POINTS.iter().all(|&at| bytes.get(at) == Some(&b'.')) {
@@ -85,7 +86,8 @@ pub(crate) fn shifted(record: &str) -> Option<String> {
     (is_known(&moved) && !is_known(record)).then_some(moved)
 }
 
-/// The record of this name whose columns behind it are moved to their places; nothing where they are not an atom's then.
+/// The record of this name whose columns behind it are moved to their places; nothing where they are not an atom's
+/// then.
 fn realigned(name: &str, rest: &str, small: bool) -> Option<String> {
     let point = rest.find('.')?;
     let columns = if name.len() + point <= POINTS[0] {

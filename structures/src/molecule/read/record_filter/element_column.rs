@@ -1,7 +1,7 @@
 //! The element of a PDB record: columns 77-78, or the atom type of AutoDock in columns 78-79 of PDBQT.
 //!
-//! PDBQT is PDB with a partial charge in columns 71-76 and an atom type behind it (AutoDock 4.2 User Guide). Chlorine and the metals have
-//! types of two letters, of which columns 77-78 hold but the first.
+//! PDBQT is PDB with a partial charge in columns 71-76 and an atom type behind it (AutoDock 4.2 User Guide). Chlorine
+//! and the metals have types of two letters, of which columns 77-78 hold but the first.
 
 use crate::molecule::read::record_filter::record::coordinate;
 

@@ -1,4 +1,5 @@
-//! The sieve for mmCIF files: the `_atom_site` table of the first data block that has one, and what the file says beside it.
+//! The record filter for mmCIF files: the `_atom_site` table of the first data block that has one, and what the file
+//! says beside it.
 
 use std::path::Path;
 
@@ -6,24 +7,28 @@ use crate::molecule::read::error::ReadError;
 use crate::molecule::read::policy::ModelChoice;
 use crate::molecule::read::record_filter::assembly_items::Items;
 use crate::molecule::read::record_filter::atom_site::{Table, item};
-use crate::molecule::read::record_filter::provenance::Told;
-use crate::molecule::read::record_filter::record::Sieved;
+use crate::molecule::read::record_filter::provenance::ProvenanceItems;
+use crate::molecule::read::record_filter::record::FilteredRecords;
 use crate::molecule::read::record_filter::tokens::{Kind, Token, tokens};
 
 /// Sieves the text of an mmCIF file; of the models those that `model` takes.
-pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieved, ReadError> {
-    let mut sieved = Sieved::default();
+pub(crate) fn filter(
+    file: &Path,
+    text: &str,
+    model: ModelChoice,
+) -> Result<FilteredRecords, ReadError> {
+    let mut filtered = FilteredRecords::default();
     let mut table = Table::default();
-    let mut told = Told::default();
+    let mut items = ProvenanceItems::default();
     let mut assemblies = Items::default();
     let mut stream = tokens(text).peekable();
     while let Some(token) = stream.next() {
         match token.kind {
             Kind::Data(name) if !table.values.is_empty() => {
-                sieved.other_blocks = blocks_with_atoms((token.line, name), stream);
+                filtered.other_blocks = blocks_with_atoms((token.line, name), stream);
                 break;
             }
-            Kind::Data(_) => sieved.recognised = true,
+            Kind::Data(_) => filtered.recognised = true,
             Kind::Loop => {
                 let mut tags = Vec::new();
                 while let Some(Kind::Tag(tag)) = stream.peek().map(|next| next.kind) {
@@ -40,7 +45,7 @@ pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieve
                     if is_atoms {
                         table.values.push(next);
                     } else if let Some(tag) = columns.next() {
-                        told.note(tag, next.kind);
+                        items.note(tag, next.kind);
                         assemblies.note(tag, next);
                     }
                 }
@@ -50,7 +55,7 @@ pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieve
                 let value = stream.next_if(|next| is_value(next.kind));
                 if let Some(value) = value {
                     check_closed(file, value)?;
-                    told.note(tag, value.kind);
+                    items.note(tag, value.kind);
                     assemblies.note(tag, value);
                     if let Some(item) = item(tag) {
                         table.line = token.line;
@@ -63,10 +68,10 @@ pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieve
             Kind::Bare(_) | Kind::Quoted(_) => {}
         }
     }
-    sieved.provenance = told.provenance();
-    sieved.assemblies = assemblies.assemblies();
-    table.sieve(file, model, &mut sieved)?;
-    Ok(sieved)
+    filtered.provenance = items.provenance();
+    filtered.assemblies = assemblies.assemblies();
+    table.filter(file, model, &mut filtered)?;
+    Ok(filtered)
 }
 
 /// Lines and names of the data blocks that have an atom table, from the one given on.
@@ -120,9 +125,12 @@ mod tests {
             let rows = (1..=waters).map(|number| format!("{number} O HOH W {number} 1 2 3\n"));
             let text = head.to_owned() + &rows.collect::<String>();
             let model = ModelChoice::Number(1);
-            let sieved = sieve(Path::new("x.cif"), &text, model).unwrap();
-            assert_eq!(sieved.carried.len(), waters);
-            let numbers = sieved.text.lines().filter(|line| line.starts_with("ATOM"));
+            let filtered = filter(Path::new("x.cif"), &text, model).unwrap();
+            assert_eq!(filtered.records.len(), waters);
+            let numbers = filtered
+                .text
+                .lines()
+                .filter(|line| line.starts_with("ATOM"));
             let number = |line: &str| line.split_whitespace().nth(6).map(str::to_owned);
             numbers.filter_map(number).collect::<HashSet<_>>().len()
         };

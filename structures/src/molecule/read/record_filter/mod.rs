@@ -1,9 +1,10 @@
-//! The sieve before pdbtbx: what it lets through, and what it carries past.
+//! The record filter before pdbtbx: which records of a file it reads, and what is taken from the file itself.
 //!
-//! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge columns,
-//! old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks. Only the atoms
-//! of the models that are wanted pass the sieve, each as a record in the form that pdbtbx is sure to read, numbered by its serial
-//! number. Facts that pdbtbx would change travel beside it in a [`AtomRecord`] of the same index:
+//! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge
+//! columns, old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks.
+//!
+//! Only atoms of the wanted models pass the filter, each as a record that pdbtbx is sure to read, with a serial number.
+//! What pdbtbx would change comes from an [`AtomRecord`](record::AtomRecord) of the same number:
 //!
 //! | fact | what pdbtbx 0.12 does with it |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The sieve for PDB files: fixed columns, wwPDB format 3.3, "Coordinate Section".
+//! The record filter for PDB files: fixed columns, wwPDB format 3.3, "Coordinate Section".
 //!
 //! Columns in comments are 1-based, as in the format's description.
 
@@ -15,7 +15,7 @@ use crate::molecule::read::record_filter::displaced::{Displaced, displaced, shif
 use crate::molecule::read::record_filter::element_column::element;
 use crate::molecule::read::record_filter::provenance::{Provenance, is_measured};
 use crate::molecule::read::record_filter::record::{
-    AtomRecord, NO_ALTERNATE, Sieved, coordinate, field,
+    AtomRecord, FilteredRecords, NO_ALTERNATE, coordinate, field,
 };
 use crate::molecule::read::record_filter::residue_columns::{
     has_wide_chains, residue_and_chain, residue_number,
@@ -31,17 +31,21 @@ const RECORDS: [&str; 14] = [
 const ENDS: [&str; 4] = ["TER", "MODEL", "ENDMDL", "END"];
 
 /// Sieves the text of a PDB file; of the models those that `model` takes.
-pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieved, ReadError> {
-    let mut sieved = Sieved::default();
+pub(crate) fn filter(
+    file: &Path,
+    text: &str,
+    model: ModelChoice,
+) -> Result<FilteredRecords, ReadError> {
+    let mut filtered = FilteredRecords::default();
     let mut models = Models::default();
     let mut assemblies = Remark::default();
     let wide_chains = has_wide_chains(text);
     for (line, record) in lines(text) {
         if let Some(place) = AtomLine::of(record) {
-            sieved.recognised = true;
+            filtered.recognised = true;
             let number = models.of(place.text().unwrap_or(record));
             if !model.takes(number) {
-                sieved.ignore(number, place.text().and_then(position));
+                filtered.ignore(number, place.text().and_then(position));
                 continue;
             }
             let Some(text) = place.text() else {
@@ -51,25 +55,25 @@ pub(crate) fn sieve(file: &Path, text: &str, model: ModelChoice) -> Result<Sieve
                 });
             };
             if matches!(place, AtomLine::Moved(_)) {
-                sieved.displaced.push(line);
+                filtered.displaced.push(line);
             }
-            atom(file, line, text, wide_chains, number, &mut sieved)?;
+            atom(file, line, text, wide_chains, number, &mut filtered)?;
         } else {
             let name = record_name(record);
-            sieved.recognised |= RECORDS.contains(&name.as_ref());
+            filtered.recognised |= RECORDS.contains(&name.as_ref());
             models.note(&name);
-            if ENDS.contains(&name.as_ref()) && !sieved.carried.is_empty() {
-                sieved.chain_ends.push(line);
+            if ENDS.contains(&name.as_ref()) && !filtered.records.is_empty() {
+                filtered.chain_breaks.push(line);
             }
             assemblies.note(line, record);
             if name == "EXPDTA" && is_measured(record.get(10..).unwrap_or("")) {
-                sieved.provenance = Provenance::NoConfidence;
+                filtered.provenance = Provenance::NoConfidence;
             }
         }
     }
-    sieved.models = models.count;
-    sieved.assemblies = assemblies.assemblies();
-    Ok(sieved)
+    filtered.models = models.count;
+    filtered.assemblies = assemblies.assemblies();
+    Ok(filtered)
 }
 
 /// An atom's record, and where it stands.
@@ -121,7 +125,7 @@ fn position(record: &str) -> Option<[f64; 3]> {
     Some([read(30)?, read(38)?, read(46)?])
 }
 
-/// Tells the models apart.
+/// Distinguishes the models.
 #[derive(Default)]
 struct Models {
     /// Columns 13 to 27 of the first atom: what a second model starts with too.
@@ -177,7 +181,7 @@ fn atom(
     record: &str,
     wide_chains: bool,
     model: usize,
-    sieved: &mut Sieved,
+    filtered: &mut FilteredRecords,
 ) -> Result<(), ReadError> {
     if record.len() < 54 {
         return Err(ReadError::ShortRecord {
@@ -241,7 +245,7 @@ fn atom(
         if coordinate(text).is_some() {
             format!("{text:>width$}")
         } else {
-            sieved.defaults_filled += 1;
+            filtered.defaults_filled += 1;
             format!("{default:>width$}")
         }
     };
@@ -249,7 +253,7 @@ fn atom(
     let b_factor = number(slice(60, 66), "0.00", 6);
 
     // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
-    let serial = sieved.carried.len() % 100_000;
+    let serial = filtered.records.len() % 100_000;
     // Carried past pdbtbx where it is blank or longer than its column.
     let shown_chain = chain.get(..1).unwrap_or("A");
     // What pdbtbx's four columns cannot hold is carried, and shown as 0.
@@ -258,7 +262,7 @@ fn atom(
         .unwrap_or(0);
     let [x, y, z] = positions;
     // The element travels past pdbtbx; carbon is what it finds fastest.
-    sieved.text.push_str(&format!(
+    filtered.text.push_str(&format!(
         "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  \n",
         if record.starts_with("HETATM") {
             "HETATM"
@@ -269,7 +273,7 @@ fn atom(
         residue_name,
         "",
     ));
-    sieved.carried.push(AtomRecord {
+    filtered.records.push(AtomRecord {
         line,
         model,
         chain: chain.to_string(),
@@ -291,8 +295,8 @@ fn atom(
 
 /// Whether two coordinates run into one another, so that the columns no longer say where one ends.
 ///
-/// Programs that print 1e6 Å with `%8.3f` shift the columns and leave numbers that parse but are wrong. In a sound record
-/// a number may touch the one before only if that one has its three decimals.
+/// Programs that print 1e6 Å with `%8.3f` shift the columns and leave numbers that parse but are wrong. In a sound
+/// record a number may touch the one before only if that one has its three decimals.
 fn run_together(positions: [&str; 3]) -> Option<String> {
     let touches = |left: &str, right: &str| {
         let decimals = left
@@ -312,7 +316,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shifted_columns_are_told_from_touching_ones() {
+    fn shifted_columns_are_distinguished_from_touching_ones() {
         assert_eq!(run_together(["1234.567", "1234.567", "-100.000"]), None);
         assert_eq!(run_together(["-100.123", "-200.456", "   1.000"]), None);
         // 1000000.000 three times, printed without a blank: parses as 1e6, 10000, 1e5.

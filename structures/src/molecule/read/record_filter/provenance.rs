@@ -1,5 +1,5 @@
-//! What a file says of where its coordinates come from: methods of experiments, and scores of predictions (ModelCIF, Vallat et al.,
-//! J. Mol. Biol. 435, 168021, 2023).
+//! What a file says of where its coordinates come from: methods of experiments, and scores of predictions (ModelCIF,
+//! Vallat et al., J. Mol. Biol. 435, 168021, 2023).
 
 use crate::molecule::read::record_filter::tokens::Kind;
 
@@ -8,14 +8,15 @@ use crate::molecule::read::record_filter::tokens::Kind;
 pub(crate) enum Provenance {
     /// Nothing.
     #[default]
-    Untold,
+    Unstated,
     /// They were measured, or are scored by something else than pLDDT: the B column is none.
     NoConfidence,
     /// They were predicted and the B column is pLDDT.
     Confidence,
 }
 
-/// Whether a method of `EXPDTA` or `_exptl.method` is a measurement: any but the theoretical models of old and of predictors.
+/// Whether a method of `EXPDTA` or `_exptl.method` is a measurement: any but the theoretical models of old and of
+/// predictors.
 pub(crate) fn is_measured(method: &str) -> bool {
     let method = method.trim().to_ascii_uppercase();
     !method.is_empty() && !method.contains("THEORETICAL")
@@ -23,7 +24,7 @@ pub(crate) fn is_measured(method: &str) -> bool {
 
 /// Items of an mmCIF file that say it.
 #[derive(Default)]
-pub(crate) struct Told {
+pub(crate) struct ProvenanceItems {
     /// A method of measurement is named.
     measured: bool,
     /// Local or global scores of a model are defined.
@@ -32,7 +33,7 @@ pub(crate) struct Told {
     by_plddt: bool,
 }
 
-impl Told {
+impl ProvenanceItems {
     /// Takes the value of an item.
     pub(crate) fn note(&mut self, tag: &str, value: Kind<'_>) {
         let Some(text) = value.value() else {
@@ -52,7 +53,7 @@ impl Told {
         match (self.measured, self.scored, self.by_plddt) {
             (true, ..) | (false, true, false) => Provenance::NoConfidence,
             (false, true, true) => Provenance::Confidence,
-            (false, false, _) => Provenance::Untold,
+            (false, false, _) => Provenance::Unstated,
         }
     }
 }

@@ -41,11 +41,11 @@ pub(crate) struct Exact {
 
 /// The atoms of the models that are read: text for pdbtbx, and what travels past it, by serial number.
 #[derive(Debug, Default)]
-pub(crate) struct Sieved {
+pub(crate) struct FilteredRecords {
     /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
     pub(crate) text: String,
     /// What travels past it; index i belongs to the serial number i.
-    pub(crate) carried: Vec<AtomRecord>,
+    pub(crate) records: Vec<AtomRecord>,
     /// Models in the file.
     pub(crate) models: usize,
     /// Atom records in the models that are not read.
@@ -56,8 +56,8 @@ pub(crate) struct Sieved {
     pub(crate) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(crate) defaults_filled: usize,
-    /// Lines at which the file itself ends a chain; see [`Molecule::chain_ends`](super::Molecule::chain_ends).
-    pub(crate) chain_ends: Vec<usize>,
+    /// Lines at which the file itself ends a chain; see [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
+    pub(crate) chain_breaks: Vec<usize>,
     /// Lines and names of further data blocks of an mmCIF file that have atoms, too.
     pub(crate) other_blocks: Vec<(usize, String)>,
     /// Whether a record or item of the format was seen at all.
@@ -68,7 +68,7 @@ pub(crate) struct Sieved {
     pub(crate) assemblies: Assemblies,
 }
 
-impl Sieved {
+impl FilteredRecords {
     /// Notes an atom of a model that is not read.
     pub(crate) fn ignore(&mut self, model: usize, position: Option<[f64; 3]>) {
         self.atoms_ignored += 1;

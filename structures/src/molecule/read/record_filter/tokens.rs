@@ -40,10 +40,11 @@ impl<'a> Kind<'a> {
 
 /// Walks over the tokens of a CIF text, without copying it.
 ///
-/// A text field (lines from one that starts with `;` to the next that does) is one quoted value, line ends within it included.
+/// A text field (lines from one that starts with `;` to the next that does) is one quoted value, line ends within it
+/// included.
 pub(crate) fn tokens(text: &str) -> impl Iterator<Item = Token<'_>> {
     let mut source = lines(text);
-    // Lines are pieces of the text: where one starts tells what lies between two.
+    // Lines are pieces of the text: where one starts determines what lies between two.
     let text_start =
         move |line: &str| (line.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
     let between = move |start: usize, end: usize| {
