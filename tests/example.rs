@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
-use knotdock::output::poses::PoseTable;
+use knotdock::output::tables::poses::PoseTable;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};

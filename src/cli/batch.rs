@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, CommandFactory};
-use knotdock::output::batch_results::{
+use knotdock::output::files::exclusive::ExclusiveLock;
+use knotdock::output::files::whole_file::FileError;
+use knotdock::output::tables::batch_results::{
     PairResult, RESULTS, RunSummary, is_ours, rows_of_others, write_results,
 };
-use knotdock::output::exclusive::ExclusiveLock;
-use knotdock::output::report::counted;
-use knotdock::output::whole_file::FileError;
+use knotdock::output::tables::report::counted;
 use serde_json::{Value, json};
 
 use crate::cli::Cli;

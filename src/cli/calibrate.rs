@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use knotdock::options::Threads;
-use knotdock::output::cost_model_file::{default_path, is_ours, read, write};
-use knotdock::output::report::align;
+use knotdock::output::records::cost_model_file::{default_path, is_ours, read, write};
+use knotdock::output::tables::report::align;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;

@@ -8,13 +8,15 @@ use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::Precision;
-use knotdock::output::fields::Column;
-use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
-use knotdock::output::poses::PoseTable;
-use knotdock::output::quality;
-use knotdock::output::recorded_run::RecordedRun;
-use knotdock::output::report::{BEST, best_clusters, counted, firsts};
-use knotdock::output::staging::Staging;
+use knotdock::output::files::staging::Staging;
+use knotdock::output::records::manifest::{
+    EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
+};
+use knotdock::output::records::recorded_run::RecordedRun;
+use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::output::tables::quality;
+use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;

@@ -6,9 +6,9 @@ use clap::Args;
 use knotdock::evaluate::{Capri, Criterion, PoseQuality};
 use knotdock::options::InputOptions;
 use knotdock::options::definition::definitions;
-use knotdock::output::poses::{PoseRow, PoseTable};
-use knotdock::output::recorded_run::RecordedRun;
-use knotdock::output::{quality, report};
+use knotdock::output::records::recorded_run::RecordedRun;
+use knotdock::output::tables::poses::{PoseRow, PoseTable};
+use knotdock::output::tables::{quality, report};
 use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};

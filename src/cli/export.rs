@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
-use knotdock::output::complexes::file_names;
-use knotdock::output::poses::{PoseRow, PoseTable};
-use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::files::complexes::file_names;
+use knotdock::output::records::recorded_run::RecordedRun;
+use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::json;
 

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
-use knotdock::output::report::counted;
-use knotdock::output::{atom_table, molecule_file};
+use knotdock::output::files::molecule_file;
+use knotdock::output::tables::atom_table;
+use knotdock::output::tables::report::counted;
 use knotdock::priors::{Findings, PRIORS};
 use knotdock::rank::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;

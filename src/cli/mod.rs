@@ -62,7 +62,7 @@ enum Command {
 }
 
 fn version() -> &'static str {
-    use knotdock::output::program::VERSION_WITH_COMMIT;
+    use knotdock::output::records::program::VERSION_WITH_COMMIT;
     VERSION_WITH_COMMIT
 }
 

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::error::SearchError;
 use knotdock::options::values::at_least_one;
-use knotdock::output::report;
+use knotdock::output::tables::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
 use knotdock_scoring::se3::Pose;

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use knotdock::output::pair_table::read_pairs;
-use knotdock::output::poses::PoseTable;
-use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::records::recorded_run::RecordedRun;
+use knotdock::output::tables::pair_table::read_pairs;
+use knotdock::output::tables::poses::PoseTable;
 use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;

@@ -2,7 +2,7 @@
 
 use knotdock::dock::plan::DockPlan;
 use knotdock::options::{MachineOptions, Threads};
-use knotdock::output::manifest::Machine;
+use knotdock::output::records::manifest::Machine;
 
 use super::memory;
 

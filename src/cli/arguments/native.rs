@@ -4,9 +4,9 @@ use std::path::Path;
 
 use clap::{Args, ValueHint};
 use knotdock::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
-use knotdock::output::input_record::NativeRecord;
-use knotdock::output::poses::PoseRow;
-use knotdock::output::report::counted;
+use knotdock::output::records::input_record::NativeRecord;
+use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::tables::report::counted;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
 
 use crate::cli::inputs::molecules::Input;

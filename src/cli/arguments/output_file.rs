@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::whole_file::is_stream;
+use knotdock::output::files::whole_file::is_stream;
 
 use crate::cli::messages::failure::Failure;
 

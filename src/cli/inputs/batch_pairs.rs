@@ -7,8 +7,8 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 use knotdock::options::definition::names_file;
 use knotdock::options::text::first_paragraph;
-use knotdock::output::batch_results::RESULTS;
-use knotdock::output::pair_table::{PairRow, read_pairs};
+use knotdock::output::tables::batch_results::RESULTS;
+use knotdock::output::tables::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::dock::{Dock, PLACE, refusing_recorded};

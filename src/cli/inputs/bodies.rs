@@ -7,11 +7,11 @@ use knotdock::dock::pair::{Pair, PreparedPair, Sampling};
 use knotdock::error::SearchError;
 use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError};
 use knotdock::options::DockOptions;
-use knotdock::output::assemblies::write_assemblies;
-use knotdock::output::complexes::write_complexes;
-use knotdock::output::input_record::InputRecord;
-use knotdock::output::manifest::InputEntry;
-use knotdock::output::poses::PoseRow;
+use knotdock::output::files::assemblies::write_assemblies;
+use knotdock::output::files::complexes::write_complexes;
+use knotdock::output::records::input_record::InputRecord;
+use knotdock::output::records::manifest::InputEntry;
+use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec};
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use knotdock::mesh::SampledPart;
-use knotdock::output::input_record::InputRecord;
-use knotdock::output::manifest::InputEntry;
+use knotdock::output::records::input_record::InputRecord;
+use knotdock::output::records::manifest::InputEntry;
 use knotdock_structures::mesh::{self, Mesh, MeshReport, Solid};
 use knotdock_structures::molecule::InputSpec;
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use knotdock::output::input_record::InputRecord;
-use knotdock::output::manifest::InputEntry;
+use knotdock::output::records::input_record::InputRecord;
+use knotdock::output::records::manifest::InputEntry;
 use knotdock_structures::molecule::{
     AtomFate, DropKind, InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
     read_bytes_with_fates,

@@ -6,9 +6,9 @@ use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::mesh::GivenLengths;
 use knotdock::options::DockOptions;
-use knotdock::output::manifest::Inputs;
-use knotdock::output::program::{VERSION_WITH_COMMIT, cpu_features};
-use knotdock::output::recorded_run::RecordedRun;
+use knotdock::output::records::manifest::Inputs;
+use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
+use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::pose_space::arrangement::Arrangement;
 
 use crate::cli::arguments::native::NativeFiles;

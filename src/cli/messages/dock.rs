@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use knotdock::dock::flexible_regions::FlexibleRegions;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::plan::DockPlan;
-use knotdock::output::report::counted;
+use knotdock::output::tables::report::counted;
 use knotdock::priors::active_residues::AssumedSite;
 use knotdock::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::effect::Effect;

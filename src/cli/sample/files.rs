@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::balls::{write_mesh, write_pseudo_atoms, write_table};
-use knotdock::output::sample_picture::write_picture;
-use knotdock::output::whole_file::is_stream;
+use knotdock::output::files::balls::{write_mesh, write_pseudo_atoms, write_table};
+use knotdock::output::files::sample_picture::write_picture;
+use knotdock::output::files::whole_file::is_stream;
 use knotdock_structures::Knots;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampling::Ball;

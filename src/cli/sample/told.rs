@@ -1,6 +1,6 @@
 //! What `knotdock sample` says of a sampled solid.
 
-use knotdock::output::report;
+use knotdock::output::tables::report;
 use knotdock_structures::mesh::{Figure, Solid};
 use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampling::weights::FittedWeights;

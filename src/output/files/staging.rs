@@ -9,8 +9,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::exclusive::ExclusiveLock;
-use super::whole_file::{FileError, PARTIAL};
+use crate::output::files::exclusive::ExclusiveLock;
+use crate::output::files::whole_file::{FileError, PARTIAL};
 
 /// What a command puts into its directory.
 #[derive(Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use knotdock_structures::Knots;
 
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, write_whole};
 
 /// Header of the table.
 pub const COLUMNS: &str = "x,y,z,r,weight";

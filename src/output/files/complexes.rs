@@ -8,9 +8,9 @@ use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
 
-use super::poses::PoseRow;
-use super::program::VERSION;
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::records::program::VERSION;
+use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
 
 /// Complexes as written.
@@ -23,7 +23,7 @@ pub struct Written {
 }
 
 /// Name of the file that shows the complex, or of meshes the assembly, of a rank.
-pub(super) fn file_name(rank: usize, extension: &str) -> String {
+pub(crate) fn file_name(rank: usize, extension: &str) -> String {
     format!("rank_{rank:04}.{extension}")
 }
 
@@ -122,7 +122,7 @@ fn remarks(row: &PoseRow, arrangement: Arrangement) -> Vec<String> {
     ]
 }
 
-pub(super) fn io_error(error: WriteError) -> io::Error {
+pub(crate) fn io_error(error: WriteError) -> io::Error {
     match error {
         WriteError::Io(error) => error,
         other => io::Error::other(other),

@@ -5,13 +5,13 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
-use super::fields::number;
-use super::manifest::{Inputs, Machine};
-use super::program::Program;
-use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;
 use crate::options::DockOptions;
 use crate::options::check::name_of;
+use crate::output::files::whole_file::{FileError, write_json, write_whole};
+use crate::output::records::manifest::{Inputs, Machine};
+use crate::output::records::program::Program;
+use crate::output::tables::fields::number;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
 

@@ -12,11 +12,11 @@
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::terms::pose::POSE_TERMS;
 
-use super::fields::number;
 use crate::dock::outcome::RankedPose;
+use crate::output::tables::fields::number;
 
 /// A column: its name, and its field of a pose.
-pub(super) struct PoseColumn {
+pub(crate) struct PoseColumn {
     pub name: &'static str,
     pub field: Box<dyn Fn(&RankedPose) -> String>,
 }
@@ -52,7 +52,7 @@ fn count(name: &'static str, value: impl Fn(&RankedPose) -> Option<usize> + 'sta
 }
 
 /// The columns after `rank`.
-pub(super) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
+pub(crate) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
     let mut columns = vec![
         column("score", |row| row.score),
         count("cluster", |row| row.cluster),

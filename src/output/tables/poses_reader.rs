@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 
-use super::csv_lines::line_of;
-use super::poses::{PoseRow, PoseTable};
+use crate::output::tables::csv_lines::line_of;
+use crate::output::tables::poses::{PoseRow, PoseTable};
 
 /// Why a table of poses cannot be read.
 #[derive(Debug, thiserror::Error)]

@@ -8,11 +8,11 @@ use std::path::Path;
 use csv::StringRecord;
 use serde_json::Value;
 
-use super::fields::number;
+use crate::output::tables::fields::number;
 
-use super::poses::PoseTable;
-use super::poses_reader::PoseTableError;
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::poses::PoseTable;
+use crate::output::tables::poses_reader::PoseTableError;
 
 /// Name of the table in the batch's directory.
 pub const RESULTS: &str = "results.csv";

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::plot::svg::{Colour, Svg};
 
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, write_whole};
 
 /// Pixels along the longer edge of a slice.
 const PIXELS: usize = 72;

@@ -9,15 +9,15 @@ use knotdock_structures::molecule::ChainMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::input_record::{InputRecord, NativeRecord};
-use super::program::Program;
-use super::whole_file::{FileError, write_json};
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::{DockOutcome, EffectCost, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
 use crate::options::DockOptions;
+use crate::output::files::whole_file::{FileError, write_json};
+use crate::output::records::input_record::{InputRecord, NativeRecord};
+use crate::output::records::program::Program;
 use crate::priors::active_residues::AssumedSite;
 use crate::rank::rescoring::ActingTerm;
 use crate::search::coarse_to_fine::FineSearched;

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{AtomFate, DropKind};
 
-use super::fields::number;
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::fields::number;
 
 /// The columns, in order.
 pub const COLUMNS: [&str; 16] = [

@@ -1,6 +1,6 @@
 //! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
 //!
-//! Columns are found by name: those of [`pose_columns`](super::pose_columns), and whatever is appended. Quaternions are Hamilton's, active,
+//! Columns are found by name: those of [`pose_columns`](crate::output::tables::pose_columns), and whatever is appended. Quaternions are Hamilton's, active,
 //! right-handed, unit, `qw >= 0`; a ligand atom at x in its own file goes to R(q) x + t, in Å, in the receptor's file
 //! frame. Numbers are in the shortest digits that read back to the same f64; a missing value is an empty field.
 
@@ -11,17 +11,17 @@ use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
-use super::fields::Column;
-use super::pose_columns::columns;
-use super::whole_file::{FileError, write_whole};
 use crate::dock::outcome::RankedPose;
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::fields::Column;
+use crate::output::tables::pose_columns::columns;
 
 /// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTable {
-    pub(super) header: StringRecord,
-    pub(super) records: Vec<StringRecord>,
-    pub(super) rows: Vec<PoseRow>,
+    pub(crate) header: StringRecord,
+    pub(crate) records: Vec<StringRecord>,
+    pub(crate) rows: Vec<PoseRow>,
 }
 
 /// Rank and pose of a row.

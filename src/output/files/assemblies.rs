@@ -10,11 +10,11 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
-use super::complexes::file_name;
-use super::fields::number;
-use super::poses::PoseRow;
-use super::program::VERSION;
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::complexes::file_name;
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::records::program::VERSION;
+use crate::output::tables::fields::number;
+use crate::output::tables::poses::PoseRow;
 
 /// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the rows.
 ///

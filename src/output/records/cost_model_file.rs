@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::whole_file::{FileError, write_json};
+use crate::output::files::whole_file::{FileError, write_json};
 use crate::tradeoff::cost_model::CostModel;
 
 /// Number of the layout of the file; it rises when an entry or what a coefficient multiplies changes.

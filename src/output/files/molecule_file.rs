@@ -4,9 +4,9 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{Format, Molecule, write_renamed};
 
-use super::complexes::io_error;
-use super::program::VERSION;
-use super::whole_file::{FileError, write_whole};
+use crate::output::files::complexes::io_error;
+use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::records::program::VERSION;
 
 /// The format that a file's name asks for: `.pdb` or `.ent`, `.cif` or `.mmcif`; nothing for other endings.
 pub fn format_of_name(path: &Path) -> Option<Format> {

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::input_record::{InputRecord, NativeRecord};
-use super::manifest::SCHEMA;
-use super::program::{COMMIT, VERSION};
 use crate::options::{DockOptions, MachineOptions};
+use crate::output::records::input_record::{InputRecord, NativeRecord};
+use crate::output::records::manifest::SCHEMA;
+use crate::output::records::program::{COMMIT, VERSION};
 
 /// What later commands take from a `run.json`.
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
-use super::csv_lines::line_of;
+use crate::output::tables::csv_lines::line_of;
 
 /// What a line begins with that is no row.
 const COMMENT: Option<u8> = Some(b'#');

@@ -2,7 +2,7 @@
 
 use crate::dock::outcome::RankedPose;
 
-use super::fields::Column;
+use crate::output::tables::fields::Column;
 
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;

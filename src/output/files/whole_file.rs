@@ -32,7 +32,7 @@ pub enum FileError {
 
 impl FileError {
     /// A place that cannot be written to.
-    pub(super) fn unwritable(path: &Path, source: io::Error) -> Self {
+    pub(crate) fn unwritable(path: &Path, source: io::Error) -> Self {
         Self::Unwritable {
             path: path.to_owned(),
             source,
@@ -40,7 +40,7 @@ impl FileError {
     }
 
     /// A file whose writing failed.
-    pub(super) fn writing(path: &Path, source: io::Error) -> Self {
+    pub(crate) fn writing(path: &Path, source: io::Error) -> Self {
         Self::Write {
             path: path.to_owned(),
             source,

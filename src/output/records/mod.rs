@@ -1,0 +1,8 @@
+//! Records of runs in JSON: what was run, on which inputs, with which outcome.
+
+pub mod cost_model_file;
+pub mod input_record;
+pub mod manifest;
+pub mod program;
+pub mod recorded_run;
+pub mod tradeoff;

@@ -1,0 +1,12 @@
+//! Tables: `poses.csv`, the results of batches, tables of pairs and of atoms.
+
+pub mod atom_table;
+pub mod batch_results;
+pub(super) mod csv_lines;
+pub mod fields;
+pub mod pair_table;
+pub(super) mod pose_columns;
+pub mod poses;
+pub mod poses_reader;
+pub mod quality;
+pub mod report;
