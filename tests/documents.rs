@@ -1,0 +1,44 @@
+//! Documents name files that exist.
+
+use std::fs;
+use std::path::Path;
+
+/// Paths of the repository in a page: words in backticks that begin with one of its folders.
+fn named_paths(page: &str) -> Vec<String> {
+    let folders = [
+        "src/",
+        "structures/",
+        "scoring/",
+        "scripts/",
+        "tests/",
+        "benches/",
+        "docs/",
+    ];
+    let words = page.split('`').skip(1).step_by(2);
+    let words = words.flat_map(str::split_whitespace);
+    words
+        .filter(|word| folders.iter().any(|folder| word.starts_with(folder)))
+        .filter(|word| !word.contains(['*', '<', '{', '[', '$', ':']))
+        .map(|word| word.trim_end_matches([',', '.', ';']).to_owned())
+        .collect()
+}
+
+/// Files move: a page that names one where it was sends its reader nowhere.
+#[test]
+fn files_that_pages_name_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut pages = vec![root.join("README.md"), root.join("CONTRIBUTING.md")];
+    let docs = fs::read_dir(root.join("docs")).unwrap();
+    pages.extend(docs.map(|entry| entry.unwrap().path()));
+    let mut named = 0;
+    for page in pages
+        .iter()
+        .filter(|page| page.extension().is_some_and(|end| end == "md"))
+    {
+        for path in named_paths(&fs::read_to_string(page).unwrap()) {
+            assert!(root.join(&path).exists(), "{}: {path}", page.display());
+            named += 1;
+        }
+    }
+    assert!(named > 30, "{named}");
+}
