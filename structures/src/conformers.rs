@@ -7,7 +7,7 @@ pub struct Conformers {
     pub origin: [f64; 3],
     /// Unit vectors of the segment's own frame, in the file's frame.
     pub axes: [[f64; 3]; 3],
-    /// CA atoms of each conformer, in the segment's own frame, Å: [conformer][residue].
+    /// CA atoms of each conformer, in the segment's own frame, Å: a trace a conformer, a point a residue.
     pub traces: Vec<Vec<[f64; 3]>>,
 }
 

@@ -17,7 +17,7 @@ pub struct Labels {
     pub charges: Vec<f64>,
     /// Contact type of each atom, `None` outside amino acids.
     pub contact_types: Vec<Option<u8>>,
-    /// Kind of each atom ([`super::atom_kinds`]), `None` outside amino acids.
+    /// Kind of each atom ([`atom_kinds`](crate::molecule::atom_kinds)), `None` outside amino acids.
     pub atom_kinds: Vec<Option<u8>>,
     /// How they came about.
     pub report: LabelReport,

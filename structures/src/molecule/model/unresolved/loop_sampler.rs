@@ -90,8 +90,8 @@ impl LoopSampler {
         let mut longest = 0;
         for trial in 0..MAX_TRIALS {
             let found = [longest, traces.len()];
-            let is_hopeless = |(limit, found)| trial >= limit && found == 0;
-            if traces.len() == CONFORMERS || GIVE_UP_AFTER.into_iter().zip(found).any(is_hopeless) {
+            let has_nothing = |(limit, found)| trial >= limit && found == 0;
+            if traces.len() == CONFORMERS || GIVE_UP_AFTER.into_iter().zip(found).any(has_nothing) {
                 break;
             }
             let grown = trace.grow(&mut random);
