@@ -159,7 +159,7 @@ fn counts_entry(counts: &[(&TermDefinition, usize)]) -> Map<String, Value> {
 fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
     let terms = counts
         .iter()
-        .map(|(term, count)| format!("{} by {count} {}", term.label, term.reads));
+        .map(|(term, count)| format!("{}: {count} {}", term.label, term.reads));
     format!("Pose terms: {}", terms.collect::<Vec<_>>().join("; "))
 }
 
@@ -252,7 +252,7 @@ mod tests {
         for ((term, count), row) in counts.iter().zip(rows) {
             assert_eq!(entry[term.id], *count);
             assert!(
-                row.starts_with(&format!("{} by {count} ", term.label)),
+                row.starts_with(&format!("{}: {count} ", term.label)),
                 "{row}"
             );
         }

@@ -19,7 +19,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 2000.0,
     time_share: UNRELAXED,
-    reads: "active residues",
+    reads: "residues",
     count: |inputs| {
         [0, 1].map(|side| {
             inputs

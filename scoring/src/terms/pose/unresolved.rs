@@ -21,7 +21,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 3.0,
     time_share: UNRELAXED,
-    reads: "unresolved segments",
+    reads: "segments",
     count: |inputs| inputs.unresolved.map(<[_]>::len),
     applies: |inputs| inputs.unresolved.iter().any(|side| !side.is_empty()),
     build: |inputs, weight| {
