@@ -6,7 +6,7 @@ use knotdock_scoring::effect::restraint::{ResidueRole, Weights};
 use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
@@ -23,11 +23,7 @@ fn options(tolerance: f64) -> EngineOptions {
     EngineOptions {
         kernel: KernelOptions {
             lambda: 10.0,
-            offset: 2.2,
-            alpha: 2.0,
-            resolution: 4.5,
-            pass_length: 9.0,
-            trim: Trim::FlatTop,
+            ..KernelOptions::default()
         },
         spacing: None,
         tolerance,
@@ -277,9 +273,9 @@ fn effects_add_up() {
         let one = std::slice::from_ref(active);
         let alone = ExactScorer::with_effects(plan.kernel(), &a, &b, one).unwrap();
         let alone = alone.score(&pose).terms;
-        let (effect, shape) = (active.term.effect as usize, Effect::Shape as usize);
-        assert_eq!(alone[effect], exact.terms[effect]);
-        assert_eq!(alone[shape], exact.terms[shape]);
+        for effect in [active.term.effect as usize, Effect::Shape as usize] {
+            assert_eq!(alone[effect], exact.terms[effect]);
+        }
     }
 }
 
