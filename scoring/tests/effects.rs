@@ -291,10 +291,8 @@ fn the_sum_over_voxels_is_the_zero_mode() {
     engine.correlate(&turn(), &mut work);
 
     let kernel = plan.kernel();
-    let (weights, offsets) = (
-        kernel.options().slice_weights(),
-        kernel.options().slice_offsets(),
-    );
+    let weights = kernel.options().slice_weights();
+    let offsets = kernel.options().slice_offsets();
     let (mut zero_mode, mut size) = (0.0, 0.0);
     for r in &a.radii {
         for s in &b.radii {
@@ -315,15 +313,9 @@ fn the_sum_over_voxels_is_the_zero_mode() {
     }
     let voxels = work.grid.len() as f64;
     let sum: f64 = work.grid.iter().sum();
-    let (expected, scale) = (
-        zero_mode / plan.modes().volume(),
-        size / plan.modes().volume(),
-    );
-    assert!(
-        (sum / voxels - expected).abs() < 1e-6 * scale,
-        "{} {expected}",
-        sum / voxels
-    );
+    let mean = sum / voxels * plan.modes().volume();
+    let error = (mean - zero_mode).abs() / size;
+    assert!(error < 1e-6, "{mean} {zero_mode}: {error:e}");
 }
 
 /// A label that no term reads changes not one bit, and neither does a term once it is taken out.
