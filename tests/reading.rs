@@ -70,7 +70,7 @@ fn residues_left_out_are_recorded_and_followed() {
     assert_eq!(recorded("again")["options"], first["options"]);
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let matched = json(folder, "evaluate run --native native.pdb --json");
@@ -145,7 +145,7 @@ fn an_assembly_is_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
@@ -261,7 +261,7 @@ fn all_models_are_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
@@ -362,7 +362,7 @@ fn picked_residues_are_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));

@@ -5,6 +5,18 @@ use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
 use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;
+use serde::Serialize;
+
+/// A pose term that acts in a docking, with its weight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ActingTerm {
+    /// Id of the term: its column in `poses.csv`.
+    pub id: &'static str,
+    /// Its weight.
+    pub weight: f64,
+    /// Unit of the weight.
+    pub unit: &'static str,
+}
 
 /// Inputs and weights of the pose terms between two bodies.
 pub(crate) struct Rescoring<'a> {
@@ -42,6 +54,18 @@ impl<'a> Rescoring<'a> {
     /// The terms prepared for scoring poses; `None` if no term acts.
     pub fn rescorer(&self) -> Option<Rescorer> {
         Rescorer::new(&self.inputs, &self.weights)
+    }
+
+    /// The terms that act, in the order of the registry.
+    pub fn acting(&self) -> Vec<ActingTerm> {
+        let terms = POSE_TERMS.iter().zip(self.weights);
+        let acting = terms.filter(|(term, weight)| term.acts(&self.inputs, *weight));
+        let acting = acting.map(|(term, weight)| ActingTerm {
+            id: term.id,
+            weight,
+            unit: term.unit,
+        });
+        acting.collect()
     }
 
     /// Time to rescore a pose, as a share of the time with every term; 0 if no term acts.

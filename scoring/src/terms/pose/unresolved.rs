@@ -21,6 +21,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 3.0,
     time_share: UNRELAXED,
+    reads: "unresolved segments",
+    count: |inputs| inputs.unresolved.map(<[_]>::len),
     applies: |inputs| inputs.unresolved.iter().any(|side| !side.is_empty()),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

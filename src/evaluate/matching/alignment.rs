@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::residue::{Number, Residue};
+use crate::evaluate::residues::residue::{Number, Residue};
 
 const MATCH: f64 = 5.0;
 const MISMATCH: f64 = -2.0;
@@ -20,7 +20,7 @@ const GAP_EXTEND: f64 = -0.1;
 
 /// Residues of two chains that stand for each other.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Alignment {
+pub(in crate::evaluate) struct Alignment {
     /// Places (in the first chain, in the second) of equal residues, rising in the first.
     pub pairs: Vec<(usize, usize)>,
     /// Aligned places, whether the residues are equal or not.
@@ -30,7 +30,7 @@ pub(super) struct Alignment {
 /// Aligns two chains.
 ///
 /// Numbers alone decide where they pair at least as many equal residues as the sequence does.
-pub(super) fn align(first: &[&Residue], second: &[&Residue]) -> Alignment {
+pub(in crate::evaluate) fn align(first: &[&Residue], second: &[&Residue]) -> Alignment {
     let by_number = pair_by_number(first, second);
     if by_number.pairs.len() == first.len().min(second.len()) {
         return by_number;
@@ -201,9 +201,9 @@ fn trace_back(
 
 #[cfg(test)]
 mod tests {
-    use super::super::residues::Residues;
-    use super::super::test_molecules::{chain_of, molecule};
     use super::*;
+    use crate::evaluate::residues::Residues;
+    use crate::evaluate::test_molecules::{chain_of, molecule};
 
     /// Aligns two one-letter sequences with the residue numbers given.
     fn pairs(first: (&str, &[i64]), second: (&str, &[i64])) -> Vec<(usize, usize)> {

@@ -8,8 +8,10 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{Atom, InputSpec, Molecule, ReadOptions, read};
 
-use super::test_molecules::{duplex, helix, molecule, moved, random_sequence, renamed, renumbered};
-use super::*;
+use crate::evaluate::test_molecules::{
+    duplex, helix, molecule, moved, random_sequence, renamed, renumbered,
+};
+use crate::evaluate::*;
 
 /// The first pose of docking the unbound partners (300 rotations).
 const POSE: ([f64; 4], [f64; 3]) = (

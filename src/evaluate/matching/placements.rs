@@ -9,12 +9,12 @@
 //! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a hinge, a
 //! domain that moved), unless the whole would fit no longer: then the placement is displaced.
 
-use super::matching::{ChainPair, align_all};
-use super::placement::Placement;
-use super::placement_builder::{Builder, Candidate};
-use super::residues::Residues;
-use super::rmsd::backbone_pairs;
-use super::superposition::Superposition;
+use crate::evaluate::matching::chain_pair::{ChainPair, align_all};
+use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::placement_builder::{Builder, Candidate};
+use crate::evaluate::matching::superposition::Superposition;
+use crate::evaluate::residues::Residues;
+use crate::evaluate::rmsd::backbone_pairs;
 
 /// Pairs with less than this share of the largest's residues begin no placement.
 const MIN_SEED: f64 = 0.2;
@@ -25,7 +25,7 @@ const MIN_PAIRS: usize = 3;
 
 /// The ways in which the user's side may lie on the native, the pair with most residues first. Empty when no sequence
 /// matches.
-pub(super) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
+pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
     let mut alike = align_all(user, native);
     alike.retain(ChainPair::is_alike);
     let largest = alike
@@ -70,10 +70,10 @@ pub(super) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_molecules::{
+    use super::*;
+    use crate::evaluate::test_molecules::{
         chain_of, helix, molecule, moved, numbers, random_sequence, renamed,
     };
-    use super::*;
     use knotdock_scoring::se3::Pose;
     use knotdock_structures::molecule::Atom;
 

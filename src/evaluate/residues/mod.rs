@@ -1,17 +1,20 @@
 //! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
 //!
 //! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several chains
-//! were written under one name ([`segments`](super::segments)).
+//! were written under one name ([`segments`](crate::evaluate::residues::segments)).
+
+pub(super) mod residue;
+pub(super) mod segments;
 
 use knotdock_structures::molecule::{Atom, Molecule};
 
-use super::EvaluateError;
-use super::residue::{LINKING_OXYGEN, PHOSPHATE_BOND, PHOSPHORUS, Residue};
-use super::segments::{in_bonded_order, segments};
+use crate::evaluate::EvaluateError;
+use crate::evaluate::residues::residue::{LINKING_OXYGEN, PHOSPHATE_BOND, PHOSPHORUS, Residue};
+use crate::evaluate::residues::segments::{in_bonded_order, segments};
 
 /// Residues matched as one chain.
 #[derive(Clone, Debug)]
-pub(super) struct Segment {
+pub(in crate::evaluate) struct Segment {
     /// Author chain name, with `/2`, `/3` ... appended for the further segments of one name.
     pub name: String,
     /// Indices into [`Residues::residues`], in file order.
@@ -20,7 +23,7 @@ pub(super) struct Segment {
 
 /// All residues of a molecule that the evaluation uses.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Residues {
+pub(in crate::evaluate) struct Residues {
     /// The residues, segment by segment.
     pub residues: Vec<Residue>,
     /// The segments, in order of first appearance.
@@ -166,9 +169,9 @@ fn without_free_nucleotides(found: Vec<Residue>) -> Vec<Residue> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::residue::kind;
     use super::super::test_molecules::{atom, molecule};
     use super::*;
+    use crate::evaluate::residues::residue::kind;
 
     /// A phosphoserine's phosphate is no backbone; a nucleotide's is.
     #[test]

@@ -1,7 +1,7 @@
 //! Which copies of the native are the complex that poses are measured by.
 //!
 //! A crystal's file holds several complexes, and neighbours that only touch in the crystal. Each side's
-//! [`placements`](super::placements) are combined, without a residue in both; a combination counts that matches nearly as
+//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination counts that matches nearly as
 //! much of both sides as the best does and whose sides touch. The one with most contacts is the complex; of several that
 //! stand alike, the one whose chain names agree.
 
@@ -10,11 +10,11 @@ use std::collections::HashMap;
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Point3, Vector3};
 
-use super::contacts::contacts_between;
-use super::matching::ChainPair;
-use super::placement::Placement;
-use super::residues::Residues;
-use super::superposition::MAX_FIT_RMSD;
+use crate::evaluate::contacts::contacts_between;
+use crate::evaluate::matching::chain_pair::ChainPair;
+use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
+use crate::evaluate::residues::Residues;
 
 /// Share of what the best combination matches, of either side, that another must match.
 const MIN_OF_BEST: f64 = 0.8;
@@ -23,7 +23,7 @@ const ALIKE: (f64, f64) = (4.0, std::f64::consts::PI / 9.0);
 
 /// A receptor's placement with a ligand's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Combination {
+pub(in crate::evaluate) struct Combination {
     /// Index of the receptor's placement.
     pub receptor: usize,
     /// Index of the ligand's.
@@ -34,7 +34,7 @@ pub(super) struct Combination {
 
 /// One side: the user's molecule, the native's residues and the ways in which the first lies on the second.
 #[derive(Clone, Copy)]
-pub(super) struct PlacedCopy<'a> {
+pub(in crate::evaluate) struct PlacedCopy<'a> {
     pub user: &'a Residues,
     pub native: &'a Residues,
     pub placements: &'a [Placement],
@@ -53,7 +53,7 @@ impl PlacedCopy<'_> {
 
 /// Why nothing can be combined.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Uncombined {
+pub(in crate::evaluate) enum Uncombined {
     /// Both sides only match the same chain.
     OneCopy,
     /// No two touch.
@@ -63,7 +63,7 @@ pub(super) enum Uncombined {
 /// The combinations that count, the complex first and then by their contacts.
 ///
 /// `disjoint` where both sides are placed on one native, of which no residue can belong to both.
-pub(super) fn combinations(
+pub(in crate::evaluate) fn combinations(
     receptor: PlacedCopy,
     ligand: PlacedCopy,
     disjoint: bool,
@@ -208,7 +208,7 @@ impl<'a> ContactCounts<'a> {
         let ((center, radius), (other, other_radius)) =
             (self.balls[0][receptor], self.balls[1][ligand]);
         if nalgebra::distance(&center, &other)
-            > radius + other_radius + super::contacts::CONTACT_DISTANCE
+            > radius + other_radius + crate::evaluate::contacts::CONTACT_DISTANCE
         {
             return 0;
         }
@@ -232,7 +232,7 @@ fn balls(residues: &Residues) -> Vec<(Point3<f64>, f64)> {
             };
             let sum: Vector3<f64> = members().map(|one| one.center.coords).sum();
             let center = Point3::from(sum / segment.members.len().max(1) as f64);
-            let reach = |one: &super::residue::Residue| {
+            let reach = |one: &crate::evaluate::residues::residue::Residue| {
                 nalgebra::distance(&one.center, &center) + one.radius
             };
             (center, members().map(reach).fold(0.0, f64::max))

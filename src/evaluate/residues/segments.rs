@@ -17,7 +17,9 @@
 
 use std::collections::HashSet;
 
-use super::residue::{LINKING_OXYGEN, Number, PHOSPHATE_BOND, PHOSPHORUS, Residue};
+use crate::evaluate::residues::residue::{
+    LINKING_OXYGEN, Number, PHOSPHATE_BOND, PHOSPHORUS, Residue,
+};
 
 /// Smallest step in residue numbers that begins a new segment.
 const LEAP: i64 = 100;
@@ -134,7 +136,7 @@ fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) 
 }
 
 /// Cuts the residues of one chain name, in file order, into chains.
-pub(super) fn segments(residues: Vec<Residue>, ends: &[usize]) -> Vec<Vec<Residue>> {
+pub(in crate::evaluate) fn segments(residues: Vec<Residue>, ends: &[usize]) -> Vec<Vec<Residue>> {
     let bonds = has_bonds(&residues);
     let mut left = residues.len();
     let mut seen: HashSet<Number> = HashSet::new();
@@ -163,7 +165,7 @@ pub(super) fn segments(residues: Vec<Residue>, ends: &[usize]) -> Vec<Vec<Residu
 }
 
 /// Puts modified residues that the file lists after the chain (as HETATM records) where they are bonded.
-pub(super) fn in_bonded_order(found: Vec<Residue>) -> Vec<Residue> {
+pub(in crate::evaluate) fn in_bonded_order(found: Vec<Residue>) -> Vec<Residue> {
     let mut kept: Vec<Residue> = Vec::with_capacity(found.len());
     for residue in found {
         let joined = |before: &Residue, after: &Residue| link(before, after) == Link::Bonded;
@@ -183,8 +185,8 @@ pub(super) fn in_bonded_order(found: Vec<Residue>) -> Vec<Residue> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::residues::Residues;
-    use super::super::test_molecules::{atom, chain_of, helix, molecule, moved, numbers};
+    use crate::evaluate::residues::Residues;
+    use crate::evaluate::test_molecules::{atom, chain_of, helix, molecule, moved, numbers};
     use knotdock_scoring::se3::Pose;
     use knotdock_structures::molecule::Atom;
 

@@ -18,14 +18,14 @@ use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix3, Matrix4, Point3, Quaternion, SymmetricEigen, UnitQuaternion, Vector3};
 
 /// Largest backbone RMSD in Å of a side that fits the native.
-pub(super) const MAX_FIT_RMSD: f64 = 15.0;
+pub(in crate::evaluate) const MAX_FIT_RMSD: f64 = 15.0;
 
 /// A moving point and the fixed point that it is compared with, in Å.
-pub(super) type PointPair = (Point3<f64>, Point3<f64>);
+pub(in crate::evaluate) type PointPair = (Point3<f64>, Point3<f64>);
 
 /// The sum of squared distances of a set of point pairs as a function of the motion of the first points.
 #[derive(Clone, Debug)]
-pub(super) struct Superposition {
+pub(in crate::evaluate) struct Superposition {
     /// Number n of pairs.
     pub count: f64,
     /// The motion with the least misfit.

@@ -2,11 +2,11 @@
 
 use knotdock_scoring::se3::Pose;
 
-use super::matching::ChainPair;
+use crate::evaluate::matching::chain_pair::ChainPair;
 
 /// One way in which a side lies on the native.
 #[derive(Clone, Debug)]
-pub(super) struct Placement {
+pub(in crate::evaluate) struct Placement {
     /// Which residues are which, chain by chain. No residue stands in two.
     pub chains: Vec<ChainPair>,
     /// Takes the side from its own frame to the native's.
@@ -19,7 +19,7 @@ pub(super) struct Placement {
 
 /// A chain of the user's that the native has elsewhere.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Displaced {
+pub(in crate::evaluate) struct Displaced {
     /// Name of the user's chain.
     pub chain: String,
     /// Name of the native's.

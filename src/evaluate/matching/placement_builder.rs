@@ -3,11 +3,11 @@
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
-use super::matching::{ChainPair, align_members};
-use super::placement::{Displaced, Placement};
-use super::residues::Residues;
-use super::rmsd::backbone_pairs;
-use super::superposition::{MAX_FIT_RMSD, PointPair, Superposition};
+use crate::evaluate::matching::chain_pair::{ChainPair, align_members};
+use crate::evaluate::matching::placement::{Displaced, Placement};
+use crate::evaluate::matching::superposition::{MAX_FIT_RMSD, PointPair, Superposition};
+use crate::evaluate::residues::Residues;
+use crate::evaluate::rmsd::backbone_pairs;
 
 /// Equal residues that a chain has by no chance.
 const DISTINCTIVE: usize = 20;
@@ -20,7 +20,7 @@ const MIN_OF_TWO_REMAINDERS: usize = 8;
 const MIN_OF_WHOLE: f64 = 0.9;
 
 /// Two chains of like sequence and their superposition.
-pub(super) struct Candidate {
+pub(in crate::evaluate) struct Candidate {
     pub pair: ChainPair,
     pub misfit: Superposition,
 }
@@ -38,7 +38,7 @@ fn reach(residues: usize) -> f64 {
 const REACH_OF_REMAINDERS: f64 = 5.0;
 
 /// A placement in the making.
-pub(super) struct Builder<'a> {
+pub(in crate::evaluate) struct Builder<'a> {
     user: &'a Residues,
     native: &'a Residues,
     candidates: &'a [Candidate],

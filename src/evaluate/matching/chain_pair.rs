@@ -1,16 +1,16 @@
 //! Which residues of a chain of the user's molecule are which of a chain of the native's: every chain with every chain.
 //!
-//! Sequences alone do not say which of several copies a chain is; that is for [`placements`](super::placements).
+//! Sequences alone do not say which of several copies a chain is; that is for [`placements`](crate::evaluate::matching::placements).
 
 use std::collections::HashMap;
 
-use super::alignment::{Alignment, align};
-use super::residue::{Number, Residue};
-use super::residues::Residues;
+use crate::evaluate::matching::alignment::{Alignment, align};
+use crate::evaluate::residues::Residues;
+use crate::evaluate::residues::residue::{Number, Residue};
 
 /// Residues of one of the user's chains matched with those of one of the native's.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct ChainPair {
+pub(in crate::evaluate) struct ChainPair {
     /// Index of the user's segment.
     pub user: usize,
     /// Index of the native's segment.
@@ -61,7 +61,7 @@ impl ChainPair {
 }
 
 /// Aligns some residues of one segment of the user's with some of the native's, each given with the segment's index.
-pub(super) fn align_members(
+pub(in crate::evaluate) fn align_members(
     user: &Residues,
     native: &Residues,
     ours: (usize, &[usize]),
@@ -74,7 +74,7 @@ pub(super) fn align_members(
 /// Every segment of the user's molecule aligned with every one of the native's, rows by the user's.
 ///
 /// Copies are aligned once: chains of the same residues and numbers have the same alignment.
-pub(super) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
+pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
     let (our_kinds, their_kinds) = (kinds(user), kinds(native));
     let mut known: HashMap<(&Kind, &Kind), Alignment> = HashMap::new();
     let mut all = Vec::with_capacity(our_kinds.len() * their_kinds.len());

@@ -6,25 +6,25 @@ use knotdock_structures::molecule::{
 use nalgebra::Point3;
 
 /// Backbone atom names, those of DockQ 2.1.3 (`constants.py`): the first four for proteins, the rest for nucleic acids.
-pub(super) const BACKBONE_ATOMS: [&str; 16] = [
+pub(in crate::evaluate) const BACKBONE_ATOMS: [&str; 16] = [
     "CA", "C", "N", "O", "P", "OP1", "OP2", "O2'", "O3'", "O4'", "O5'", "C1'", "C2'", "C3'", "C4'",
     "C5'",
 ];
 
 /// What a residue is called in its file: number and insertion code.
-pub(super) type Number = (i64, Option<char>);
+pub(in crate::evaluate) type Number = (i64, Option<char>);
 
 /// How many of the [`BACKBONE_ATOMS`] are of proteins.
 const OF_PROTEINS: usize = 4;
 /// Places of P and O3' among the [`BACKBONE_ATOMS`].
-pub(super) const PHOSPHORUS: usize = 4;
-pub(super) const LINKING_OXYGEN: usize = 8;
+pub(in crate::evaluate) const PHOSPHORUS: usize = 4;
+pub(in crate::evaluate) const LINKING_OXYGEN: usize = 8;
 /// Longest distance in Å of O3' from the next nucleotide's P: a bond of 1.6 Å, with room for poor structures.
-pub(super) const PHOSPHATE_BOND: f64 = 2.5;
+pub(in crate::evaluate) const PHOSPHATE_BOND: f64 = 2.5;
 
 /// One residue with its heavy atoms.
 #[derive(Clone, Debug)]
-pub(super) struct Residue {
+pub(in crate::evaluate) struct Residue {
     /// Author number and insertion code.
     pub number: Number,
     /// Residue name with its chemical variants folded, so that equal strings mean the same residue (see [`kind`]).
@@ -106,7 +106,7 @@ impl Residue {
 /// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as methionine and
 /// S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the plain residue's, and nucleotides as their
 /// base ([`plain_residue_name`]).
-pub(super) fn kind(name: &str) -> String {
+pub(in crate::evaluate) fn kind(name: &str) -> String {
     let plain = match name {
         "MSE" => "MET",
         "CME" => "CYS",
