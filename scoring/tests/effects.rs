@@ -6,7 +6,7 @@ use knotdock_scoring::effect::restraint::{ResidueRole, Weights};
 use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
-use knotdock_scoring::kernel::{KernelOptions, Trim};
+use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
@@ -23,11 +23,7 @@ fn options(tolerance: f64) -> EngineOptions {
     EngineOptions {
         kernel: KernelOptions {
             lambda: 10.0,
-            offset: 2.2,
-            alpha: 2.0,
-            resolution: 4.5,
-            pass_length: 9.0,
-            trim: Trim::FlatTop,
+            ..KernelOptions::default()
         },
         spacing: None,
         tolerance,
@@ -277,9 +273,9 @@ fn effects_add_up() {
         let one = std::slice::from_ref(active);
         let alone = ExactScorer::with_effects(plan.kernel(), &a, &b, one).unwrap();
         let alone = alone.score(&pose).terms;
-        let (effect, shape) = (active.term.effect as usize, Effect::Shape as usize);
-        assert_eq!(alone[effect], exact.terms[effect]);
-        assert_eq!(alone[shape], exact.terms[shape]);
+        for effect in [active.term.effect as usize, Effect::Shape as usize] {
+            assert_eq!(alone[effect], exact.terms[effect]);
+        }
     }
 }
 
@@ -295,10 +291,8 @@ fn the_sum_over_voxels_is_the_zero_mode() {
     engine.correlate(&turn(), &mut work);
 
     let kernel = plan.kernel();
-    let (weights, offsets) = (
-        kernel.options().slice_weights(),
-        kernel.options().slice_offsets(),
-    );
+    let weights = kernel.options().slice_weights();
+    let offsets = kernel.options().slice_offsets();
     let (mut zero_mode, mut size) = (0.0, 0.0);
     for r in &a.radii {
         for s in &b.radii {
@@ -319,15 +313,9 @@ fn the_sum_over_voxels_is_the_zero_mode() {
     }
     let voxels = work.grid.len() as f64;
     let sum: f64 = work.grid.iter().sum();
-    let (expected, scale) = (
-        zero_mode / plan.modes().volume(),
-        size / plan.modes().volume(),
-    );
-    assert!(
-        (sum / voxels - expected).abs() < 1e-6 * scale,
-        "{} {expected}",
-        sum / voxels
-    );
+    let mean = sum / voxels * plan.modes().volume();
+    let error = (mean - zero_mode).abs() / size;
+    assert!(error < 1e-6, "{mean} {zero_mode}: {error:e}");
 }
 
 /// A label that no term reads changes not one bit, and neither does a term once it is taken out.
