@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::evaluate::{Capri, PoseQuality};
-use knotdock::options::InputOptions;
-use knotdock::options::definition::definitions;
+use knotdock::options::{InputOptions, definitions};
 use knotdock::output::poses::{PoseRow, PoseTable};
 use knotdock::output::recorded_run::RecordedRun;
 use knotdock::output::{quality, report};

@@ -19,6 +19,7 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use arguments::program::{ProgramArguments, judging_numbers};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use knotdock::options::PotentialFileError;
@@ -36,15 +37,8 @@ use messages::suggestions;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Write one JSON object on standard output, every word on standard error.
-    #[arg(long, global = true)]
-    json: bool,
-    /// Write no words but errors.
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
-    quiet: bool,
-    /// Say more: the times of a run's stages and effects.
-    #[arg(short, long, global = true)]
-    verbose: bool,
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 #[derive(Debug, Subcommand)]
@@ -78,11 +72,7 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return refuse(&error, &arguments),
     };
-    let console = Console {
-        json: cli.json,
-        quiet: cli.quiet,
-        verbose: cli.verbose,
-    };
+    let console = Console::from(cli.program);
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => match command.run(console) {
@@ -105,14 +95,6 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.exit_code())
         }
     }
-}
-
-/// A command in which a negative number is the value of the option before it, so that what is wrong with it can be said.
-fn judging_numbers(command: clap::Command) -> clap::Command {
-    command.mut_args(|argument| {
-        let takes_value = argument.get_action().takes_values();
-        argument.allow_negative_numbers(takes_value)
-    })
 }
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.

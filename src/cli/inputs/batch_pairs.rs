@@ -11,9 +11,9 @@ use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
+use crate::cli::arguments::program::judging_numbers;
 use crate::cli::dock::{Dock, PLACE, refusing_recorded};
 use crate::cli::inputs::molecules::label;
-use crate::cli::judging_numbers;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
 
@@ -154,6 +154,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                 suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
             Err(Failure::input(format!("after --: {}", message(&error))).remedy(remedy))
         }
+        Ok(command) => command.dock.check_config(),
         // What is missing or in conflict here may be otherwise beside a row's own options.
         _ => Ok(()),
     }
