@@ -227,7 +227,7 @@ mod tests {
         for text in [
             "receptor;ligand;active_ligand\na.pdb:H,L;b.pdb;A:5\n",
             "receptor\tligand\tactive_ligand\r\na.pdb:H,L\tb.pdb\tA:5\r\n",
-            "\u{feff}Receptor,LIGAND,Attract ligand\n\"a.pdb:H,L\",b.pdb,A:5\n",
+            "\u{feff}Receptor,LIGAND,Active ligand\n\"a.pdb:H,L\",b.pdb,A:5\n",
             "\u{feff}\"Receptor\";\"Ligand\";\"active-ligand\"\n\"a.pdb:H,L\";b.pdb;A:5\n",
         ] {
             assert_eq!(read(text).unwrap(), plain, "{text:?}");
