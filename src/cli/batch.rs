@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use knotdock::output::files::exclusive::ExclusiveLock;
 use knotdock::output::files::whole_file::FileError;
 use knotdock::output::tables::batch_results::{
@@ -12,7 +12,7 @@ use knotdock::output::tables::batch_results::{
 use knotdock::output::tables::report::counted;
 use serde_json::{Value, json};
 
-use crate::cli::Cli;
+use crate::cli::arguments::program::is_of_program;
 use crate::cli::dock::Dock;
 use crate::cli::inputs::batch_pairs::{Pair, pairs};
 use crate::cli::messages::console::Console;
@@ -39,16 +39,6 @@ pub struct Batch {
 /// The file in the directory that a batch locks for as long as it goes on.
 const LOCK: &str = "results.csv.lock";
 
-/// Whether a word is an option of the whole program, which no pair has for itself.
-fn of_program(word: &str) -> bool {
-    let program = Cli::command();
-    program.get_arguments().any(|option| {
-        let long = option.get_long().map(|long| format!("--{long}"));
-        let short = option.get_short().map(|short| format!("-{short}"));
-        long.as_deref() == Some(word) || short.as_deref() == Some(word)
-    })
-}
-
 impl Batch {
     /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
     pub fn run(self, console: Console) -> Result<u8, Failure> {
@@ -56,7 +46,7 @@ impl Batch {
             let stem = self.pairs.file_stem().unwrap_or_default();
             PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
         });
-        if let Some(word) = self.options.iter().find(|word| of_program(word)) {
+        if let Some(word) = self.options.iter().find(|word| is_of_program(word)) {
             return Err(
                 Failure::input(format!("{word} after -- would be an option of each pair")).remedy(
                     format!("give {word} before --, where it is the whole batch's"),

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Arg, Args, Command, Id};
-use knotdock::options::definition::definition;
 use knotdock::options::values::{above_zero, duration};
-use knotdock::options::{DockOptions, EngineChoice};
+use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::tradeoff::choice::Wanted;
 
 use crate::cli::arguments::machine::settled;
@@ -66,7 +65,7 @@ pub const PLACE: [&str; 3] = ["rerun", "output", "force"];
 
 /// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
 pub fn refusing_recorded(command: Command) -> Command {
-    let of_machine = |name: &str| definition(name).is_some_and(|one| one.subject() == "machine");
+    let of_machine = |name: &str| option_named(name).is_some_and(|one| one.subject() == "machine");
     let recorded: Vec<Id> = command
         .get_arguments()
         .map(Arg::get_id)
@@ -80,6 +79,11 @@ impl Dock {
     /// Whether options say where the run goes.
     pub fn names_its_run(&self) -> bool {
         self.output.is_some()
+    }
+
+    /// Refuses a file of options that cannot be read.
+    pub fn check_config(&self) -> Result<(), Failure> {
+        self.options.given().map(drop)
     }
 
     /// The run that the command line describes.
@@ -149,7 +153,7 @@ fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock::options::definition::definitions;
+    use knotdock::options::definitions;
 
     /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the machine are not.
     #[test]

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::evaluate::{Capri, Criterion, PoseQuality};
-use knotdock::options::InputOptions;
-use knotdock::options::definition::definitions;
+use knotdock::options::{InputOptions, definitions};
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};

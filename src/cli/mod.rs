@@ -19,6 +19,7 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use arguments::program::{ProgramArguments, with_negative_numbers};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use knotdock::options::PotentialFileError;
@@ -26,7 +27,6 @@ use knotdock::options::text::first_paragraph;
 use messages::console::Console;
 use messages::failure::Failure;
 use messages::suggestions;
-use messages::usage::with_negative_numbers;
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
 ///
@@ -37,15 +37,8 @@ use messages::usage::with_negative_numbers;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Write one JSON object on standard output, every word on standard error.
-    #[arg(long, global = true)]
-    json: bool,
-    /// Write no words but errors.
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
-    quiet: bool,
-    /// Say more: the times of a run's stages and effects.
-    #[arg(short, long, global = true)]
-    verbose: bool,
+    #[command(flatten)]
+    program: ProgramArguments,
 }
 
 #[derive(Debug, Subcommand)]
@@ -79,11 +72,7 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return refuse(&error, &arguments),
     };
-    let console = Console {
-        json: cli.json,
-        quiet: cli.quiet,
-        verbose: cli.verbose,
-    };
+    let console = Console::from(cli.program);
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => match command.run(console) {

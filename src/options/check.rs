@@ -1,8 +1,11 @@
 //! What no run can do, refused: values out of range, and options that do not go together.
 
-use super::definition::{Definition, Scope, definition, definitions};
+use super::definition::{Definition, Scope};
 use super::text::{self, OptionError};
-use super::{AXES, AXES_ACROSS, DockOptions, EngineChoice, Precision, SearchOptions, Stopped};
+use super::{
+    AXES, AXES_ACROSS, DockOptions, EngineChoice, Precision, SearchOptions, Stopped, definitions,
+    option_named,
+};
 use crate::error::SearchError;
 use clap::ValueEnum;
 
@@ -186,7 +189,7 @@ impl DockOptions {
 
 /// The error of a search that has such an option.
 fn search_error(error: OptionError) -> SearchError {
-    let known = definition(&error.name.replace('-', "_"));
+    let known = option_named(&error.name.replace('-', "_"));
     SearchError::Option {
         name: known.map_or("option", Definition::long),
         value: error.value,

@@ -2,11 +2,7 @@
 //!
 //! All of it is read off the command line that clap derives from the structs of options.
 
-use std::sync::OnceLock;
-
 use clap::{Arg, ArgAction, Args, Command, ValueHint};
-
-use super::DockOptions;
 
 /// Inputs that an option has an effect on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,22 +107,11 @@ pub fn definitions_of<T: Args>() -> Vec<Definition> {
     command.get_arguments().map(Definition::of).collect()
 }
 
-/// The options of a docking run.
-pub fn definitions() -> &'static [Definition] {
-    static ALL: OnceLock<Vec<Definition>> = OnceLock::new();
-    ALL.get_or_init(definitions_of::<DockOptions>)
-}
-
-/// The option of a docking run with a name.
-pub fn definition(name: &str) -> Option<&'static Definition> {
-    definitions().iter().find(|option| option.name() == name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::options::values::number;
-    use crate::options::{KernelOptions, file, text};
+    use crate::options::{DockOptions, KernelOptions, definitions, file, text};
     use serde::{Deserialize, Serialize};
 
     /// A subject with a new option, which is stated here and nowhere else.

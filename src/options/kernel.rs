@@ -5,7 +5,7 @@ use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions as EngineKernel, Trim, exponent};
 use serde::{Deserialize, Serialize};
 
-use super::EffectChoice;
+use super::effect_choice::EffectChoice;
 use super::values::{above_zero, not_negative};
 
 /// What the search correlates: the effects, the kernel of shape, its resolution, and the modes that stand for it.

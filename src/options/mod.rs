@@ -10,7 +10,7 @@
 //! | the file of `--config` | its values are read as if they were typed ([`mod@file`]) |
 //! | `options` in `run.json` | `#[derive(Serialize, Deserialize)]` |
 //! | the check of options from elsewhere | the values are read as if they were typed ([`check`]) |
-//! | what `--rerun` repeats, which options a kind of input has | [`definition::definitions`] |
+//! | what `--rerun` repeats, which options a kind of input has | [`definitions`] |
 //! | what `tradeoff` varies | [`DockOptions::with`], by name |
 //!
 //! # To add an option
@@ -53,6 +53,7 @@ pub use terms::TermOptions;
 use std::sync::OnceLock;
 
 use clap::Args;
+use definition::{Definition, definitions_of};
 use serde::{Deserialize, Serialize};
 
 /// Options of a docking run. Lengths in Å, or in the files' unit where meshes are docked.
@@ -118,6 +119,17 @@ impl Default for DockOptions {
     }
 }
 
+/// What is known of each option, in their order.
+pub fn definitions() -> &'static [Definition] {
+    static ALL: OnceLock<Vec<Definition>> = OnceLock::new();
+    ALL.get_or_init(definitions_of::<DockOptions>)
+}
+
+/// What is known of the option with a name.
+pub fn option_named(name: &str) -> Option<&'static Definition> {
+    definitions().iter().find(|option| option.name() == name)
+}
+
 /// The defaults of single subjects, as of all options.
 macro_rules! defaults_of_subjects {
     ($($options:ident),+) => {
@@ -169,11 +181,8 @@ mod tests {
     fn options_survive_the_record_and_the_check_unchanged() {
         let words = GIVEN.split_whitespace().map(OsString::from);
         let options: DockOptions = text::read(words).unwrap();
-        let given = text::given(&options, &DockOptions::default(), definition::definitions());
-        assert_eq!(
-            given.count() + ELSEWHERE.len(),
-            definition::definitions().len()
-        );
+        let given = text::given(&options, &DockOptions::default(), definitions());
+        assert_eq!(given.count() + ELSEWHERE.len(), definitions().len());
         assert!(options.check_ranges().is_ok());
         let record = serde_json::to_string(&options).unwrap();
         assert_eq!(

@@ -97,7 +97,7 @@ pub enum EngineChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::definition::definitions;
+    use crate::options::definitions;
 
     /// The help writes out defaults that depend on more than the option itself.
     #[test]

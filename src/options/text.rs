@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::definition::{Definition, definitions_of};
+use super::values::BOUND;
 
 /// Why an option cannot have a value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -22,9 +23,6 @@ pub struct OptionError {
     /// What it must be.
     pub bound: String,
 }
-
-/// How ranges are stated by the parsers of values.
-pub(super) const BOUND: &str = "it must be ";
 
 /// Options from words such as `--lambda=9`. An option that no word names has its default.
 ///

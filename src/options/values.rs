@@ -2,7 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use super::text::BOUND;
+/// How ranges are stated.
+pub(super) const BOUND: &str = "it must be ";
 
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;

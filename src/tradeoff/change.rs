@@ -1,8 +1,8 @@
 //! Changes of single options: what settings of a sweep are made of.
 
 use crate::error::SearchError;
-use crate::options::DockOptions;
-use crate::options::definition::{Definition, definition};
+use crate::options::definition::Definition;
+use crate::options::{DockOptions, option_named};
 
 /// A change of one option.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl Change {
 
     /// As it is typed.
     pub fn argument(&self) -> String {
-        let long = definition(self.option).map_or(self.option, Definition::long);
+        let long = option_named(self.option).map_or(self.option, Definition::long);
         format!("--{long} {}", self.value)
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::error::SearchError;
 use crate::options::DockOptions;
-use crate::options::SampleGrid;
-use crate::options::definition::{Definition, Scope, definition};
+use crate::options::definition::{Definition, Scope};
 use crate::options::{MAX_PER_AXIS, check::name_of};
+use crate::options::{SampleGrid, option_named};
 use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
 use clap::ValueEnum;
 use serde::Serialize;
@@ -161,7 +161,7 @@ impl Parameter {
         match self {
             Self::Default => "default",
             Self::Reference => "reference",
-            Self::Option(name) => definition(name).map_or(name, Definition::long),
+            Self::Option(name) => option_named(name).map_or(name, Definition::long),
             Self::Combination => "combination",
         }
     }
@@ -171,7 +171,7 @@ impl Parameter {
     /// The inputs that it has an effect on.
     pub fn scope(self) -> Scope {
         match self {
-            Self::Option(name) => definition(name).map_or(Scope::Both, Definition::scope),
+            Self::Option(name) => option_named(name).map_or(Scope::Both, Definition::scope),
             _ => Scope::Both,
         }
     }
@@ -353,7 +353,7 @@ mod tests {
     fn what_is_swept_is_an_option() {
         for parameter in Parameter::all() {
             if let Parameter::Option(name) = parameter {
-                assert!(definition(name).is_some(), "{name}");
+                assert!(option_named(name).is_some(), "{name}");
             }
             assert_eq!(parameter.name().parse(), Ok(parameter));
         }

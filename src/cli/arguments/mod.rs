@@ -5,4 +5,5 @@ pub mod memory;
 pub mod native;
 pub mod options;
 pub mod output_file;
+pub mod program;
 pub mod ranks;

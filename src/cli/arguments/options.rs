@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
-use knotdock::options::definition::{Definition, definitions};
-use knotdock::options::{DockOptions, file, text};
+use knotdock::options::definition::Definition;
+use knotdock::options::{DockOptions, definitions, file, text};
 
 use crate::cli::messages::failure::Failure;
 

@@ -11,11 +11,11 @@ use knotdock::output::tables::batch_results::RESULTS;
 use knotdock::output::tables::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
+use crate::cli::arguments::program::with_negative_numbers;
 use crate::cli::dock::{Dock, PLACE, refusing_recorded};
 use crate::cli::inputs::molecules::label;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
-use crate::cli::messages::usage::with_negative_numbers;
 
 /// One pair's command line.
 #[derive(Parser, Debug)]
@@ -156,6 +156,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                 suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
             Err(Failure::input(format!("after --: {}", first_paragraph(&error))).remedy(remedy))
         }
+        Ok(command) => command.dock.check_config(),
         // What is missing or in conflict here may be otherwise beside a row's own options.
         _ => Ok(()),
     }

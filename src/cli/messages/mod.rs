@@ -7,4 +7,3 @@ pub mod library_errors;
 pub mod shared_chains;
 pub mod suggestions;
 pub mod timings;
-pub mod usage;
