@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let on_core = least_seconds(2, || {
             let mut found = Vec::new();
             for turn in &turns[..TURNS / 9] {
-                engine.turn(&turn.rotation, &mut work);
+                engine.transform_ligand(&turn.rotation, &mut work);
                 for half_turn in HalfTurn::ALL {
                     engine.correlate_turned(half_turn, &mut work);
                     let (grid, rows) = (&mut work.grid, &mut work.row_best);

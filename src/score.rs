@@ -1,4 +1,4 @@
-//! One pose scored: exactly, and from ever more modes, with the error and the time of each.
+//! Scores of one pose: exactly, and from ever more modes with the error and the time of each.
 
 use crate::dock::outcome::error_scale;
 use crate::dock::scene::Scene;
@@ -29,7 +29,7 @@ const MODE_TOLERANCE: f64 = 5e-4;
 /// Step of the finite differences over radii, as a share of the ligand's smallest radius.
 const RADIUS_STEP: f64 = 1e-3;
 
-/// What to score with.
+/// Options of scoring a pose.
 #[derive(Clone, Copy, Debug)]
 pub struct ScoreOptions {
     /// Kernel and grid; the tolerance is that of the run whose kernel is meant.
@@ -70,7 +70,7 @@ pub struct Rung {
     pub seconds_new_rotation: f64,
 }
 
-/// d / d rho: how the score and its slices answer to a growth of all radius sums, per Å (= -d / dr on B&I's r axis).
+/// Derivatives by rho: how score and slices change with all radius sums, per Å. On B&I's r axis they are minus those by r.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OffsetSensitivity {
     /// Of the score, all three slices moved together.
@@ -92,7 +92,7 @@ pub struct Gradient {
     pub torque: [f64; 3],
 }
 
-/// What there is to say about one pose.
+/// Scores of one pose.
 #[derive(Clone, Debug, Serialize)]
 pub struct PoseScore {
     /// The exact sum over all pairs, of all effects that are on.
@@ -126,86 +126,45 @@ pub struct PoseScore {
 /// [`SearchError`] on knots or options that cannot be used.
 pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, SearchError> {
     let (receptor, ligand) = (&scene.receptor, &scene.ligand);
-    let kernel_tolerance = options.engine.tolerance;
-    let fine = EngineOptions {
-        tolerance: kernel_tolerance.min(MODE_TOLERANCE),
-        ..options.engine
-    };
-    let plan = Arc::new(Plan::with_effects(
-        receptor,
-        ligand,
-        fine,
-        kernel_tolerance,
-        scene.terms.clone(),
-    )?);
-    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
-    let needed = bytes_a_mode * plan.modes().count as u64;
-    if let Some(allowed) = options.memory.filter(|&allowed| needed > allowed) {
-        return Err(SearchError::Modes {
-            modes: plan.modes().count,
-            needed,
-            allowed,
-        });
-    }
+    let plan = plan(scene, options)?;
     let scorer = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())?;
     let exact = scorer.score(pose);
-    let folds = [
+    let quantities = [
         Quantity::Score,
         Quantity::SliceByOffset(0),
         Quantity::SliceByOffset(1),
         Quantity::SliceByOffset(2),
     ];
     let all = Selection::all(plan.modes());
-    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = folds
+    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = quantities
         .into_par_iter()
-        .map(|fold| {
-            let folded = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, fold);
-            let configuration = TruncatedCorrelation::new(&plan, &folded, ligand, &all);
-            (folded, configuration)
+        .map(|quantity| {
+            let spectra = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, quantity);
+            let correlation = TruncatedCorrelation::new(&plan, &spectra, ligand, &all);
+            (spectra, correlation)
         })
         .collect();
-    let [(folded, first), by_offset @ ..] = whole.as_slice() else {
+    let [(spectra, first), by_offset @ ..] = whole.as_slice() else {
         return Err(SearchError::NoPose);
     };
     let mut work = first.workspace();
     let magnitudes = first
         .prepare(&pose.rotation, &mut work)
         .magnitudes(plan.modes().count);
-    let scale = scale(&plan, folded, ligand, pose);
-    let limit = LADDER_ERROR * exact.score.abs().max(scale);
-    let modes_total = total(plan.modes());
-    let last_asked = STATED_MODES.max(options.modes.unwrap_or(0));
-    let mut rows = Vec::new();
-    for most in rungs(modes_total, options.modes) {
-        let selection = match options.order {
-            ModeOrder::LowFrequency => Selection::low_frequency(plan.modes(), most),
-            ModeOrder::Magnitude => Selection::by_magnitude(plan.modes(), &magnitudes, most),
-        };
-        let few = TruncatedCorrelation::new(&plan, folded, ligand, &selection);
-        let mut work = few.workspace();
-        let prepared = few.prepare(&pose.rotation, &mut work);
-        let (value, _) = prepared.gradient(&pose.translation, &mut work);
-        let tail = Tail::of(plan.modes(), &selection, &magnitudes);
-        let error = (value - exact.score).abs();
-        rows.push(Rung {
-            modes: most,
-            modes_kept: few.modes(),
-            value,
-            error,
-            bound: tail.bound,
-            rms: tail.rms,
-            seconds: seconds(|| prepared.gradient(&pose.translation, &mut work).0),
-            seconds_prepare: seconds(|| few.prepare(&pose.rotation, &mut work).modes() as f64),
-            seconds_new_rotation: seconds(|| few.gradient(pose, &mut work).0),
-        });
-        if error < limit && most >= last_asked {
-            break;
-        }
-    }
-    let reached = rows.last().is_some_and(|row| row.error < limit);
+    let scale = scale(&plan, spectra, ligand, pose);
+    let ladder = Ladder {
+        plan: &plan,
+        spectra,
+        ligand,
+        magnitudes: &magnitudes,
+        exact: exact.score,
+        limit: LADDER_ERROR * exact.score.abs().max(scale),
+    };
+    let rows = ladder.rows(pose, options);
+    let reached = rows.last().is_some_and(|row| row.error < ladder.limit);
     let mut slices = [0.0; 3];
-    for (slice, (_, configuration)) in slices.iter_mut().zip(by_offset) {
-        *slice = configuration.gradient(pose, &mut work).0;
+    for (slice, (_, correlation)) in slices.iter_mut().zip(by_offset) {
+        *slice = correlation.gradient(pose, &mut work).0;
     }
     let gradient = |(_, gradient): (f64, knotdock_scoring::exact::PoseGradient)| Gradient {
         force: gradient.force.into(),
@@ -229,7 +188,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         scale,
         rows,
         reached,
-        modes_total,
+        modes_total: total(plan.modes()),
         slices: exact.slices,
         unfiltered: exact.unfiltered,
         gradient: gradient(scorer.gradient(pose)),
@@ -247,29 +206,113 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
     })
 }
 
-/// Numbers of modes: doubling from `FIRST_MODES`, with the stated number, the one asked for, and all.
-fn rungs(total: usize, asked: Option<usize>) -> Vec<usize> {
+/// The plan whose modes are accurate enough for a ladder.
+///
+/// # Errors
+/// [`SearchError`] on knots or options that cannot be used, and when all modes take more memory than is allowed.
+fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, SearchError> {
+    let kernel_tolerance = options.engine.tolerance;
+    let fine = EngineOptions {
+        tolerance: kernel_tolerance.min(MODE_TOLERANCE),
+        ..options.engine
+    };
+    let plan = Plan::with_effects(
+        &scene.receptor,
+        &scene.ligand,
+        fine,
+        kernel_tolerance,
+        scene.terms.clone(),
+    )?;
+    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
+    let needed = bytes_a_mode * plan.modes().count as u64;
+    match options.memory.filter(|&allowed| needed > allowed) {
+        Some(allowed) => Err(SearchError::Modes {
+            modes: plan.modes().count,
+            needed,
+            allowed,
+        }),
+        None => Ok(Arc::new(plan)),
+    }
+}
+
+/// What the rows of a ladder of modes are computed from.
+struct Ladder<'a> {
+    plan: &'a Plan,
+    spectra: &'a ReceptorSpectra<f64>,
+    ligand: &'a Knots,
+    /// Magnitudes of all modes at the pose's rotation.
+    magnitudes: &'a [f64],
+    /// The exact score.
+    exact: f64,
+    /// Error at which the ladder ends.
+    limit: f64,
+}
+
+impl Ladder<'_> {
+    /// Rows by rising number of modes, up to the first with a small enough error that contains the requested numbers.
+    fn rows(&self, pose: &Pose, options: &ScoreOptions) -> Vec<Rung> {
+        let modes = self.plan.modes();
+        let last_requested = STATED_MODES.max(options.modes.unwrap_or(0));
+        let mut rows = Vec::new();
+        for most in rungs(total(modes), options.modes) {
+            let selection = match options.order {
+                ModeOrder::LowFrequency => Selection::low_frequency(modes, most),
+                ModeOrder::Magnitude => Selection::by_magnitude(modes, self.magnitudes, most),
+            };
+            let row = self.row(most, &selection, pose);
+            rows.push(row);
+            if row.error < self.limit && most >= last_requested {
+                break;
+            }
+        }
+        rows
+    }
+
+    /// The row of the chosen modes, `most` allowed.
+    fn row(&self, most: usize, selection: &Selection, pose: &Pose) -> Rung {
+        let few = TruncatedCorrelation::new(self.plan, self.spectra, self.ligand, selection);
+        let mut work = few.workspace();
+        let prepared = few.prepare(&pose.rotation, &mut work);
+        let (value, _) = prepared.gradient(&pose.translation, &mut work);
+        let tail = Tail::of(self.plan.modes(), selection, self.magnitudes);
+        Rung {
+            modes: most,
+            modes_kept: few.modes(),
+            value,
+            error: (value - self.exact).abs(),
+            bound: tail.bound,
+            rms: tail.rms,
+            seconds: seconds(|| prepared.gradient(&pose.translation, &mut work).0),
+            seconds_prepare: seconds(|| few.prepare(&pose.rotation, &mut work).modes() as f64),
+            seconds_new_rotation: seconds(|| few.gradient(pose, &mut work).0),
+        }
+    }
+}
+
+/// Numbers of modes: doubling from `FIRST_MODES`, with the stated number, the requested one, and all.
+fn rungs(total: usize, requested: Option<usize>) -> Vec<usize> {
     let mut rungs: Vec<usize> =
         std::iter::successors(Some(FIRST_MODES), |modes| modes.checked_mul(2))
             .take_while(|&modes| modes < total)
             .chain([STATED_MODES, total])
-            .chain(asked)
+            .chain(requested)
             .collect();
     rungs.sort_unstable();
     rungs.dedup();
     rungs
 }
 
-/// The largest score of the grid at the pose's rotation.
-fn scale(plan: &Arc<Plan>, folded: &ReceptorSpectra<f64>, ligand: &Knots, pose: &Pose) -> f64 {
-    let engine = CpuEngine::new(Arc::clone(plan), folded, ligand, folded.full_rank());
+/// Largest score of the grid at the pose's rotation.
+fn scale(plan: &Arc<Plan>, spectra: &ReceptorSpectra<f64>, ligand: &Knots, pose: &Pose) -> f64 {
+    let engine = CpuEngine::new(Arc::clone(plan), spectra, ligand, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);
     error_scale(work.grid.iter().copied(), plan.options().tolerance)
 }
 
-/// d score / d rho and d slices / d rho by central differences of the exact sum: growing the ligand's radii by h moves every
-/// radius sum as an offset of h does.
+/// Derivatives of score and slices by rho, by central differences of the exact sum.
+///
+/// Growing the ligand's radii by h moves every radius sum as an offset of h does.
 fn exact_sensitivity(
     plan: &Plan,
     receptor: &Knots,

@@ -263,6 +263,14 @@ fn a_run_that_is_not_one() {
     let error = place.refused(&["dock", "--rerun", "run.json"]);
     says(&error, "run.json");
     assert_eq!(error["line"], 3);
+    place.write(
+        "run.json",
+        "{\"schema\":99,\"program\":\"knotdock\",\"options\":7}",
+    );
+    says(
+        &place.refused(&["dock", "--rerun", "run.json"]),
+        "its schema is 99",
+    );
     place.write("run.json", "{\"schema\":1}");
     place.refused(&["dock", "--rerun", "run.json"]);
     place.refused(&["export", "nowhere", "--rank", "1"]);

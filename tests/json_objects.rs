@@ -83,6 +83,7 @@ fn dock_tells_where_the_run_is_and_what_is_best() {
             "match",
             "options",
             "plan",
+            "pose_terms",
             "program",
             "rank",
             "results",
@@ -170,7 +171,7 @@ fn complex_lists_files_by_rank() {
         folder.path(),
         "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
     );
-    let told = object(&run(folder.path(), "complex run --rank 3,1 --json"));
+    let told = object(&run(folder.path(), "export run --rank 3,1 --json"));
     assert_eq!(keys(&told), ["chains", "files"]);
     let files = told["files"].as_array().unwrap();
     assert_eq!(
@@ -229,10 +230,11 @@ fn inspect_tells_what_was_read_and_assumed() {
             "accessible_area",
             "active_sites",
             "antibody",
-            "chain_end_residues",
             "input",
             "labels",
-            "missing_residues",
+            "pose_terms",
+            "terminus_residues",
+            "unresolved_residues",
             "volume",
             "volume_error"
         ]
@@ -345,4 +347,27 @@ fn score_tells_the_geometry_of_the_pose() {
         "score ligand.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --json",
     ));
     assert!((same["geometry"]["shape_tanimoto"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+}
+
+/// `-v` adds the times of stages and effects to what a run says by default; `-q` leaves all of it out.
+#[test]
+fn verbose_says_more_and_quiet_says_nothing() {
+    let folder = place();
+    let said = |options: &str| {
+        let command =
+            format!("dock receptor.pdb ligand.pdb --rotations 20 -o run --force {options}");
+        String::from_utf8(run(folder.path(), &command).stdout).unwrap()
+    };
+    let [default, verbose, quiet] = ["-j 1", "-v -j 1", "-q -j 1"].map(said);
+    assert!(!default.contains("CPU s") && default.contains("Effect shape"));
+    for part in [
+        "CPU s",
+        "search",
+        "cluster",
+        "ms a rotation",
+        "Effect shape",
+    ] {
+        assert!(verbose.contains(part), "{part}: {verbose}");
+    }
+    assert_eq!(quiet, "");
 }

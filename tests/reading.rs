@@ -54,7 +54,7 @@ fn residues_left_out_are_recorded_and_followed() {
     assert_eq!(ligand["atoms"], 50);
     assert_eq!(
         ligand["report"]["confidence"],
-        serde_json::json!({"told_by": "values", "mean": 69.5, "residues": 12, "below_50": 2})
+        serde_json::json!({"source": "values", "mean": 69.5, "residues": 12, "below_50": 2})
     );
     assert_eq!(
         first["inputs"]["receptor"]["report"]["confidence"],
@@ -70,7 +70,7 @@ fn residues_left_out_are_recorded_and_followed() {
     assert_eq!(recorded("again")["options"], first["options"]);
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let matched = json(folder, "evaluate run --native native.pdb --json");
@@ -145,7 +145,7 @@ fn an_assembly_is_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
@@ -261,7 +261,7 @@ fn all_models_are_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
@@ -308,7 +308,7 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
     });
     fs::write(folder.join("low.pdb"), &low).unwrap();
     let told = json(folder, "inspect low.pdb --min-plddt 50 --json");
-    assert_eq!(told["input"]["report"]["confidence"]["told_by"], "user");
+    assert_eq!(told["input"]["report"]["confidence"]["source"], "user");
     assert_eq!(told["input"]["atoms"], 30);
     let warnings = told["input"]["report"]["warnings"].to_string();
     assert!(
@@ -321,7 +321,7 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
     let inputs = &first["inputs"];
-    assert_eq!(inputs["ligand"]["report"]["confidence"]["told_by"], "user");
+    assert_eq!(inputs["ligand"]["report"]["confidence"]["source"], "user");
     // All B values of the receptor are 10, which is no pLDDT.
     assert_eq!(inputs["receptor"]["report"]["confidence"], Value::Null);
     let matched = json(folder, "evaluate run --native native.pdb --json");
@@ -362,7 +362,7 @@ fn picked_residues_are_recorded_and_followed() {
     );
     succeed(
         folder,
-        "complex run --rank 1 -o out --quiet".split_whitespace(),
+        "export run --rank 1 -o out --quiet".split_whitespace(),
     );
     let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
     assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));

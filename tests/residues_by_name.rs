@@ -108,7 +108,7 @@ fn a_dropped_residue_is_recorded_and_followed() {
     assert_eq!(rows(&poses("run")), rows(&poses("plain")));
     run("dock --rerun run/run.json -o again --quiet");
     assert_eq!(poses("run"), poses("again"));
-    run("complex run --rank 1 -o out --quiet");
+    run("export run --rank 1 -o out --quiet");
     let complex = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     assert_eq!(
         complex("run/top/rank_0001.pdb"),

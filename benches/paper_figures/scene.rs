@@ -7,8 +7,8 @@
 use crate::docking_parts::peg_and_hole;
 use crate::spectrum::Body;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::{Method, SetName, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::{Method, SetName, knots, sample};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
 use std::path::Path;

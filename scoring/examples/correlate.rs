@@ -10,13 +10,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ligand = Knots::new(vec![[0.0; 3]], vec![1.9])?;
 
     let mut correlator = Correlator::new(&receptor, &ligand, Options::default())?;
-    let correlation = correlator.correlate(&UnitQuaternion::identity())?;
-    let best = correlation.best();
-    println!(
-        "{:.1} at {:.1?}",
-        best.score,
-        best.pose.translation.as_slice()
-    );
+    let best = correlator.correlate(&UnitQuaternion::identity())?.best();
+    let [x, y, z] = best.pose.translation.into();
+    println!("{:.1} at ({x:.1}, {y:.1}, {z:.1})", best.score);
     assert!(best.score > 0.0 && best.pose.translation.norm() < 3.0);
     Ok(())
 }

@@ -4,8 +4,8 @@
 //! growth is a shift along the radius axis. So F_S is again a set of lifted knots, twice as many, with complex weights:
 //! (x, r + r0) with i c and (x, r) with -i lambda c.
 //!
-//! The product of two such functions is the score G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0). No factor is conjugated:
-//! B&I's eq. 52-53 conjugate one and so lose the sign i * i = -1 that their text needs.
+//! The product of two such functions is the score G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0). No factor is
+//! conjugated: B&I's eq. 52-53 conjugate one and so lose the sign i * i = -1 that their text needs.
 
 use knotdock_structures::Knots;
 use num_complex::Complex64;

@@ -1,8 +1,8 @@
 //! The front door: one pair of knot sets, correlated over all translations at one rotation at a time.
 //!
-//! [`Correlator::new`] plans the correlation, transforms the receptor, picks the rank of the lifted axis that the tolerance
-//! needs, and allocates the buffers. [`Correlator::correlate`] then allocates nothing. Programs that search many rotations
-//! on many threads use the parts themselves: one [`CpuEngine`] and one [`Workspace`] a thread.
+//! [`Correlator::new`] plans the correlation, transforms the receptor, picks the rank of the lifted axis that the
+//! tolerance needs, and allocates the buffers. [`Correlator::correlate`] then allocates nothing. Programs that search
+//! many rotations on many threads use the parts themselves: one [`CpuEngine`] and one [`Workspace`] a thread.
 //!
 //! # Conventions
 //!

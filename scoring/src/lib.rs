@@ -23,8 +23,8 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, the affinity function, score and slices |
-//! | [`effect`] | terms beside shape in the search |
+//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, affinity function, score and slices |
+//! | [`terms::effect`] | terms of the search: shape, and sums over labelled pairs of knots |
 //! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
 //! | [`transform`] | knots to modes and modes to grids |
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
@@ -33,7 +33,7 @@
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
-//! | [`rescoring`] | terms that only kept poses get |
+//! | [`terms::pose`] | terms that score the poses which a search keeps |
 
 pub mod affinity;
 mod correlator;
@@ -57,4 +57,4 @@ mod vectorized;
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.
 pub use engine::EngineOptions as Options;
-pub use terms::{effect, pose as rescoring};
+pub use terms::effect;

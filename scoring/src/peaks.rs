@@ -29,9 +29,9 @@ pub const NEIGHBOURS: usize = 2;
 
 /// Appends the `count` best voxels of a periodic grid to `found`, best first.
 ///
-/// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis. Ties go to the lower voxel. Fewer are found
-/// where the neighbourhoods of those found leave nothing. `grid` is (nx, ny, nz) row-major, `row_best` holds the largest
-/// value of each row (x, y); both are overwritten with minus infinity around peaks. Values must not be NaN.
+/// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis. Ties go to the lower voxel. Fewer are
+/// found where the neighbourhoods of those found leave nothing. `grid` is (nx, ny, nz) row-major, `row_best` holds the
+/// largest value of each row (x, y); both are overwritten with minus infinity around peaks. Values must not be NaN.
 pub fn find_peaks<T: Real>(
     size: [usize; 3],
     grid: &mut [T],

@@ -5,7 +5,7 @@
 pub enum Quantity {
     /// The weighted sum of the three slices: G.
     Score,
-    /// One unweighted slice: 0, 1 or 2 for rho = 0, r0, 2 r0.
+    /// One unweighted slice: 0, 1 or 2 for rho = 0, r0, 2 r0. Any other panics.
     Slice(usize),
     /// dG / d rho, all three offsets moved by the same length: the score's change with the knots' radii, per Å.
     ScoreByOffset,

@@ -32,8 +32,8 @@ impl HalfTurn {
         }
     }
 
-    /// The rotation that turns by `rotation` first and by the half-turn then: exact, since it only permutes and negates the
-    /// quaternion's parts.
+    /// The rotation that turns by `rotation` first and by the half-turn then: exact, since it only permutes and negates
+    /// the quaternion's parts.
     pub fn after(self, rotation: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
         let [w, i, j, k] = self.after_parts([rotation.w, rotation.i, rotation.j, rotation.k]);
         UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))

@@ -1,5 +1,5 @@
-//! Effects beside shape: each by the fast path, run alone, against its exact pair sum, that against a plain double loop, and scenes
-//! whose answer is known.
+//! Effects beside shape: each by the fast path, run alone, against its exact pair sum, that against a plain double
+//! loop, and scenes whose answer is known.
 
 use knotdock_scoring::effect::contact::{self, Potential};
 use knotdock_scoring::effect::restraint::{ResidueRole, Weights};
@@ -66,8 +66,8 @@ fn free_terms(a: &Knots, b: &Knots) -> Vec<Term> {
     ]
 }
 
-/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as the defaults have it,
-/// and as many attracted.
+/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as
+/// the defaults have it, and as many attracted.
 fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
     let every = |knots: &Knots, step: usize| -> Vec<ResidueRole> {
         let mark = |count: usize| match count % step {
@@ -80,8 +80,8 @@ fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
     let mut terms = free_terms(a, b);
     let marks = [&every(a, 4)[..], &every(b, 5)];
     let weights = Weights {
-        blocked: 0.35,
-        attracted: 0.2,
+        excluded: 0.35,
+        active: 0.2,
     };
     terms.push(restraint::term(a, b, marks, weights));
     terms
@@ -104,18 +104,18 @@ fn turn() -> UnitQuaternion<f64> {
     Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
 }
 
-/// Largest error over the grid's best and a sweep of it, as a share of the largest exact value there (of a restraint, which is nowhere above 0, the
-/// largest magnitude), of `effect` alone or of all.
+/// Largest error of `effect` alone, or of all, over the grid's best and a sweep of it. It is a share of the largest
+/// exact value there; of a restraint, which is nowhere above 0, of the largest magnitude.
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) -> f64 {
     let plan = plan(a, b, tolerance);
     let scorer = scorer(&plan, a, b);
-    let mut folded = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
+    let mut spectra = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
     if let Some(effect) = effect {
         for other in Effect::ALL.into_iter().filter(|other| *other != effect) {
-            folded = folded.without(other);
+            spectra = spectra.without(other);
         }
     }
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
     let mut order: Vec<usize> = (0..work.grid.len()).collect();
@@ -136,7 +136,7 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) 
 }
 
 #[test]
-fn each_term_alone_and_all_together_meet_the_tolerance_asked() {
+fn each_term_alone_and_all_together_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, 1), cloud(60, 8.0, 2));
     let alone = Effect::ALL.into_iter().skip(1).map(Some);
     for effect in alone.chain([None]) {
@@ -154,8 +154,8 @@ fn each_term_alone_and_all_together_meet_the_tolerance_asked() {
     }
 }
 
-/// The tables and blocks of the exact sum against a double loop over the kernels' definition; terms add up to the score; the gradient is
-/// that of central differences.
+/// The tables and blocks of the exact sum against a double loop over the kernels' definition; terms add up to the
+/// score; the gradient is that of central differences.
 #[test]
 fn the_exact_terms_are_the_plain_double_sum() {
     let (a, b) = (cloud(90, 10.0, 3), cloud(40, 7.0, 4));
@@ -219,13 +219,14 @@ fn the_field_reads_all_terms() {
     let (a, b) = (cloud(160, 12.0, 5), cloud(60, 8.0, 6));
     let plan = plan(&a, &b, 1e-2);
     let scorer = scorer(&plan, &a, &b);
-    let folded = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
-    let field = PotentialGrid::new(&plan, &folded, &b);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&plan, &spectra, &b);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
     let scale = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
-    // Strewn knots touch in few places: their best score is a tenth of a protein's, against which errors are small.
+    // The plan's tolerance, against the exact sum; the grid's own error is a hundredth of it (potential_grid.rs).
+    // Strewn knots touch in few places: their best score is a tenth of a protein's.
     let bound = 2e-2;
     for shift in [[15.0, -9.0, 6.0], [14.0, 9.0, -8.0], [0.0, 17.0, 5.0]] {
         let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], shift);
@@ -238,6 +239,97 @@ fn the_field_reads_all_terms() {
     }
 }
 
+/// All effects together are the sum of each alone: the grids at full rank, and the exact sums' terms.
+#[test]
+fn effects_add_up() {
+    let (a, b) = (cloud(80, 10.0, 17), cloud(40, 7.0, 18));
+    let plan = plan(&a, &b, 1e-2);
+    let whole = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let grid = |spectra: &ReceptorSpectra<f64>| {
+        let engine = CpuEngine::new(Arc::clone(&plan), spectra, &b, spectra.full_rank());
+        let mut work = engine.workspace();
+        engine.correlate(&turn(), &mut work);
+        work.grid
+    };
+    let together = grid(&whole);
+    let mut sum = vec![0.0; together.len()];
+    for effect in Effect::ALL {
+        let others = Effect::ALL.into_iter().filter(|other| *other != effect);
+        let alone = others.fold(whole.clone(), |spectra, other| spectra.without(other));
+        for (sum, value) in sum.iter_mut().zip(grid(&alone)) {
+            *sum += value;
+        }
+    }
+    let size = together
+        .iter()
+        .fold(0.0f64, |size, value| size.max(value.abs()));
+    for (voxel, (sum, together)) in sum.iter().zip(&together).enumerate() {
+        assert!(
+            (sum - together).abs() < 1e-11 * size,
+            "{voxel}: {sum} {together}"
+        );
+    }
+
+    let pose = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [11.0, -6.0, 4.0]);
+    let exact = scorer(&plan, &a, &b).score(&pose);
+    assert_eq!(exact.score, exact.terms.iter().sum::<f64>());
+    for active in plan.effects() {
+        let one = std::slice::from_ref(active);
+        let alone = ExactScorer::with_effects(plan.kernel(), &a, &b, one).unwrap();
+        let alone = alone.score(&pose).terms;
+        let (effect, shape) = (active.term.effect as usize, Effect::Shape as usize);
+        assert_eq!(alone[effect], exact.terms[effect]);
+        assert_eq!(alone[shape], exact.terms[shape]);
+    }
+}
+
+/// The sum of G over all voxels is the mode at frequency zero times their number, all effects included. That mode is
+/// the sum over pairs of weights times the kernels' transforms at zero, over the volume of the box.
+#[test]
+fn the_sum_over_voxels_is_the_zero_mode() {
+    let (a, b) = (cloud(60, 9.0, 19), cloud(30, 6.0, 20));
+    let plan = plan(&a, &b, 1e-6);
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
+    let mut work = engine.workspace();
+    engine.correlate(&turn(), &mut work);
+
+    let kernel = plan.kernel();
+    let (weights, offsets) = (
+        kernel.options().slice_weights(),
+        kernel.options().slice_offsets(),
+    );
+    let (mut zero_mode, mut size) = (0.0, 0.0);
+    for r in &a.radii {
+        for s in &b.radii {
+            for (weight, offset) in weights.iter().zip(offsets) {
+                let value = weight * kernel.spectrum_of(&kernel.profile(r + s + offset), 0.0);
+                zero_mode += value;
+                size += value.abs();
+            }
+        }
+    }
+    for ActiveTerm { term, kernel } in plan.effects() {
+        let [at_zero] = kernel.spectrum_table(plan.modes().cut).value(0.0);
+        for x in &term.receptor {
+            for y in &term.ligand {
+                zero_mode += x.value * term.matrix[x.class][y.class] * y.value * at_zero;
+            }
+        }
+    }
+    let voxels = work.grid.len() as f64;
+    let sum: f64 = work.grid.iter().sum();
+    let (expected, scale) = (
+        zero_mode / plan.modes().volume(),
+        size / plan.modes().volume(),
+    );
+    assert!(
+        (sum / voxels - expected).abs() < 1e-6 * scale,
+        "{} {expected}",
+        sum / voxels
+    );
+}
+
 /// A label that no term reads changes not one bit, and neither does a term once it is taken out.
 #[test]
 fn an_effect_that_is_off_changes_not_one_bit() {
@@ -245,11 +337,11 @@ fn an_effect_that_is_off_changes_not_one_bit() {
     let bare = |knots: &Knots| Knots::new(knots.centers.clone(), knots.radii.clone()).unwrap();
     let grid = |a: &Knots, b: &Knots| {
         let plan = Arc::new(Plan::new(a, b, options(1e-2)).unwrap());
-        let folded = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+        let spectra = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
         let mut work = engine.workspace();
         engine.correlate(&turn(), &mut work);
-        (folded.full_rank(), work.grid)
+        (spectra.full_rank(), work.grid)
     };
     let (rank, plain) = grid(&bare(&a), &bare(&b));
     assert_eq!(grid(&a, &b), (rank, plain));
@@ -342,8 +434,8 @@ fn patched(charge: [f64; 2], types: [&str; 2], patch: f64) -> Knots {
 /// The direction from the receptor's centre in which the best voxel of a correlation lies.
 fn best_direction(a: &Knots, b: &Knots, terms: Vec<Term>) -> Vector3<f64> {
     let plan = planned(a, b, 1e-2, terms);
-    let folded = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&UnitQuaternion::identity(), &mut work);
     let best = (0..work.grid.len())
@@ -379,8 +471,8 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
     assert!(elsewhere[0] < 0.5, "{elsewhere}");
 }
 
-/// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to: where its patch is all that is not, away from
-/// a patch that is, and where a patch attracts it.
+/// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to. That is at the
+/// only free patch, away from a blocked one, and at an active one.
 #[test]
 fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
     let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));
@@ -389,8 +481,8 @@ fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
         body.centers.iter().map(inside).collect()
     };
     let weights = Weights {
-        blocked: 2.0,
-        attracted: 2.0,
+        excluded: 2.0,
+        active: 2.0,
     };
     let found = |marks: &[ResidueRole]| {
         let by_receptor = restraint::term(&body, &ball, [marks, &[]], weights);

@@ -46,11 +46,11 @@ fn worst_of<T: Real>(
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(plan.kernel(), a, b).unwrap();
-    let folded = ReceptorSpectra::<T>::new(&plan, a, b, fold);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, fold);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
-    engine.turn(&turned, &mut work);
+    engine.transform_ligand(&turned, &mut work);
     engine.correlate_turned(half_turn, &mut work);
     let rotation = half_turn.after(&turned);
     let mut order: Vec<usize> = (0..work.grid.len()).collect();
@@ -72,7 +72,7 @@ fn worst_of<T: Real>(
 }
 
 #[test]
-fn scores_meet_the_tolerance_asked() {
+fn scores_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
         let error = worst::<f64>(&a, &b, tolerance, Quantity::Score);
@@ -122,7 +122,7 @@ fn a_plan_with_another_spacing_is_the_plan_made_for_it() {
 }
 
 #[test]
-fn slices_meet_the_tolerance_asked() {
+fn slices_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 3), cloud(60, 8.0, &RADII, 4));
     for tolerance in [1e-2, 1e-4, 1e-6] {
         for slice in 0..3 {
@@ -135,8 +135,9 @@ fn slices_meet_the_tolerance_asked() {
     }
 }
 
-/// Below 1e-2 the grid's spacing comes from a bound on what the modes beyond it take, with a slack that whole sums have never used up: neither small bodies, whose
-/// few pairs may be off in phase, nor offsets near zero, where skins and cores nearly cancel, nor kernels with a cusp or an edge.
+/// Below 1e-2 the grid's spacing comes from a bound on what the modes beyond it take, with a slack that whole sums have
+/// never used up. Cases: small bodies, whose few pairs may be off in phase, offsets near zero, where skins and cores
+/// nearly cancel, and kernels with a cusp or an edge.
 #[test]
 fn cut_modes_stay_within_the_tolerance() {
     let (mut worst_share, mut counted) = (0.0f64, 0);
@@ -193,13 +194,14 @@ fn continuous_radii_go_through_the_lifted_modes() {
     }
 }
 
-/// G^(w) by the uncompressed 4D direct transform of design: sum_k K C rhoA conj(rhoB), and G at poses by summing its modes.
+/// G^(w) by the uncompressed 4D direct transform of design: sum_k K C rhoA conj(rhoB), and G at poses by summing its
+/// modes.
 #[test]
 fn grid_equals_the_4d_direct_transform() {
     let (a, b) = (cloud(40, 6.0, &RADII, 7), cloud(20, 4.0, &RADII, 8));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
-    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
     engine.correlate(&rotation, &mut work);
@@ -247,8 +249,9 @@ fn grid_equals_the_4d_direct_transform() {
     }
 }
 
-/// B&I eq. 53 from the complex affinity functions themselves (eq. 51), in the engine's order of operations: both as 4D points,
-/// the ligand r-mirrored and its phases conjugated, the product for each mode, the sum over eta, the inverse transform.
+/// B&I eq. 53 from the complex affinity functions themselves (eq. 51), in the engine's order of operations. Both are 4D
+/// points, the ligand r-mirrored with conjugated phases; then come the product for each mode, the sum over eta, and the
+/// inverse transform.
 ///
 /// The weights must not be conjugated. Conjugating one, as eq. 52 prints it, gives the score with the other sign.
 #[test]
@@ -317,13 +320,14 @@ fn complex_affinity_functions_multiply_to_the_score() {
     }
 }
 
-/// A lower rank cut out of a full engine is the engine built at that rank, to the bit, and its error falls as the rank rises.
+/// A lower rank cut out of a full engine is the engine built at that rank, to the bit, and its error falls as the rank
+/// rises.
 #[test]
 fn a_truncated_engine_is_the_one_of_lower_rank() {
     let (a, b) = (cloud(60, 8.0, &RADII, 15), cloud(30, 5.0, &RADII, 16));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
-    let full = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let full = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let turned = Pose::from_parts([0.1, 0.6, -0.5, 0.2], [0.0; 3]).rotation;
     let grid = |engine: &CpuEngine<f64>| {
         let mut work = engine.workspace();
@@ -339,18 +343,18 @@ fn a_truncated_engine_is_the_one_of_lower_rank() {
             let values = grid(&cut);
             assert_eq!(
                 values,
-                grid(&CpuEngine::new(Arc::clone(&plan), &folded, &b, rank))
+                grid(&CpuEngine::new(Arc::clone(&plan), &spectra, &b, rank))
             );
-            let apart = values.iter().zip(&exact).map(|(x, y)| (x - y).abs());
-            apart.fold(0.0, f64::max)
+            let differences = values.iter().zip(&exact).map(|(x, y)| (x - y).abs());
+            differences.fold(0.0, f64::max)
         })
         .collect();
     assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
     assert_eq!(grid(&full.truncated(full.rank() + 1)), exact);
 }
 
-/// Turning or moving an input must leave the fast score at the carried pose within the tolerance: the grid falls elsewhere on
-/// the molecules, so any dependence on it would show.
+/// Turning or moving an input must leave the fast score at the carried pose within the tolerance: the grid falls
+/// elsewhere on the molecules, so any dependence on it would show.
 #[test]
 fn moved_inputs_keep_their_fast_scores() {
     let (a, b) = (cloud(100, 9.0, &RADII, 9), cloud(40, 6.0, &RADII, 10));
@@ -363,14 +367,14 @@ fn moved_inputs_keep_their_fast_scores() {
     assert!(error <= 1e-3, "{error:e}");
 }
 
-/// No pose may score through the periodic image: beside the box's far face both the receptor and its image are near, and the
-/// exact sum, which has no image, must agree there too.
+/// No pose may score through the periodic image: beside the box's far face both the receptor and its image are near,
+/// and the exact sum, which has no image, must agree there too.
 #[test]
 fn nothing_scores_through_the_periodic_image() {
     let (a, b) = (cloud(80, 8.0, &RADII, 11), cloud(60, 9.0, &RADII, 12));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let scorer = ExactScorer::new(plan.kernel(), &a, &b).unwrap();
     let mut work = engine.workspace();
     let rotation = Pose::identity().rotation;

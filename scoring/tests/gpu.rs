@@ -1,4 +1,5 @@
-//! The engine on a graphics processor against the engine on the CPU in double precision, and against plain sorting for its peaks.
+//! The engine on a graphics processor against the engine on the CPU in double precision, and against plain sorting for
+//! its peaks.
 
 #[path = "scene/adapter.rs"]
 mod adapter;
@@ -24,13 +25,14 @@ fn rotations(count: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
         .collect()
 }
 
-/// Largest difference of the card's grid from the CPU's in f64 over all voxels and half-turns, as a share of the largest score there.
+/// Largest difference of the card's grid from the CPU's in f64 over all voxels and half-turns, as a share of the
+/// largest score there.
 fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
     let pair = Pair::<f64>::new(a, b, options);
     let engine = GpuEngine::new(gpu, &pair.engine, 1, 2, MEMORY).unwrap();
     let mut work = pair.engine.workspace();
     let rotation = some_rotation();
-    pair.engine.turn(&rotation, &mut work);
+    pair.engine.transform_ligand(&rotation, &mut work);
     let (mut worst, mut best) = (0.0f64, 0.0f64);
     for half_turn in HalfTurn::ALL {
         pair.engine.correlate_turned(half_turn, &mut work);
@@ -52,13 +54,13 @@ fn greedy(grid: &[f32], size: [usize; 3], count: usize, reach: usize) -> Vec<(u3
     order.sort_by(|&a, &b| grid[b].total_cmp(&grid[a]).then(a.cmp(&b)));
     let mut kept: Vec<usize> = Vec::new();
     for voxel in order {
-        let apart = |&other: &usize| {
+        let spaced = |&other: &usize| {
             (0..3).any(|axis| {
                 let distance = place(voxel)[axis].abs_diff(place(other)[axis]);
                 distance.min(size[axis] - distance) > reach.min((size[axis] - 1) / 2)
             })
         };
-        if kept.iter().all(apart) {
+        if kept.iter().all(spaced) {
             kept.push(voxel);
             if kept.len() == count {
                 break;
@@ -68,7 +70,8 @@ fn greedy(grid: &[f32], size: [usize; 3], count: usize, reach: usize) -> Vec<(u3
     kept.into_iter().map(|v| (v as u32, grid[v])).collect()
 }
 
-/// Single precision costs the same small share whatever the tolerance asks of the plan: window widths, ranks and grids all change with it.
+/// Single precision costs the same small share whatever the tolerance asks of the plan: window widths, ranks and grids
+/// all change with it.
 #[test]
 fn the_grid_is_that_of_the_cpu_in_double_precision() {
     let Some(gpu) = adapter() else { return };
@@ -81,7 +84,8 @@ fn the_grid_is_that_of_the_cpu_in_double_precision() {
     }
 }
 
-/// Every radix that grids are made of, on every axis and both ways: needles along each axis, the shortest with a length of 3, 5 and 7 times a power.
+/// Every radix that grids are made of, on every axis and both ways: needles along each axis, the shortest with a length
+/// of 3, 5 and 7 times a power.
 #[test]
 fn every_radix_of_grid_lengths() {
     let Some(gpu) = adapter() else { return };
@@ -91,10 +95,10 @@ fn every_radix_of_grid_lengths() {
         ..engine_options(1e-2)
     };
     for axis in 0..3 {
-        let needle = |stretch: f64| {
+        let needle = |factor: f64| {
             let mut receptor = cloud(80, 8.0, &RADII, 3);
             for center in &mut receptor.centers {
-                center[axis] *= stretch;
+                center[axis] *= factor;
             }
             receptor
         };
@@ -114,8 +118,8 @@ fn every_radix_of_grid_lengths() {
     }
 }
 
-/// One knot has one field of one row; balls of sizes 1 to 30 have many fields that cancel, which costs single precision more digits: what it costs
-/// the CPU it may cost the card.
+/// One knot has one field of one row; balls of sizes 1 to 30 have many fields that cancel, which costs single precision
+/// more digits: what it costs the CPU it may cost the card.
 #[test]
 fn a_single_knot_and_balls_of_many_sizes() {
     let Some(gpu) = adapter() else { return };
@@ -175,7 +179,8 @@ fn peaks_are_those_of_a_sorted_grid() {
     }
 }
 
-/// A driver may cut long loops short (llvmpipe does, after 65,536 rounds): then the peaks that are missing are told of.
+/// A driver may cut long loops short (llvmpipe does, after 65,536 rounds): then the peaks that are missing are finished
+/// of.
 #[test]
 fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
     let Some(gpu) = adapter() else { return };
@@ -223,7 +228,8 @@ fn a_grid_gives_no_more_peaks_than_it_has() {
     assert!(peaks.len() < 4 * 50 && peaks.len() >= 4, "{}", peaks.len());
 }
 
-/// However many rotations go through together, down to one image alone, the bits are the same: so are they from run to run.
+/// However many rotations go through together, down to one image alone, the bits are the same: so are they from run to
+/// run.
 #[test]
 fn batches_change_no_bit() {
     let Some(gpu) = adapter() else { return };
@@ -256,9 +262,9 @@ fn batches_change_no_bit() {
             continue;
         };
         sizes.push(engine.in_flight());
-        let mut told = 0;
-        runs.push(engine.best(&turns, |count| told += count).unwrap());
-        assert_eq!(told, images);
+        let mut finished = 0;
+        runs.push(engine.best(&turns, |count| finished += count).unwrap());
+        assert_eq!(finished, images);
     }
     println!("images in flight: {sizes:?}");
     assert!(

@@ -66,8 +66,9 @@ proptest! {
         prop_assert!((ours.score - expected).abs() < 1e-12 * scale);
     }
 
-    /// B&I's Lemma 2: two solids meet where the lifted solid of one meets the r-mirrored lifted solid of the other, and the
-    /// correlation without a skin is not zero exactly there. Unmirrored, the lifted solids always meet, farther down.
+    /// B&I's Lemma 2: two solids meet where the lifted solid of one meets the r-mirrored lifted solid of the other, and
+    /// the correlation without a skin is not zero exactly there. Unmirrored, the lifted solids always meet, farther
+    /// down.
     #[test]
     fn solids_meet_where_their_mirrored_cones_do(a in knots(), b in knots(), pose in pose()) {
         let placed: Vec<[f64; 3]> = b.centers.iter().map(|&y| pose.apply(y)).collect();

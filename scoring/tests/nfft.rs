@@ -65,9 +65,9 @@ fn forward<T: Real, const D: usize>(
     points: &[[f64; D]],
     weights: &[Complex64],
 ) -> Vec<Complex<T>> {
-    let located = plan.locate(points).unwrap();
+    let sorted = plan.locate(points).unwrap();
     let mut output = zeros(plan.mode_count());
-    plan.forward(&located, &cast(weights), &mut plan.workspace(), &mut output)
+    plan.forward(&sorted, &cast(weights), &mut plan.workspace(), &mut output)
         .unwrap();
     output
 }
@@ -77,9 +77,9 @@ fn adjoint<T: Real, const D: usize>(
     points: &[[f64; D]],
     modes: &[Complex64],
 ) -> Vec<Complex<T>> {
-    let located = plan.locate(points).unwrap();
+    let sorted = plan.locate(points).unwrap();
     let mut values = zeros(points.len());
-    plan.adjoint(&located, &cast(modes), &mut plan.workspace(), &mut values)
+    plan.adjoint(&sorted, &cast(modes), &mut plan.workspace(), &mut values)
         .unwrap();
     values
 }
@@ -95,7 +95,7 @@ fn meets_the_direct_sum<T: Real, const D: usize>(
     let points = random.points::<D>(points);
     let weights = random.numbers(points.len());
     let modes = random.numbers(plan.mode_count());
-    let located = plan.locate(&points).unwrap();
+    let sorted = plan.locate(&points).unwrap();
     let mut work = plan.workspace();
     let mut output = zeros(plan.mode_count());
     let mut values = zeros(points.len());
@@ -106,15 +106,15 @@ fn meets_the_direct_sum<T: Real, const D: usize>(
         plan.width(),
         points.len()
     );
-    plan.forward(&located, &cast(&weights), &mut work, &mut output)
+    plan.forward(&sorted, &cast(&weights), &mut work, &mut output)
         .unwrap();
     let worst = error(&output, &ndft::forward(&points, &weights, plan.modes()));
     assert!(worst <= tolerance, "forward: {worst:e} at {about}");
-    plan.adjoint(&located, &cast(&modes), &mut work, &mut values)
+    plan.adjoint(&sorted, &cast(&modes), &mut work, &mut values)
         .unwrap();
     let exact = ndft::adjoint(&points, &modes, plan.modes());
-    // A single value may happen to be small; sqrt(points) |modes| is the norm that values have on average. The error of one
-    // or two values is a draw from a distribution, too: its tail is why they are given twice the tolerance.
+    // A single value may happen to be small; sqrt(points) |modes| is the norm that values have on average. The error of
+    // one or two values is a draw from a distribution, too: its tail is why they are given twice the tolerance.
     let allowed = if points.len() < 10 {
         2.0 * tolerance
     } else {
@@ -125,7 +125,7 @@ fn meets_the_direct_sum<T: Real, const D: usize>(
     let worst = error(&values, &exact) * norm / typical;
     assert!(worst <= allowed, "adjoint: {worst:e} at {about}");
     let real: Vec<T> = weights.iter().map(|w| T::of(w.re)).collect();
-    plan.forward_real(&located, &real, &mut work, &mut output)
+    plan.forward_real(&sorted, &real, &mut work, &mut output)
         .unwrap();
     let real: Vec<Complex64> = weights.iter().map(|w| Complex64::new(w.re, 0.0)).collect();
     let worst = error(&output, &ndft::forward(&points, &real, plan.modes()));
@@ -214,8 +214,8 @@ fn single_precision_meets_swept_tolerances() {
 
 #[test]
 fn many_slabs_and_clusters_meet_the_direct_sum() {
-    // Points in two tight clusters leave most planes and rows of the grid empty, which the transform skips; a long first axis
-    // lets the ring of planes turn several times.
+    // Points in two tight clusters leave most planes and rows of the grid empty, which the transform skips; a long
+    // first axis lets the ring of planes turn several times.
     let mut random = Random(Numbers(3));
     let modes = [90, 12, 10];
     let points: Vec<[f64; 3]> = (0..60)
@@ -343,7 +343,8 @@ fn real_weights_are_complex_ones_without_imaginary_part() {
 
 #[test]
 fn the_edge_of_the_box_and_periodic_images() {
-    // Points on a face lie half in one image of the box, half in the next; 1 - 2^-53 and -1e-300 fold onto the period itself.
+    // Points on a face lie half in one image of the box, half in the next; 1 - 2^-53 and -1e-300 fold onto the period
+    // itself.
     let plan = Plan::<f64, 3>::new([12, 14, 9], 1e-8, 8).unwrap();
     let weights = Random(Numbers(37)).numbers(8);
     let edge = [
@@ -398,15 +399,15 @@ fn results_do_not_depend_on_what_the_workspace_did_before() {
     let points = random.points::<3>(50);
     let weights = random.numbers(50);
     let modes = random.numbers(plan.mode_count());
-    let mut located = plan.locate(&[[0.5; 3]; 3]).unwrap();
-    plan.locate_into(&points, &mut located).unwrap();
+    let mut sorted = plan.locate(&[[0.5; 3]; 3]).unwrap();
+    plan.locate_into(&points, &mut sorted).unwrap();
     let mut work = plan.workspace();
     let (mut output, mut values) = (zeros::<f64>(plan.mode_count()), zeros::<f64>(50));
     for _ in 0..2 {
-        plan.forward(&located, &weights, &mut work, &mut output)
+        plan.forward(&sorted, &weights, &mut work, &mut output)
             .unwrap();
         assert_eq!(output, forward(&plan, &points, &weights));
-        plan.adjoint(&located, &modes, &mut work, &mut values)
+        plan.adjoint(&sorted, &modes, &mut work, &mut values)
             .unwrap();
         assert_eq!(values, adjoint(&plan, &points, &modes));
     }

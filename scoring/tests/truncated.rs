@@ -1,4 +1,5 @@
-//! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error bounds.
+//! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error
+//! bounds.
 
 mod scene;
 
@@ -28,18 +29,18 @@ struct Pair {
     receptor: Knots,
     ligand: Knots,
     plan: Arc<Plan>,
-    folded: ReceptorSpectra<f64>,
+    spectra: ReceptorSpectra<f64>,
 }
 
 impl Pair {
     fn new(receptor: Knots, ligand: Knots, tolerance: f64, fold: Quantity) -> Self {
         let plan = Arc::new(Plan::new(&receptor, &ligand, options(tolerance)).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, fold);
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, fold);
         Self {
             receptor,
             ligand,
             plan,
-            folded,
+            spectra,
         }
     }
 
@@ -49,7 +50,7 @@ impl Pair {
     }
 
     fn configuration(&self, selection: &Selection) -> TruncatedCorrelation {
-        TruncatedCorrelation::new(&self.plan, &self.folded, &self.ligand, selection)
+        TruncatedCorrelation::new(&self.plan, &self.spectra, &self.ligand, selection)
     }
 
     fn whole(&self) -> TruncatedCorrelation {
@@ -66,8 +67,8 @@ impl Pair {
     }
 
     fn engine(&self) -> CpuEngine<f64> {
-        let rank = self.folded.full_rank();
-        CpuEngine::new(Arc::clone(&self.plan), &self.folded, &self.ligand, rank)
+        let rank = self.spectra.full_rank();
+        CpuEngine::new(Arc::clone(&self.plan), &self.spectra, &self.ligand, rank)
     }
 }
 
@@ -177,7 +178,7 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
     let rotation = turn(-0.3);
     let prepared = whole.prepare(&rotation, &mut work);
     let magnitudes = prepared.magnitudes(modes.count);
-    let over_rotations = envelope(&pair.plan, &pair.folded, &pair.ligand);
+    let over_rotations = envelope(&pair.plan, &pair.spectra, &pair.ligand);
     assert!(
         magnitudes
             .iter()
@@ -223,8 +224,8 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
     }
 }
 
-/// By Parseval the rms tail is the root mean square of the grid's error to rounding, once modes of the product do not alias: they
-/// do not, as the grid holds every mode of the set.
+/// By Parseval the rms tail is the root mean square of the grid's error to rounding, once modes of the product do not
+/// alias: they do not, as the grid holds every mode of the set.
 #[test]
 fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says() {
     let mut pair = Pair::clouds(1e-6, Quantity::Score, 31);
@@ -237,13 +238,13 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     let engine = pair.engine();
     let mut full = engine.workspace();
     engine.correlate(&rotation, &mut full);
-    let over_rotations = envelope(&pair.plan, &pair.folded, &pair.ligand);
+    let over_rotations = envelope(&pair.plan, &pair.spectra, &pair.ligand);
     let best = full.grid.iter().copied().fold(0.0, f64::max);
-    // From many modes to few, since those left out of the folded spectra do not come back.
+    // From many modes to few, since those left out of the spectra spectra do not come back.
     for most in [20_000, 4096, 512, 65] {
         let plan = Arc::clone(&pair.plan);
         let selection = Selection::low_frequency(plan.modes(), most);
-        pair.folded.keep(&selection);
+        pair.spectra.keep(&selection);
         let engine = pair.engine();
         let mut few = engine.workspace();
         engine.correlate(&rotation, &mut few);
@@ -263,9 +264,14 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
         // Cut to a ball, transforms and all, it is that ball's own low-frequency selection.
         let cut = Arc::new(plan.truncated(most));
         assert!(total(cut.modes()) <= most);
-        let folded =
+        let spectra =
             ReceptorSpectra::<f64>::new(&cut, &pair.receptor, &pair.ligand, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&cut), &folded, &pair.ligand, folded.full_rank());
+        let engine = CpuEngine::new(
+            Arc::clone(&cut),
+            &spectra,
+            &pair.ligand,
+            spectra.full_rank(),
+        );
         let mut ball = engine.workspace();
         engine.correlate(&rotation, &mut ball);
         let tail = Tail::of(
@@ -283,8 +289,8 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     }
 }
 
-/// dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in rho: all ligand radii grown
-/// and shrunk by h move every radius sum, which is what an offset does.
+/// dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in rho: all ligand
+/// radii grown and shrunk by h move every radius sum, which is what an offset does.
 #[test]
 fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let h = 1e-3;

@@ -1,4 +1,5 @@
-//! The product kernel by three ways: uniform grid, lifted engine, and plain pair sum; and its modes by the direct transforms.
+//! The product kernel by three ways: uniform grid, lifted engine, and plain pair sum; and its modes by the direct
+//! transforms.
 //!
 //! Errors are relative to the best exact score of the sweep; errors of a slice to its largest value.
 
@@ -51,7 +52,8 @@ fn turned() -> Pose {
     Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3])
 }
 
-/// Root mean square and worst error of a correlation's best voxels and a sweep of all, relative to the best exact value.
+/// Root mean square and worst error of a correlation's best voxels and a sweep of all, relative to the best exact
+/// value.
 fn errors<T: Real>(
     grid: &[T],
     position: impl Fn(usize) -> Vector3<f64>,
@@ -113,16 +115,17 @@ fn lifted<T: Real>(
         unreachable!("a product plan has a product kernel");
     };
     let scorer = ProductScorer::new(kernel, a, b).unwrap();
-    let folded = ReceptorSpectra::<T>::new(&plan, a, b, fold);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank());
+    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, fold);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     let position = |voxel| engine.position(voxel);
     errors(&work.grid, position, &scorer, (a, b), fold).1
 }
 
-/// Smooth bumps: the sum over voxels errs by the bumps' spectrum at 1 / h, which falls like exp(-sqrt(r / h)): faster than any power, but
-/// slowly so. The local orders rise (measured 3.6, 3.7, 3.8, 4.1 from h = 2 to 0.5 Å for balls of 1.5 to 1.9 Å at alpha = 2).
+/// Smooth bumps: the sum over voxels errs by the bumps' spectrum at 1 / h, which falls like exp(-sqrt(r / h)): faster
+/// than any power, but slowly so. The local orders rise (measured 3.6, 3.7, 3.8, 4.1 from h = 2 to 0.5 Å for balls of
+/// 1.5 to 1.9 Å at alpha = 2).
 #[test]
 fn smooth_bumps_converge_faster_than_any_power() {
     let (a, b) = (cloud(60, 7.0, &RADII, 1), cloud(25, 4.0, &RADII, 2));
@@ -144,8 +147,8 @@ fn smooth_bumps_converge_faster_than_any_power() {
     }
 }
 
-/// Sharp balls: voxels count or not, and the error falls like a power of h only. Measured order 1.6 to 2.4 over two seeds (printed): the lens
-/// volumes that the grid approaches are the closed form.
+/// Sharp balls: voxels count or not, and the error falls like a power of h only. Measured order 1.6 to 2.4 over two
+/// seeds (printed): the lens volumes that the grid approaches are the closed form.
 #[test]
 fn sharp_balls_converge_to_their_lens_volumes_like_a_power() {
     let (a, b) = (cloud(40, 7.0, &RADII, 3), cloud(20, 5.0, &RADII, 4));
@@ -185,7 +188,8 @@ fn every_slice_and_single_precision() {
         println!("slice {slice}: {worst:.2e}");
         assert!(worst < bound);
     }
-    // Single precision rounds and does nothing else: the sampling error at this h is the same to a thousandth of the best score.
+    // Single precision rounds and does nothing else: the sampling error at this h is the same to a thousandth of the
+    // best score.
     let options = grid_options(2.0, Band::Whole, 0.6);
     let (_, double) = uniform::<f64>(&a, &b, options, Quantity::Score);
     let (_, single) = uniform::<f32>(&a, &b, options, Quantity::Score);
@@ -228,8 +232,8 @@ fn many_radii_go_through_chebyshev_nodes() {
     assert!(error <= 1e-3, "{error:e}");
 }
 
-/// Moving the receptor's knots by whole voxels moves the result by as many and changes nothing else. Two knots without weight hold
-/// the bounding box, whose middle is the grid's origin, in place.
+/// Moving the receptor's knots by whole voxels moves the result by as many and changes nothing else. Two knots without
+/// weight hold the bounding box, whose middle is the grid's origin, in place.
 #[test]
 fn whole_voxels_move_the_result_by_whole_voxels() {
     let spacing = 0.8;
@@ -274,8 +278,9 @@ fn whole_voxels_move_the_result_by_whole_voxels() {
     }
 }
 
-/// Random modes of both engines' results against the 4D direct transform: the bodies' factor u_r(w) as a Fourier series along the
-/// radius, u_r = sum_k U_k exp(-2 pi i eta_k r), turns rho_A(w) into sum_k U_k(w) rho_A(w, eta_k); and against the 3D one with u_r as weights.
+/// Random modes of both engines' results against the direct transforms: the 3D one with the factors u_r(w) as weights,
+/// and the 4D one. As a Fourier series along the radius, u_r = sum_k U_k exp(-2 pi i eta_k r), which turns rho_A(w)
+/// into sum_k U_k(w) rho_A(w, eta_k).
 #[test]
 fn modes_equal_the_direct_transforms() {
     let (a, b) = (cloud(30, 6.0, &RADII, 13), cloud(15, 4.0, &RADII, 14));
@@ -348,8 +353,8 @@ fn modes_equal_the_direct_transforms() {
     let mut grid_work = grid.workspace();
     grid.correlate(&turned().rotation, &mut grid_work);
     let plan = Arc::new(Plan::product(&a, &b, engine_options(None, 1e-4), Band::LowPass).unwrap());
-    let folded = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &b, folded.full_rank());
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     // The mean nearly cancels (r + 2)^3 against 10 r^3, so errors are measured on the largest of some modes.
@@ -394,7 +399,8 @@ fn modes_equal_the_direct_transforms() {
     }
 }
 
-/// No pose may score through the periodic image: where the ligand lies between receptor and image, the pair sum, which has none, agrees.
+/// No pose may score through the periodic image: where the ligand lies between receptor and image, the pair sum, which
+/// has none, agrees.
 #[test]
 fn nothing_wraps() {
     let (a, b) = (cloud(60, 7.0, &RADII, 15), cloud(40, 8.0, &RADII, 16));

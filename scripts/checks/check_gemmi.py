@@ -92,14 +92,14 @@ def fetched(options):
 
 def additives():
     """Names of buffer and cryo additives, as the program lists them."""
-    text = (ROOT / "structures/src/molecule/additives.rs").read_text()
+    text = (ROOT / "structures/src/molecule/chemistry/additives.rs").read_text()
     table = text[text.index("const ADDITIVES") : text.index("];")]
     return set(re.findall(r'"([A-Z0-9]{2,3})"', table))
 
 
 def waters():
     """Names of waters, as the program lists them; gemmi's is_water() knows fewer."""
-    text = (ROOT / "structures/src/molecule/residues.rs").read_text()
+    text = (ROOT / "structures/src/molecule/chemistry/residues.rs").read_text()
     start = text.index("fn is_water")
     return set(re.findall(r'"([A-Z0-9]+)"', text[start : text.index("}", start)]))
 

@@ -97,7 +97,7 @@ class Crate:
         for _ in range(10):
             for length in range(len(path), 0, -1):
                 target = self.reexports.get(path[:length])
-                if target and target != path[:length]:
+                if target and target != path[:length] and path[:length] not in self.files:
                     path = target + path[length:]
                     break
             else:

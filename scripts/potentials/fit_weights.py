@@ -36,8 +36,7 @@ from docked_pairs import CRITERIA, DEPTHS, NOT_FOUND, evaluate, log_rank, native
 
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
 TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair", "relaxed")
-HELD = ("restraint", "active_residues", "unresolved", "termini")  # at the weights of their runs
-SUMMED = len(FEATURES) + len(TERMS) + len(HELD)
+SUMMED = len(FEATURES) + len(TERMS) + 1
 ACCEPTABLE, NEAR_NATIVE, SCORE, CLUSTER = range(SUMMED, SUMMED + 4)
 TEMPERATURES = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3)
 
@@ -91,12 +90,14 @@ def parse_arguments():
 def load(options, folder, pair):
     """The poses of a run as rows, the weights of the run, and the names of the terms that it has.
 
-    A row holds slices, unweighted terms, weighted terms that are held, acceptable and near-native (0 or 1), pose score
-    and cluster.
+    A row holds slices, unweighted terms, the sum of all other terms at the weights of the run (restraint, and the pose
+    terms that run.json names), acceptable and near-native (0 or 1), pose score and cluster.
     """
     table = folder / "run/poses.csv"
     found = verdicts(options, folder, pair, table)
-    recorded = json.loads((folder / "run/run.json").read_text())["options"]
+    run = json.loads((folder / "run/run.json").read_text())
+    recorded = {"lambda": run["options"]["kernel"]["lambda"], **run["options"]["terms"]}
+    held = ["restraint", *(term["id"] for term in run["pose_terms"] if term["id"] not in TERMS)]
     rows, computed = [], set()
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
@@ -104,7 +105,7 @@ def load(options, folder, pair):
                 raise SystemExit(f"{table} has no slices; dock the pairs with `benchmark.py ... -- --diagnostics`")
             computed.update(name for name in TERMS if row.get(name))
             terms = [float(row.get(name) or 0) / (recorded.get(f"{name}_weight") or 1.0) for name in TERMS]
-            terms += [float(row.get(name) or 0) for name in HELD]
+            terms.append(sum(float(row.get(name) or 0) for name in held))
             slices = (float(row[name]) for name in FEATURES)
             rows.append([*slices, *terms, *found[row["rank"]], float(row["pose_score"]), float(row["cluster"])])
     weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
@@ -162,7 +163,7 @@ def compare_weights(options, decoys, own, computed):
     acceptable, near_native = {}, {}
     for weights in grid:
         strength, *terms = weights
-        factors = np.array([-strength * strength, 2 * strength, -1.0, *terms, *(1.0 for _ in HELD)])
+        factors = np.array([-strength * strength, 2 * strength, -1.0, *terms, 1.0])
         scores = {key: rows[:, : len(factors)] @ factors for key, rows in decoys.items()}
         acceptable[weights] = {key: first_rank(scores[key], rows[:, ACCEPTABLE]) for key, rows in decoys.items()}
         near_native[weights] = {key: first_rank(scores[key], rows[:, NEAR_NATIVE]) for key, rows in decoys.items()}

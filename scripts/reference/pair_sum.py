@@ -170,7 +170,7 @@ def scores(receptor, ligand, potential, quaternion, translation):
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    table = read_table(ROOT / "scoring/src/effect/contact_potential.csv")
+    table = read_table(ROOT / "scoring/src/terms/effect/contact_potential.csv")
     names = [row["type"] for row in table]
     potential = np.array([[float(row[name]) for name in names] for row in table])
     kinds = read_table(ROOT / "structures/src/molecule/contact_types.csv")

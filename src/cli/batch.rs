@@ -123,38 +123,16 @@ impl Batch {
         })?;
         let mut code = 0;
         for (index, dock) in waiting.into_iter().enumerate() {
-            let clock = Instant::now();
             let name = table[index].name.clone();
-            let run = directory.join(&name);
             let head = format!("[{}/{count}] {name}", index + 1);
-            let mut entry = json!({
-                "name": name,
-                "directory": run.display().to_string(),
-                "status": "failed",
-                "error": null,
-                "best": null,
-                "first_acceptable_rank": null,
-            });
-            table[index].outcome = Some(
-                match dock_pair(dock).and_then(|anew| Ok((RunSummary::of(&run)?, anew))) {
-                    Ok((summary, anew)) => {
-                        console.say(format!("{head}: {}", words(&summary, anew, clock)));
-                        entry["status"] = if anew { "docked" } else { "kept" }.into();
-                        entry["best"] = summary.best.clone();
-                        entry["first_acceptable_rank"] = summary.first_acceptable.into();
-                        Ok(summary)
-                    }
-                    Err(failure) => {
-                        console.error(format!("{head} failed\n{}", failure.text()));
-                        code = match (code, failure.exit_code()) {
-                            (0 | 2, 2) => 2,
-                            _ => 1,
-                        };
-                        entry["error"] = failure.json()["error"].clone();
-                        Err(failure.line_of_table())
-                    }
-                },
-            );
+            let (entry, outcome) = dock_row(dock, &name, &directory.join(&name), &head, console);
+            if let Err(failure) = &outcome {
+                code = match (code, failure.exit_code()) {
+                    (0 | 2, 2) => 2,
+                    _ => 1,
+                };
+            }
+            table[index].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
             told.push(entry);
             write_results(results, &table, &others)?;
         }
@@ -177,6 +155,41 @@ impl Batch {
         }))?;
         Ok(code)
     }
+}
+
+/// Docks the pair of one row and reports it; its JSON entry with what came of it.
+fn dock_row(
+    dock: Dock,
+    name: &str,
+    run: &Path,
+    head: &str,
+    console: Console,
+) -> (Value, Result<RunSummary, Failure>) {
+    let clock = Instant::now();
+    let mut entry = json!({
+        "name": name,
+        "directory": run.display().to_string(),
+        "status": "failed",
+        "error": null,
+        "best": null,
+        "first_acceptable_rank": null,
+    });
+    let outcome = dock_pair(dock).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
+    let outcome = match outcome {
+        Ok((summary, anew)) => {
+            console.say(format!("{head}: {}", words(&summary, anew, clock)));
+            entry["status"] = if anew { "docked" } else { "kept" }.into();
+            entry["best"] = summary.best.clone();
+            entry["first_acceptable_rank"] = summary.first_acceptable.into();
+            Ok(summary)
+        }
+        Err(failure) => {
+            console.error(format!("{head} failed\n{}", failure.text()));
+            entry["error"] = failure.json()["error"].clone();
+            Err(failure)
+        }
+    };
+    (entry, outcome)
 }
 
 /// Docks a pair into its directory; whether it had to be done.

@@ -60,8 +60,9 @@ pub struct Dock {
 /// Heading of the options that choose others.
 const WITHIN: &str = "Within an error or a time";
 
-/// Arguments that go with `--rerun` beside the options of the machine: where the new run goes.
-const BESIDE_RERUN: [&str; 3] = ["rerun", "output", "force"];
+/// Arguments that say where a run is and where it goes. Beside options of the machine, only these go with `--rerun`, and a batch sets them
+/// for its pairs.
+pub const PLACE: [&str; 3] = ["rerun", "output", "force"];
 
 /// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
 pub fn refusing_recorded(command: Command) -> Command {
@@ -69,7 +70,7 @@ pub fn refusing_recorded(command: Command) -> Command {
     let recorded: Vec<Id> = command
         .get_arguments()
         .map(Arg::get_id)
-        .filter(|id| !BESIDE_RERUN.contains(&id.as_str()) && !of_machine(id.as_str()))
+        .filter(|id| !PLACE.contains(&id.as_str()) && !of_machine(id.as_str()))
         .cloned()
         .collect();
     command.mut_arg("rerun", |rerun| rerun.conflicts_with_all(recorded))

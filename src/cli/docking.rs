@@ -8,6 +8,7 @@ use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::Precision;
+use knotdock::output::fields::Column;
 use knotdock::output::manifest::{EffectTime, Machine, Manifest, ManifestParts, Results, Timing};
 use knotdock::output::poses::PoseTable;
 use knotdock::output::quality;
@@ -130,54 +131,57 @@ impl Docking {
     }
 
     /// Docks, and writes the run; its JSON object.
-    pub fn run(self, console: Console) -> Result<Value, Failure> {
-        let Self {
-            mut request,
-            directory,
-            force,
-            evaluator,
-            prepared,
-            chosen,
-            deadline,
-            clock,
-        } = self;
-        let PreparedPair {
-            plan,
-            points,
-            sampling,
-            ..
-        } = prepared;
-        let staging = Staging::open(&directory, force)?;
+    pub fn run(mut self, console: Console) -> Result<Value, Failure> {
+        let staging = Staging::open(&self.directory, self.force)?;
         let progress = console.progress();
-        let outcome = dock_until(&plan, &points, deadline.as_ref(), &progress)
+        let PreparedPair { plan, points, .. } = &self.prepared;
+        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress)
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.
-        request.options.stopped = outcome.stopped;
+        self.request.options.stopped = outcome.stopped;
+        let written = self.write(&outcome, staging.folder())?;
+        staging.commit()?;
+        self.report(&outcome, &written.quality, console);
+        let Self { directory, .. } = &self;
+        let top = directory.join("top");
+        let complexes = written.complexes.iter().map(|name| top.join(name));
+        let best = firsts(&outcome.poses).into_iter().take(BEST);
+        Ok(json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": written.table.objects(best),
+            "run": written.manifest,
+        }))
+    }
 
-        let mut table = PoseTable::new(&outcome.poses, request.options.output.diagnostics);
-        let quality = match &evaluator {
+    /// Writes the table, the complexes and the record of a run into a folder.
+    fn write(&self, outcome: &DockOutcome, folder: &Path) -> Result<Written, Failure> {
+        let Self {
+            request, evaluator, ..
+        } = self;
+        let output = &request.options.output;
+        let mut table = PoseTable::new(&outcome.poses, output.diagnostics);
+        let quality = match evaluator {
             Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
             None => Vec::new(),
         };
         for column in &quality {
             table.set_column(column);
         }
-        table.write(&staging.folder().join("poses.csv"))?;
-        let top = table
-            .rows()
-            .get(..request.options.output.write_top)
-            .unwrap_or(table.rows());
-        let top_folder = staging.folder().join("top");
+        table.write(&folder.join("poses.csv"))?;
+        let top = table.rows().get(..output.write_top);
+        let top = top.unwrap_or(table.rows());
         let written = request
             .bodies
-            .write(top, request.arrangement(), &top_folder)?;
-        let inputs = request.inputs(sampling.as_deref())?;
+            .write(top, request.arrangement(), &folder.join("top"))?;
+        let inputs = request.inputs(self.prepared.sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
             options: &request.options,
-            plan: &plan,
-            outcome: &outcome,
+            plan: &self.prepared.plan,
+            outcome,
             results: Results {
                 poses: outcome.poses_kept,
                 clusters: outcome.clusters,
@@ -186,26 +190,35 @@ impl Docking {
             },
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
-            timing: clock.timing(&outcome),
+            timing: self.clock.timing(outcome),
             machine: Machine {
-                chosen: chosen.clone(),
+                chosen: self.chosen.clone(),
                 adapter: outcome.adapter.clone(),
-                ..machine(&plan)
+                ..machine(&self.prepared.plan)
             },
         })
         .map_err(Failure::other)?;
-        manifest.write(&staging.folder().join("run.json"))?;
-        staging.commit()?;
+        manifest.write(&folder.join("run.json"))?;
+        Ok(Written {
+            manifest: serde_json::to_value(&manifest).map_err(Failure::other)?,
+            complexes: written.names,
+            table,
+            quality,
+        })
+    }
 
-        console.say(format!("\n{}", told(&plan, &outcome)));
-        console.detail(format!("\n{}", timings_text(&outcome)));
-        if let Some(warning) = error_warning(&plan, &outcome) {
+    /// Reports the run: effects, errors, times and the best clusters.
+    fn report(&self, outcome: &DockOutcome, quality: &[Column], console: Console) {
+        let plan = &self.prepared.plan;
+        console.say(format!("\n{}", told(plan, outcome)));
+        console.detail(format!("\n{}", timings_text(outcome)));
+        if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);
         }
-        if let Some(warning) = few_rotations_warning(&outcome, deadline.is_some()) {
+        if let Some(warning) = few_rotations_warning(outcome, self.deadline.is_some()) {
             console.warn(warning);
         }
-        if let Some(chosen) = &chosen {
+        if let Some(chosen) = &self.chosen {
             let stages = outcome.timing.iter();
             console.say(format!(
                 "The search was expected to take {:.1} s, and took {:.1} s",
@@ -215,28 +228,28 @@ impl Docking {
             if let Some(budget) = chosen.budget_seconds {
                 console.say(format!(
                     "The whole run took {:.1} s of {budget} s",
-                    clock.monotonic.elapsed().as_secs_f64()
+                    self.clock.monotonic.elapsed().as_secs_f64()
                 ));
             }
         }
-        console.say(format!("\n{}", best_clusters(&outcome.poses, &quality)));
+        console.say(format!("\n{}", best_clusters(&outcome.poses, quality)));
         console.say(format!(
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),
-            directory.join("poses.csv").display()
+            self.directory.join("poses.csv").display()
         ));
-        let complexes = written
-            .names
-            .iter()
-            .map(|name| directory.join("top").join(name));
-        Ok(json!({
-            "directory": directory.display().to_string(),
-            "poses": directory.join("poses.csv").display().to_string(),
-            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "best": table.objects(firsts(&outcome.poses).into_iter().take(BEST)),
-            "run": serde_json::to_value(&manifest).map_err(Failure::other)?,
-        }))
     }
+}
+
+/// What a run wrote.
+struct Written {
+    table: PoseTable,
+    /// Columns of the table that a known complex added.
+    quality: Vec<Column>,
+    /// Names of the complexes in `top/`.
+    complexes: Vec<String>,
+    /// run.json.
+    manifest: Value,
 }
 
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.

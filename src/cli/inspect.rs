@@ -1,4 +1,4 @@
-//! `knotdock inspect`: what a structure file holds, what would be kept of it, and what would be assumed.
+//! `knotdock inspect`: the contents of a structure file, what of it is kept, and what is assumed.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,11 @@ use clap::{ArgGroup, Args};
 use knotdock::output::report::counted;
 use knotdock::output::{atom_table, molecule_file};
 use knotdock::priors::{Findings, PRIORS};
+use knotdock::rank::term_counts;
+use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    ChainEnds, Format, InputSpec, LabelReport, MissingResidues, fits,
+    Format, InputSpec, LabelReport, Termini, UnresolvedResidues, fits,
 };
 use serde_json::{Map, Value, json};
 
@@ -72,7 +74,7 @@ impl Inspect {
             None => None,
         };
         let (input, listed) = if self.atoms.is_some() {
-            let (input, listed) = Input::read_listed(&self.file, &reading)?;
+            let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
             (input, Some(listed))
         } else {
             let [input] = Input::read_all([&self.file], &reading)?;
@@ -86,19 +88,30 @@ impl Inspect {
                     .remedy("give the file a name that ends in .cif")
             })?;
         }
-        let labels = molecule.labels(ph).report;
+        let labels = molecule.labels(ph);
         let area: f64 = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))
             .iter()
             .sum();
         let findings = PRIORS.map(|prior| prior.findings(molecule));
-        let missing = molecule.missing_residues();
-        let ends = molecule.chain_ends();
+        let unresolved = molecule.unresolved_residues();
+        let termini = molecule.termini();
+        let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
+        let counts = counts.map_err(Failure::input)?;
+        let labels = labels.report;
         let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
         console.say(format!(
-            "{}\n{}",
+            "{}\n{}\n{}",
             molecule.report,
-            told(&labels, (&missing, &ends), ph, area, volume, &findings)
+            labels_text(
+                &labels,
+                (&unresolved, &termini),
+                ph,
+                area,
+                volume,
+                &findings
+            ),
+            counts_text(&counts)
         ));
         if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;
@@ -119,8 +132,9 @@ impl Inspect {
             entries.insert(prior.entry_name().to_owned(), found.entry);
         }
         for (name, entry) in [
-            ("missing_residues", json!(missing)),
-            ("chain_end_residues", json!(ends)),
+            ("unresolved_residues", json!(unresolved)),
+            ("terminus_residues", json!(termini)),
+            ("pose_terms", Value::Object(counts_entry(&counts))),
             ("accessible_area", json!(area)),
             ("volume", json!(volume.value)),
             ("volume_error", json!(volume.error)),
@@ -132,6 +146,22 @@ impl Inspect {
     }
 }
 
+/// Numbers of parts that pose terms read, by the ids of the terms.
+fn counts_entry(counts: &[(&TermDefinition, usize)]) -> Map<String, Value> {
+    let entries = counts.iter();
+    entries
+        .map(|(term, count)| (term.id.to_owned(), json!(count)))
+        .collect()
+}
+
+/// Numbers of parts that pose terms read, in words.
+fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
+    let terms = counts
+        .iter()
+        .map(|(term, count)| format!("{} by {count} {}", term.label, term.reads));
+    format!("Pose terms: {}", terms.collect::<Vec<_>>().join("; "))
+}
+
 /// The format of the file to write.
 fn written_format(file: &Path) -> Result<Format, Failure> {
     molecule_file::format_of_name(file).ok_or_else(|| {
@@ -141,10 +171,10 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// The labels in words.
-fn told(
+/// Labels, flexible regions, surface and findings in words.
+fn labels_text(
     labels: &LabelReport,
-    (missing, ends): (&MissingResidues, &ChainEnds),
+    (unresolved, termini): (&UnresolvedResidues, &Termini),
     ph: f64,
     area: f64,
     volume: Volume,
@@ -165,11 +195,14 @@ fn told(
             metal_bound(labels)
         ),
         format!(
-            "Missing residues: {} in {}; {} of chains that may go on; {} near ends of chains or gaps",
-            missing.residues,
-            counted(missing.gaps, "gap"),
-            counted(missing.ends, "end"),
-            counted(ends.residues, "residue")
+            "Unresolved residues: {} in {}, and past {}; {} near termini or gaps",
+            unresolved.residues,
+            counted(unresolved.gaps, "gap"),
+            match unresolved.ends {
+                1 => "1 terminus".to_owned(),
+                ends => format!("{ends} termini"),
+            },
+            counted(termini.residues, "residue")
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
         format!(
@@ -195,4 +228,32 @@ fn told(
         ));
     }
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::terms::pose::POSE_TERMS;
+
+    /// Every pose term has one entry and one part of the line, by its id and its label.
+    #[test]
+    fn entries_and_rows_of_pose_terms_are_those_of_the_registry() {
+        let counts: Vec<_> = POSE_TERMS.iter().zip(1..).collect();
+        let entry = counts_entry(&counts);
+        assert_eq!(entry.len(), POSE_TERMS.len());
+        let text = counts_text(&counts);
+        let rows: Vec<&str> = text
+            .strip_prefix("Pose terms: ")
+            .unwrap()
+            .split("; ")
+            .collect();
+        assert_eq!(rows.len(), POSE_TERMS.len());
+        for ((term, count), row) in counts.iter().zip(rows) {
+            assert_eq!(entry[term.id], *count);
+            assert!(
+                row.starts_with(&format!("{} by {count} ", term.label)),
+                "{row}"
+            );
+        }
+    }
 }

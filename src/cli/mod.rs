@@ -110,7 +110,7 @@ pub fn main() -> ExitCode {
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
 fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
-    let asked = matches!(
+    let for_information = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     );
@@ -126,16 +126,16 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     let of_file = source.and_then(|source| source.downcast_ref::<PotentialFileError>());
     if let Some(error) = of_file {
         console.fail(&error.clone().into());
-    } else if json && !asked {
+    } else if json && !for_information {
         let remedy = suggestions::suggested(error)
             .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
         let failure = Failure::input(first_paragraph(error)).remedy(remedy);
         console.fail(&failure);
     } else {
-        // Nobody to tell when the terminal is gone.
+        // A terminal that is gone needs no message.
         let _ = error.print();
     }
-    if asked {
+    if for_information {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(2)

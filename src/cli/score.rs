@@ -15,7 +15,7 @@ use super::arguments::memory;
 use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{regions_text, site_told};
+use crate::cli::messages::dock::{regions_text, site_text};
 use crate::cli::messages::failure::Failure;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
@@ -85,19 +85,19 @@ impl Score {
                 rescorer.score(&pose, &mut Workspace::default())
             });
         let pose_score = scored.exact + pose_terms.sum();
-        console.say(format!("\n{}", told(&scored)));
+        console.say(format!("\n{}", ladder_text(&scored)));
         for text in regions_text(&["receptor", "ligand"], &scene.regions) {
             console.say(text);
         }
         if let Some(site) = scene.active_site() {
-            console.say(site_told(site));
+            console.say(site_text(site));
         }
         if let Some(terms) = pose_terms_text(&pose_terms) {
             console.say(format!(
                 "{terms}: `dock` ranks this pose of a pair by {pose_score:.3}"
             ));
         }
-        console.say(told_geometry(&geometry));
+        console.say(geometry_text(&geometry));
         if !scored.reached {
             console.warn(
                 "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
@@ -169,8 +169,8 @@ fn pose(text: &str) -> Result<Pose, Failure> {
     Ok(Pose::from_parts([qw, qx, qy, qz], [tx, ty, tz]))
 }
 
-/// What the pose is as two solids.
-fn told_geometry(geometry: &PoseGeometry) -> String {
+/// The pose as two solids: buried surface and shared volume.
+fn geometry_text(geometry: &PoseGeometry) -> String {
     format!(
         "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} ± {:.1} Å³ of {:.0} and {:.0}: \
          Tanimoto similarity {:.4}, {:.2}% of the smaller protrudes",
@@ -186,8 +186,8 @@ fn told_geometry(geometry: &PoseGeometry) -> String {
     )
 }
 
-/// The report for a person.
-fn told(scored: &PoseScore) -> String {
+/// The exact score with its derivatives, and the table of modes.
+fn ladder_text(scored: &PoseScore) -> String {
     let mut lines = vec![
         [
             "modes",

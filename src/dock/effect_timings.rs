@@ -1,8 +1,8 @@
 //! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and without it.
 
+use crate::dock::effect_decisions::Decision;
 use crate::dock::outcome::EffectCost;
 use crate::dock::plan::DockPlan;
-use crate::dock::scene::Decision;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra, choose_rank};
@@ -21,7 +21,7 @@ const ENOUGH: u128 = 100;
 /// An effect may share fields with others, so the parts need not add up to the whole.
 pub(super) fn effect_timings<T: Real>(
     plan: &DockPlan,
-    folded: &ReceptorSpectra<T>,
+    spectra: &ReceptorSpectra<T>,
     engine: &CpuEngine<T>,
 ) -> Vec<EffectCost> {
     let on = |decision: &&Decision| decision.on;
@@ -30,7 +30,7 @@ pub(super) fn effect_timings<T: Real>(
     let alone = active
         .iter()
         .filter(|effect| **effect != Effect::Shape)
-        .fold(folded.clone(), |folded, &effect| folded.without(effect));
+        .fold(spectra.clone(), |spectra, &effect| spectra.without(effect));
     // Made all at once, and timed one by one. Where one effect is on, it is the whole.
     let others = if active.len() > 1 {
         active.as_slice()
@@ -42,7 +42,7 @@ pub(super) fn effect_timings<T: Real>(
         .map(|&effect| {
             let ChosenRank { engine, .. } = match effect {
                 Effect::Shape => rank_of(plan, &alone),
-                effect => rank_of(plan, &folded.without(effect)),
+                effect => rank_of(plan, &spectra.without(effect)),
             };
             (effect, engine)
         })
@@ -90,13 +90,13 @@ fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     let rotations = &plan.search.rotations;
     let images = &HalfTurn::ALL[..rotations.images];
     let mut work = engine.workspace();
-    let begun = Instant::now();
+    let start_of_all = Instant::now();
     let times = (0..TIMED)
-        .take_while(|&index| index == 0 || begun.elapsed().as_millis() < ENOUGH)
+        .take_while(|&index| index == 0 || start_of_all.elapsed().as_millis() < ENOUGH)
         .map(|index| {
             let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
             let start = Instant::now();
-            engine.turn(rotation, &mut work);
+            engine.transform_ligand(rotation, &mut work);
             for half_turn in images {
                 engine.correlate_turned(*half_turn, &mut work);
             }

@@ -1,5 +1,6 @@
 //! A docking run: from the scene and the options to ranked poses.
 
+pub mod effect_decisions;
 mod effect_timings;
 pub mod flexible_regions;
 mod memory;

@@ -1,8 +1,9 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
+use crate::dock::effect_decisions::Decision;
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::dock::memory::{MemoryPlan, most_in_flight};
-use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::dock::scene::{LengthUnit, Scene};
 use crate::error::SearchError;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;

@@ -82,7 +82,7 @@ pub fn dock(
 /// [`DockOutcome::stopped`] says how many those were: planned with it as [`DockOptions::stopped`] and docked without a
 /// deadline, the outcome is the same. Graphics processors search all.
 ///
-/// [`DockOptions::stopped`]: super::options::DockOptions::stopped
+/// [`DockOptions::stopped`]: crate::options::DockOptions::stopped
 ///
 /// # Errors
 /// As [`dock`].

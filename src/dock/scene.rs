@@ -1,31 +1,21 @@
-//! Which effects a scene calls for: what the inputs can feed, what the user asks for, and why each is on or off.
+//! The scene of a docking run: two labelled bodies with the terms that act between them.
 
+use crate::dock::effect_decisions::{self, Decision};
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
-use crate::options::effect_choice::EffectChoice;
-use crate::options::{AntibodySurface, DockOptions};
+use crate::options::DockOptions;
+use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
-use knotdock_scoring::effect::{Effect, Term, contact, electrostatics, restraint};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::symmetry::RingAxis;
+use knotdock_scoring::terms::effect::{Effect, EffectInputs, LabelCounts, Term};
 use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use serde::Serialize;
-
-/// Whether an effect is on, and why.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Decision {
-    /// The effect.
-    pub effect: Effect,
-    /// Whether it is on.
-    pub on: bool,
-    /// Why.
-    pub reason: String,
-}
 
 /// The unit of a scene's lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -51,7 +41,7 @@ impl std::fmt::Display for LengthUnit {
 pub struct Scene {
     /// Unit of all lengths.
     pub unit: LengthUnit,
-    /// What plays the part of an Ångström, in that unit: first and last steps of climbs are shares of it.
+    /// Length in that unit that stands for an Ångström: first and last steps of climbs are shares of it.
     pub angstrom: f64,
     /// The receptor, labelled where an effect needs it.
     pub receptor: Knots,
@@ -67,22 +57,22 @@ pub struct Scene {
     pub active: ActiveResidues,
     /// Unresolved segments and residues near termini; empty where they cost nothing.
     pub regions: FlexibleRegions,
-    /// The axis of the ring that the molecule is, where two such rings are asked for.
+    /// Axis of the ring that the molecule is, where two such rings are docked.
     pub ring_axis: Option<RingAxis>,
 }
 
-/// What a contact of an attracted atom earns in the search, as a share of what a pose earns in which all such residues touch, times their number: a
-/// residue that touches has some 70, so that the contacts of all earn about a quarter of that however many are named.
+/// Score of a contact of an active atom in the search, times the number of active residues, as a share of the weight of active residues.
+///
+/// A residue in contact has about 70 contacts. So the contacts of all active residues earn about a quarter of that weight, however
+/// many there are.
 const PULL: f64 = 4e-3;
-
-/// Share of a molecule's heavy atoms that must have contact types for the contact potential to speak for it.
-const TYPED_SHARE: f64 = 0.5;
 
 impl Scene {
     /// The scene of two molecules.
     ///
     /// # Errors
-    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is asked for that the molecules cannot feed.
+    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the molecules lack
+    /// something for.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,
@@ -92,65 +82,24 @@ impl Scene {
         let ring_axis = ring_axis(receptor, options)?;
         let molecules = [receptor, ligand];
         let labels = molecules.map(|molecule| molecule.labels(options.terms.ph));
-        let restraints = Restraints::new(molecules, options)?;
-        let why_not = |effect: Effect| {
-            if effect == Effect::Restraint {
-                let none = match options.restraints.antibody {
-                    AntibodySurface::Cdrs => {
-                        "neither is an antibody, and no residue is blocked or attracted"
-                    }
-                    AntibodySurface::Whole => {
-                        "no residue is blocked or attracted, and all of an antibody may touch"
-                    }
-                };
-                return (!restraints.any()).then(|| none.to_owned());
-            }
-            let sides = ["receptor", "ligand"]
-                .into_iter()
-                .zip(molecules)
-                .zip(&labels);
-            sides
-                .map(|((side, molecule), labels)| lacking(effect, side, molecule, &labels.report))
-                .find_map(|reason| reason)
+        let sites = molecules.map(priors::sites);
+        let sites = sites.each_ref().map(Vec::as_slice);
+        let restraints = Restraints::new(molecules, sites, options)?;
+        let residues: usize = restraints.active.iter().map(Vec::len).sum();
+        let active_weight = options.terms.weights.get("active_residues");
+        let [own, other] = &restraints.roles;
+        let inputs = EffectInputs {
+            labels: [0, 1].map(|side| label_counts(molecules[side], &labels[side].report)),
+            contact_potential: options.terms.contact_potential.as_ref(),
+            roles: [own, other],
+            roles_reason: &restraints.reason,
+            active_weight: PULL * active_weight / residues.max(1) as f64,
         };
-        let mut decisions = Vec::new();
-        for effect in Effect::ALL {
-            let asked = match &options.kernel.effects {
-                EffectChoice::Auto => None,
-                EffectChoice::Only(effects) => Some(effects.contains(&effect)),
-            };
-            let (on, reason) = match (effect, asked, why_not(effect)) {
-                (Effect::Shape, ..) => (true, "always on".to_owned()),
-                (Effect::Restraint, Some(false), _) if options.restraints.names_residues() => {
-                    return Err(SearchError::Option {
-                        name: "effects",
-                        value: options.kernel.effects.clone().into(),
-                        bound:
-                            "auto or name restraint too, since residues are blocked or attracted"
-                                .to_owned(),
-                    });
-                }
-                (_, Some(false), _) => (false, "not asked for".to_owned()),
-                (_, Some(true), Some(reason)) => {
-                    return Err(SearchError::Effect { effect, reason });
-                }
-                (Effect::Restraint, _, None) => (true, restraints.reason.clone()),
-                (_, Some(true), None) => (true, "asked for".to_owned()),
-                (_, None, Some(reason)) => (false, reason),
-                (Effect::Electrostatics, None, None) => {
-                    (true, "both sides carry charges".to_owned())
-                }
-                (Effect::Contact, None, None) => (
-                    true,
-                    "both sides are proteins of known atom types".to_owned(),
-                ),
-            };
-            decisions.push(Decision { effect, on, reason });
-        }
+        let decisions = effect_decisions::of_molecules(&inputs, options)?;
         let cores = molecules.map(|molecule| core_weights(molecule, options.terms.core_weight));
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
-        // A label that no effect reads is left off.
+        // Knots carry only the labels that an effect reads.
         let label = |knots: Knots, labels: Labels| -> Result<(Knots, LabelReport), SearchError> {
             let charges = if on(Effect::Electrostatics) {
                 labels.charges
@@ -167,38 +116,20 @@ impl Scene {
         };
         let (receptor, receptor_report) = label(receptor.knots()?, receptor_labels)?;
         let (ligand, ligand_report) = label(ligand.knots()?, ligand_labels)?;
-        let mut terms = Vec::new();
-        if on(Effect::Electrostatics) {
-            let weight = options.terms.electrostatics_weight;
-            terms.push(electrostatics::term(&receptor, &ligand, weight));
-        }
-        if on(Effect::Contact) {
-            let potential = options.terms.contact_potential.clone().unwrap_or_default();
-            terms.push(contact::term(
-                &receptor,
-                &ligand,
-                options.terms.contact_weight,
-                &potential,
-            ));
-        }
-        if on(Effect::Restraint) {
-            let [own, other] = &restraints.marks;
-            let residues: usize = restraints.attracted.iter().map(Vec::len).sum();
-            let weights = restraint::Weights {
-                blocked: options.restraints.restraint_weight,
-                attracted: PULL * options.restraints.active_weight / residues.max(1) as f64,
+        let terms = decisions.iter().filter(|decision| decision.on);
+        let terms = terms.filter_map(|Decision { effect, .. }| {
+            let weight = effect_weight(*effect, options);
+            (effect.definition().term)([&receptor, &ligand], &inputs, weight)
+        });
+        let terms = terms.collect();
+        // Residues that are named take the place of those that a prior names.
+        let active =
+            if restraints.active.iter().any(|side| !side.is_empty()) || !on(Effect::Contact) {
+                ActiveResidues::named(restraints.active, options)
+            } else {
+                ActiveResidues::assumed(sites, [own, other], options)
             };
-            terms.push(restraint::term(&receptor, &ligand, [own, other], weights));
-        }
-        let named = ActiveResidues::named(restraints.attracted, options);
-        // What is known takes the place of what is assumed.
-        let active = if !named.sets.is_empty() || !on(Effect::Contact) {
-            named
-        } else {
-            let [own, other] = &restraints.marks;
-            ActiveResidues::assumed(molecules, [own, other], options)
-        };
-        // Terms count atoms; how much a buried one weighs is a matter of shape.
+        // The weight of buried atoms is a matter of shape alone, so it comes after the terms.
         let [receptor, ligand] =
             [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
                 let mut knots = knots;
@@ -221,31 +152,11 @@ impl Scene {
         })
     }
 
-    /// The scene of two meshes, of which shape is all there is to score.
+    /// The scene of two meshes, which shape alone scores.
     ///
     /// # Errors
-    /// [`SearchError`] when another effect is asked for.
+    /// [`SearchError`] when another effect is requested.
     pub fn of_meshes(pair: &MeshPair, options: &DockOptions) -> Result<Self, SearchError> {
-        let decide = |effect: Effect| {
-            let reason = match effect {
-                Effect::Shape => "always on",
-                Effect::Electrostatics => "meshes carry no charges",
-                Effect::Contact => "meshes have no atom types",
-                Effect::Restraint => "meshes have no residues",
-            };
-            let asked = (effect == Effect::Restraint && options.restraints.names_residues())
-                || matches!(&options.kernel.effects, EffectChoice::Only(effects) if effects.contains(&effect));
-            if asked && effect != Effect::Shape {
-                let reason = reason.to_owned();
-                return Err(SearchError::Effect { effect, reason });
-            }
-            Ok(Decision {
-                effect,
-                on: effect == Effect::Shape,
-                reason: reason.to_owned(),
-            })
-        };
-        let decisions = Effect::ALL.into_iter().map(decide);
         let [receptor, ligand] = [0, 1].map(|part| pair.parts[part].knots.clone());
         Ok(Self {
             unit: LengthUnit::File,
@@ -253,7 +164,7 @@ impl Scene {
             receptor,
             ligand,
             terms: Vec::new(),
-            decisions: decisions.collect::<Result<_, _>>()?,
+            decisions: effect_decisions::of_meshes(options)?,
             labels: [LabelReport::default(), LabelReport::default()],
             active: Default::default(),
             regions: Default::default(),
@@ -285,7 +196,7 @@ impl Scene {
     }
 }
 
-/// The axis of a molecule that is a ring, where two such rings are asked for.
+/// Axis of a molecule that is a ring, where two such rings are docked.
 fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, SearchError> {
     let Some((symmetry, folds)) = options
         .search
@@ -301,10 +212,10 @@ fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAx
     Ok(Some(axis))
 }
 
-/// Points a sphere at which atoms are asked whether water reaches them.
+/// Points on the sphere of each atom that decide whether water reaches it.
 const SURFACE_POINTS: usize = 64;
 
-/// The weight in shape of each atom; empty where all weigh 1.
+/// Weight in shape of each atom; empty if all weigh 1.
 fn core_weights(molecule: &Molecule, weight: f64) -> Vec<f64> {
     if weight == 1.0 {
         return Vec::new();
@@ -316,30 +227,23 @@ fn core_weights(molecule: &Molecule, weight: f64) -> Vec<f64> {
         .collect()
 }
 
-/// What one molecule lacks for an effect; `None` when it can feed it.
-fn lacking(
-    effect: Effect,
-    side: &str,
-    molecule: &Molecule,
-    labels: &LabelReport,
-) -> Option<String> {
+/// Numbers of a molecule's labelled atoms. Hydrogens, where they are kept, have no contact types of their own.
+fn label_counts(molecule: &Molecule, labels: &LabelReport) -> LabelCounts {
+    let heavy = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
+    LabelCounts {
+        atoms: heavy.count(),
+        charged: labels.charged_atoms,
+        typed: labels.typed_atoms,
+    }
+}
+
+/// Weight of an effect: score per kcal/mol, per RT or per contact; shape has none.
+fn effect_weight(effect: Effect, options: &DockOptions) -> f64 {
     match effect {
-        Effect::Electrostatics if labels.charged_atoms == 0 => {
-            Some(format!("no atom of the {side} carries a charge"))
-        }
-        Effect::Contact => {
-            // Hydrogens, where they are kept, have no types of their own.
-            let atoms = molecule.atoms.iter();
-            let atoms = atoms.filter(|atom| !atom.is_hydrogen()).count();
-            let too_few = (labels.typed_atoms as f64) < TYPED_SHARE * atoms as f64;
-            (too_few || labels.typed_atoms == 0).then(|| {
-                format!(
-                    "only {} of the {side}'s {atoms} atoms are of known contact types",
-                    labels.typed_atoms
-                )
-            })
-        }
-        Effect::Shape | Effect::Electrostatics | Effect::Restraint => None,
+        Effect::Shape => 1.0,
+        Effect::Electrostatics => options.terms.electrostatics_weight,
+        Effect::Contact => options.terms.contact_weight,
+        Effect::Restraint => options.restraints.restraint_weight,
     }
 }
 
@@ -347,23 +251,24 @@ fn lacking(
 mod tests {
     use super::*;
     use crate::priors::restraints::tests::peptide;
+    use knotdock_scoring::terms::effect::contact;
     use knotdock_scoring::terms::pose;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};
 
-    /// However many residues are named, all of their contacts together draw as much.
+    /// The contacts of all active residues together earn the same, however many there are.
     #[test]
-    fn attracted_residues_share_their_pull() {
+    fn active_residues_share_their_pull() {
         let molecule = peptide(4.0);
         let pull = |residues: &str| {
             let options = DockOptions::default().changed(|options| {
-                options.restraints.active_weight = 1000.0;
+                options.terms.weights.set("active_residues", 1000.0);
                 options.restraints.active_ligand = Some(residues.parse().unwrap());
             });
             let scene = Scene::new(&molecule, &molecule, &options).unwrap();
             let is_restraint = |term: &&Term| term.effect == Effect::Restraint;
             let term = scene.terms.iter().find(is_restraint).unwrap();
-            let (free, attracted) = (term.receptor[0].class, term.ligand[0].class);
-            term.matrix[free][attracted]
+            let (free, active) = (term.receptor[0].class, term.ligand[0].class);
+            term.matrix[free][active]
         };
         assert_eq!(pull("A:1"), 4.0);
         assert_eq!(pull("A:1,A:3-4,A:1"), 4.0 / 3.0);

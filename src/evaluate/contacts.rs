@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
-use super::residue::Residue;
 use super::residues::Residues;
+use crate::evaluate::residues::residue::Residue;
 
 /// Largest distance of a contact, in Å.
 pub(super) const CONTACT_DISTANCE: f64 = 5.0;

@@ -1,6 +1,6 @@
 //! Why poses cannot be judged by the native given.
 
-use super::superposition::MAX_FIT_RMSD;
+use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 
 /// Why an [`Evaluator`](super::Evaluator) could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

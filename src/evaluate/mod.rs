@@ -27,26 +27,16 @@
 //! [`Evaluator::new`] aligns, superposes and lists contacts once. A pose then costs one eigenvalue problem of a 4 x 4
 //! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules.
 
-mod alignment;
 mod contacts;
-mod copies;
-#[cfg(test)]
-mod copy_tests;
 mod criterion;
 mod dockq;
 mod error;
 mod matching;
 mod native;
-mod placement;
-mod placement_builder;
-mod placements;
 mod report;
-mod residue;
 mod residues;
 mod rmsd;
-mod segments;
 mod shared_chains;
-mod superposition;
 #[cfg(test)]
 mod test_molecules;
 #[cfg(test)]
@@ -65,12 +55,12 @@ pub use native::Native;
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
+use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
 use native::{Groups, Way, check_docked_share};
-use placement::Placement;
 use residues::Residues;
 use rmsd::{RmsdForms, Side, ligand_is_smaller};
-use superposition::MAX_FIT_RMSD;
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
 const MIN_INTERFACE_SHARE: f64 = 0.5;
@@ -222,28 +212,46 @@ fn arrange(
         &of_native(&receptor_pairs),
         &of_native(&ligand_pairs),
     );
+    let sides = side_matches([receptor, ligand], way, groups, across, &rmsds);
+    check_matched(&sides, &rmsds)?;
+    let report = match_report(sides, groups, &contacts);
+    Ok((Arrangement { rmsds, contacts }, report))
+}
+
+/// What was matched of receptor and ligand.
+fn side_matches(
+    [receptor, ligand]: [&Residues; 2],
+    way: &Way,
+    groups: &Groups,
+    across: &[AcrossPair],
+    rmsds: &RmsdForms,
+) -> [SideMatch; 2] {
     let receptor_near: HashSet<_> = across.iter().map(|pair| pair.receptor).collect();
     let ligand_near: HashSet<_> = across.iter().map(|pair| pair.ligand).collect();
     let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
-    let receptor_match = report::SideMatch::new(
-        receptor,
-        &groups.receptor,
-        &way.receptor.chains,
-        &receptor_near,
-        receptor_rmsd,
-    );
-    let ligand_match = report::SideMatch::new(
-        ligand,
-        &groups.ligand,
-        &way.ligand.chains,
-        &ligand_near,
-        ligand_rmsd,
-    );
+    [
+        SideMatch::new(
+            receptor,
+            &groups.receptor,
+            &way.receptor.chains,
+            &receptor_near,
+            receptor_rmsd,
+        ),
+        SideMatch::new(
+            ligand,
+            &groups.ligand,
+            &way.ligand.chains,
+            &ligand_near,
+            ligand_rmsd,
+        ),
+    ]
+}
+
+/// Refuses a match of too few residues or atoms.
+fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), EvaluateError> {
     let (receptor_atoms, ligand_atoms) = rmsds.atoms();
-    for (side, found, atoms) in [
-        ("receptor", &receptor_match, receptor_atoms),
-        ("ligand", &ligand_match, ligand_atoms),
-    ] {
+    let named = ["receptor", "ligand"].into_iter().zip(sides);
+    for ((side, found), atoms) in named.zip([receptor_atoms, ligand_atoms]) {
         if found.interface_share() < MIN_INTERFACE_SHARE {
             return Err(EvaluateError::Interface {
                 side,
@@ -257,17 +265,22 @@ fn arrange(
         check_docked_share(side, found.matched, found.residues)?;
     }
     // Each side may have half of the interface and yet no place of it be matched on both.
-    let across_atoms = rmsds.interface_atoms();
-    if across_atoms.contains(&0) || across_atoms.iter().sum::<usize>() < MIN_ATOMS {
-        return Err(EvaluateError::Across {
-            atoms: across_atoms,
-        });
+    let atoms = rmsds.interface_atoms();
+    if atoms.contains(&0) || atoms.iter().sum::<usize>() < MIN_ATOMS {
+        return Err(EvaluateError::Across { atoms });
     }
-    let (kept, interface) = (
-        receptor_match.interface_matched + ligand_match.interface_matched,
-        receptor_match.interface_residues + ligand_match.interface_residues,
-    );
-    let report = MatchReport {
+    Ok(())
+}
+
+/// The report of one way of matching.
+fn match_report(
+    [receptor, ligand]: [SideMatch; 2],
+    groups: &Groups,
+    contacts: &NativeContacts,
+) -> MatchReport {
+    let kept = receptor.interface_matched + ligand.interface_matched;
+    let interface = receptor.interface_residues + ligand.interface_residues;
+    MatchReport {
         interface_share: kept as f64 / interface.max(1) as f64,
         native_contacts: contacts.total(),
         native_contacts_matched: contacts.matched(),
@@ -280,11 +293,10 @@ fn arrange(
         complexes: Vec::new(),
         warnings: Vec::new(),
         unused_native_chains: groups.unused.clone(),
-        receptor: receptor_match,
-        ligand: ligand_match,
+        receptor,
+        ligand,
     }
-    .warned();
-    Ok((Arrangement { rmsds, contacts }, report))
+    .warned()
 }
 
 /// Refuses a side that does not fit the native's as one rigid body.

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
-use super::copies::{Combination, PlacedCopy, Uncombined, combinations};
-use super::placement::Placement;
-use super::placements::placements;
 use super::report::NativeComplex;
 use super::residues::Residues;
+use crate::evaluate::matching::copies::{Combination, PlacedCopy, Uncombined, combinations};
+use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::placements::placements;
 
 /// The known answer that poses are judged by.
 #[derive(Clone, Copy, Debug)]

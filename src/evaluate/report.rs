@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::matching::ChainPair;
 use super::residues::Residues;
+use crate::evaluate::matching::chain_pair::ChainPair;
 
 /// Share of a docked side's residues below which the match is worth a warning.
 const GOOD_DOCKED_SHARE: f64 = 0.7;

@@ -6,7 +6,7 @@ use knotdock_scoring::se3::Pose;
 
 use super::contacts::AcrossPair;
 use super::residues::Residues;
-use super::superposition::{PointPair, Superposition};
+use crate::evaluate::matching::superposition::{PointPair, Superposition};
 
 /// The backbone atoms that both residues of a pair have, for each (user's, native's) pair of residues.
 pub(super) fn backbone_pairs(

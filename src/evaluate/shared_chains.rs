@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use knotdock_structures::molecule::Molecule;
 
-use super::alignment::align;
-use super::residue::Residue;
 use super::residues::Residues;
+use crate::evaluate::matching::alignment::align;
+use crate::evaluate::residues::residue::Residue;
 
 /// Fewest residues of a chain that counts.
 const MIN_RESIDUES: usize = 5;

@@ -3,7 +3,7 @@
 //! # Conventions
 //!
 //! Lengths are in the unit of the mesh files, which must be one. h is the spacing of a part's grid, eps = sqrt(3) h / 2 the bound within which
-//! the sampler knows its surface ([`knotdock_structures::sampler::grid`]); A is the receptor, B the ligand.
+//! the sampler knows its surface ([`knotdock_structures::sampling::grid`]); A is the receptor, B the ligand.
 //!
 //! # Why balls of one radius
 //!
@@ -25,12 +25,12 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
-use knotdock_structures::sampler::feature_size::feature_size;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::lattice::lattice;
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{SampleError, knots};
+use knotdock_structures::sampling::feature_size::feature_size;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::lattice::lattice;
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{SampleError, knots};
 use serde::Serialize;
 
 use crate::options::{DockOptions, SampleWeights};
@@ -245,45 +245,54 @@ pub fn sample_pair(
     if !(low * (1.0 - 1e-9)..=high).contains(&offset) {
         return Err(MeshSceneError::Offset { offset, low, high });
     }
-    let part = |index: usize| -> Result<SampledPart, MeshSceneError> {
-        let (solid, field) = (solids[index], &fields[index]);
-        let frame = solid.frame();
-        let spacing = field.grid.spacing() * frame.unit;
-        let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
-        let radius = RADIUS * offset;
-        let balls = lattice(field, per_cell, radius / frame.unit);
-        // Exact where the surface is closed; an open one has as much as its grid says.
-        let volume = || match solid.mesh().is_closed() {
-            true => solid.mesh().volume(),
-            false => HausdorffMeter::new(solid, field).volume(),
-        };
-        let fitted = (options.weights == SampleWeights::Fitted)
-            .then(|| Bump::new(options.alpha))
-            .transpose()?
-            .map(|bump| weights::fit(field, &balls, bump, volume()));
-        // A ball without weight would only cost time.
-        let (balls, weights): (Vec<_>, Vec<f64>) = balls
-            .into_iter()
-            .enumerate()
-            .map(|(place, ball)| (ball, fitted.as_ref().map_or(1.0, |fit| fit.weights[place])))
-            .filter(|(_, weight)| *weight > 0.0)
-            .unzip();
-        Ok(SampledPart {
-            knots: knots(frame, &balls, Some(&weights))?,
-            balls: balls.len(),
-            radius,
-            per_axis: field.grid.per_axis(),
-            spacing,
-            epsilon: epsilons[index],
-            per_cell,
-            inside_nodes: field.inside().len(),
-            feature_size: features[index],
-            weights: fitted,
-        })
-    };
     Ok(MeshPair {
-        parts: [part(0)?, part(1)?],
+        parts: [
+            sampled(solids[0], &fields[0], (features[0], offset), options)?,
+            sampled(solids[1], &fields[1], (features[1], offset), options)?,
+        ],
         offset,
+    })
+}
+
+/// Samples one solid for a gap of `offset`, in its frame's unit as `feature_size`.
+fn sampled(
+    solid: &Solid,
+    field: &DepthField,
+    (feature_size, offset): (f64, f64),
+    options: &MeshOptions,
+) -> Result<SampledPart, MeshSceneError> {
+    let frame = solid.frame();
+    let spacing = field.grid.spacing() * frame.unit;
+    let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
+    let radius = RADIUS * offset;
+    let balls = lattice(field, per_cell, radius / frame.unit);
+    // Exact where the surface is closed; an open one has as much as its grid says.
+    let volume = || match solid.mesh().is_closed() {
+        true => solid.mesh().volume(),
+        false => HausdorffMeter::new(solid, field).volume(),
+    };
+    let fitted = (options.weights == SampleWeights::Fitted)
+        .then(|| Bump::new(options.alpha))
+        .transpose()?
+        .map(|bump| weights::fit(field, &balls, bump, volume()));
+    // A ball without weight would only cost time.
+    let (balls, weights): (Vec<_>, Vec<f64>) = balls
+        .into_iter()
+        .enumerate()
+        .map(|(place, ball)| (ball, fitted.as_ref().map_or(1.0, |fit| fit.weights[place])))
+        .filter(|(_, weight)| *weight > 0.0)
+        .unzip();
+    Ok(SampledPart {
+        knots: knots(frame, &balls, Some(&weights))?,
+        balls: balls.len(),
+        radius,
+        per_axis: field.grid.per_axis(),
+        spacing,
+        epsilon: field.grid.epsilon() * frame.unit,
+        per_cell,
+        inside_nodes: field.inside().len(),
+        feature_size,
+        weights: fitted,
     })
 }
 

@@ -1,13 +1,13 @@
-//! Which effects are asked for: `auto`, or names.
+//! The effects of a score: `auto`, or names.
 
 use knotdock_scoring::effect::Effect;
 use serde::{Deserialize, Serialize};
 
-/// Effects as asked for: `auto`, or names with commas between them.
+/// Effects of a score. Written as `auto`, or as names with commas between them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum EffectChoice {
-    /// Whatever the inputs call for.
+    /// Those that the inputs hold labels for.
     #[default]
     Auto,
     /// These, and shape.
@@ -34,7 +34,7 @@ impl TryFrom<String> for EffectChoice {
         if text == "auto" {
             return Ok(Self::Auto);
         }
-        // Shape is always on, and the order in which effects are named says nothing.
+        // Shape is always on, and the order of the names has no effect.
         let mut effects = vec![Effect::Shape];
         for name in text.split(',').map(str::trim) {
             let known = Effect::ALL.into_iter().find(|effect| effect.name() == name);

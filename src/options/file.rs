@@ -256,9 +256,9 @@ mod tests {
             ("[search]\nprecision = \"half\"\n", 2, "single, double"),
             ("[search\n", 1, "TOML"),
         ] {
-            let (found, told) = wrong_in(text);
-            assert_eq!(found, Some(line), "{text}: {told}");
-            assert!(told.contains(part), "{text}: {told}");
+            let (found, message) = wrong_in(text);
+            assert_eq!(found, Some(line), "{text}: {message}");
+            assert!(message.contains(part), "{text}: {message}");
         }
     }
 

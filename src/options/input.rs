@@ -18,7 +18,7 @@ pub struct InputOptions {
     /// Waters: drop or keep.
     #[arg(long, value_name = "WHAT", default_value_t = Waters::default())]
     pub waters: Waters,
-    /// HETATM records but waters: no-additives drops listed buffer and cryo additives, keep keeps all, drop leaves only
+    /// HETATM records but waters: no-additives drops known buffer and cryo additives, keep keeps all, drop leaves only
     /// modified amino acids.
     #[arg(long, value_name = "WHAT", default_value_t = Hetatm::default())]
     pub hetatm: Hetatm,
@@ -32,7 +32,7 @@ pub struct InputOptions {
     /// Alternate location of a residue: occupancy, the best occupied, or the name of one, such as A, where it is offered.
     #[arg(long, value_name = "NAME", default_value_t = AlternateLocation::default())]
     pub altloc: AlternateLocation,
-    /// Model of a file that has several: 1 is the first, whatever number it carries; all reads all models as one molecule, as of a
+    /// Model of a file that has several: 1 is the first, whatever number it carries. all reads all models as one molecule, as of a
     /// biological assembly (.pdb1), in which the chain A of the second is called A-2.
     #[arg(long, value_name = "N", default_value_t = ModelChoice::default())]
     pub model: ModelChoice,

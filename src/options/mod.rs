@@ -6,16 +6,18 @@
 //! | what | how |
 //! |---|---|
 //! | the command line, its help and its refusals | `#[derive(clap::Args)]` |
-//! | [`DockOptions::default`] | an empty command line ([`text::defaults`]) |
-//! | the file of `--config` | its values are read as if they were typed ([`file`]) |
+//! | [`DockOptions::default`] | an empty command line ([`text`]) |
+//! | the file of `--config` | its values are read as if they were typed ([`mod@file`]) |
 //! | `options` in `run.json` | `#[derive(Serialize, Deserialize)]` |
 //! | the check of options from elsewhere | the values are read as if they were typed ([`check`]) |
 //! | what `--rerun` repeats, which options a kind of input has | [`definition::definitions`] |
 //! | what `tradeoff` varies | [`DockOptions::with`], by name |
 //!
-//! To add an option, add a field (and the code that uses it). The name of the field, the name on the command line and the key in files are
-//! the same word; the heading of the struct in the help is the name of its table in files. The tests of [`definition`] hold both, and see
-//! an option of a struct of their own arrive everywhere.
+//! # To add an option
+//!
+//! Add a field, and the code that uses it. The field, the option on the command line and the key in files have the same name. The heading
+//! of the struct is the name of its table in files; `(molecules)` or `(meshes)` behind it says what the options have an effect on. The
+//! tests of [`definition`] hold both, and let an option of a struct of their own arrive everywhere.
 
 pub mod check;
 pub mod definition;
@@ -30,6 +32,7 @@ mod ranking;
 mod restraints;
 mod sampling;
 mod search;
+pub mod term_weights;
 mod terms;
 pub mod text;
 pub mod values;
@@ -44,6 +47,7 @@ pub use ranking::RankingOptions;
 pub use restraints::{AntibodySurface, RestraintOptions};
 pub use sampling::{MAX_PER_AXIS, SampleGrid, SampleWeights, SamplingOptions};
 pub use search::{AXES, AXES_ACROSS, EngineChoice, Precision, REFINED_BY_SHAPE, SearchOptions};
+pub use term_weights::TermWeights;
 pub use terms::TermOptions;
 
 use std::sync::OnceLock;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use knotdock_scoring::effect::contact::{Potential, PotentialError};
-use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
+use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 
 /// Why the potential that an option names cannot be used.
 #[derive(Clone, Debug, thiserror::Error)]

@@ -5,6 +5,7 @@ use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 use super::values::number;
+use crate::priors::peptidase;
 
 /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,21 +28,17 @@ pub struct RestraintOptions {
     /// Residues of the ligand to keep free of contact, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub block_ligand: Option<ResidueSelection>,
-    /// What a pose earns in which all active residues touch, else the share of them that does: score. In the search each contact of
-    /// theirs earns a 250th, divided by their number.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2000.0)]
-    pub active_weight: f64,
-    /// Residues of the receptor thought to be in contact, likewise: poses that touch them rank higher.
+    /// Active residues of the receptor, thought to be in contact: poses that touch them rank higher, by --active-weight. In the search
+    /// each contact of theirs earns a 250th of that, divided by their number.
     #[arg(long, value_name = "RESIDUES")]
     pub active_receptor: Option<ResidueSelection>,
-    /// Residues of the ligand thought to be in contact, likewise.
+    /// Active residues of the ligand, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub active_ligand: Option<ResidueSelection>,
-    // Two units of log-odds, of which one is worth 212 to 240 on training pairs.
     /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues that does: score.
     /// Peptidases are detected from their sequence, and this counts where the contact effect is on, no residue is active and the
     /// other is neither peptidase nor antibody; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 500.0)]
+    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
     pub peptidase_weight: f64,
 }
 

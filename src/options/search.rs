@@ -11,8 +11,8 @@ use super::values::{count, rotations, share};
 #[command(next_help_heading = "Search")]
 #[serde(deny_unknown_fields)]
 pub struct SearchOptions {
-    /// Rotations of the ligand, near uniform over all: their number, or their angle as 15deg, which stands for the field's count
-    /// 3600 (15/D)^3, so that 6deg gives 56,250; with `dock --symmetry` axes, by default 900 over half a sphere or 90 across a
+    /// Rotations of the ligand, near uniform over all: their number, or their angle. An angle such as 15deg stands for the field's
+    /// count 3600 (15/D)^3, so that 6deg gives 56,250. With `dock --symmetry` axes, by default 900 over half a sphere or 90 across a
     /// ring's own.
     #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
     pub rotations: usize,
@@ -41,10 +41,10 @@ pub struct SearchOptions {
     /// a ranking].
     #[arg(long, value_name = "N")]
     pub refine: Option<usize>,
-    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 ... for 2, 3 ... copies about an axis; or, where RECEPTOR is
-    /// itself a ring of 2, 3 ... copies, two such rings face to face: D2, D3 ... --rotations then counts axes, and each pose is where
-    /// the second copy or ring goes. Residues that --block-receptor and --active-receptor name are those of every copy, or of both
-    /// rings.
+    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies about an axis. Where
+    /// RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings face to face. --rotations then counts
+    /// axes, and each pose is where the second copy or ring goes. Residues that --block-receptor and --active-receptor name are those
+    /// of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn")]
     pub symmetry: Option<Symmetry>,
 }
@@ -59,7 +59,7 @@ pub const REFINED_BY_SHAPE: usize = 600;
 /// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.
 pub const AXES: usize = 900;
 
-/// Axes of two rings by default: of D2 a degree apart, of Dn 2 / n of one.
+/// Axes of two rings by default: of D2 at steps of one degree, of Dn of 2 / n degrees.
 pub const AXES_ACROSS: usize = 90;
 
 /// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision whatever it is.

@@ -1,11 +1,12 @@
 //! Weights and tables of the terms of the score.
 
 use clap::{Args, ValueHint};
-use knotdock_scoring::effect::contact::Potential;
-use knotdock_scoring::rescoring::{AtomPairPotential, DistanceBinnedPotential};
+use knotdock_scoring::terms::effect::contact::Potential;
+use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use serde::{Deserialize, Serialize};
 
 use super::potential_file;
+use super::term_weights::TermWeights;
 use super::values::number;
 
 /// Weights and tables of the terms of the score. The defaults of the weights were chosen on training pairs.
@@ -25,44 +26,17 @@ pub struct TermOptions {
     /// Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
     pub contact_potential: Option<Potential>,
-    /// Weight of the fine contact potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
-    pub fine_contact_weight: f64,
     /// Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py --fine writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::fine_contact, value_hint = ValueHint::FilePath)]
     pub fine_contact_potential: Option<DistanceBinnedPotential>,
-    /// Weight of the atom pair potential, score per RT, by which poses are rescored where the contact effect is on; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 1.0)]
-    pub atom_pair_weight: f64,
-    /// Weight of the atom pair potential where the pose comes to rest within 2 Å once atoms must not overlap, score per RT, by which
-    /// poses are rescored where the contact effect is on; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 3.0)]
-    pub relaxed_weight: f64,
     /// Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
     pub atom_pair_potential: Option<AtomPairPotential>,
-    /// What an atom costs that lies where residues missing from the other side's file are, in gaps of a chain or past its ends, times
-    /// how likely they are there: score; 0 for nothing.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 3.0)]
-    pub unresolved_weight: f64,
-    /// What an atom near an end of its chain, or near a gap in it, costs that touches the other side: score; 0 for nothing.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
-    pub termini_weight: f64,
+    /// Weights of the pose terms.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub weights: TermWeights,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = number(0.0..=14.0), default_value_t = 7.0)]
     pub ph: f64,
-}
-
-impl TermOptions {
-    /// Weight of the pose term with an id.
-    pub(crate) fn weight(&self, id: &str) -> f64 {
-        match id {
-            "fine_contact" => self.fine_contact_weight,
-            "atom_pair" => self.atom_pair_weight,
-            "relaxed" => self.relaxed_weight,
-            "unresolved" => self.unresolved_weight,
-            "termini" => self.termini_weight,
-            _ => unreachable!("no weight of '{id}'"),
-        }
-    }
 }

@@ -11,7 +11,8 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
 use super::complexes::file_name;
-use super::poses::{PoseRow, number};
+use super::fields::number;
+use super::poses::PoseRow;
 use super::program::VERSION;
 use super::whole_file::{FileError, write_whole};
 

@@ -6,9 +6,9 @@
 use std::io;
 use std::path::Path;
 
-use knotdock_structures::molecule::{DropKind, Listed};
+use knotdock_structures::molecule::{AtomFate, DropKind};
 
-use super::poses::number;
+use super::fields::number;
 use super::whole_file::{FileError, write_whole};
 
 /// The columns, in order.
@@ -35,7 +35,7 @@ pub const COLUMNS: [&str; 16] = [
 ///
 /// # Errors
 /// [`FileError`].
-pub fn write(path: &Path, listed: &[Listed]) -> Result<(), FileError> {
+pub fn write(path: &Path, listed: &[AtomFate]) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut table = csv::Writer::from_writer(&mut *file);
         table.write_record(COLUMNS).map_err(io::Error::other)?;
@@ -48,7 +48,7 @@ pub fn write(path: &Path, listed: &[Listed]) -> Result<(), FileError> {
     })
 }
 
-fn fields(entry: &Listed) -> [String; COLUMNS.len()] {
+fn fields(entry: &AtomFate) -> [String; COLUMNS.len()] {
     let atom = &entry.atom;
     let character = |value: Option<char>| value.map_or(String::new(), String::from);
     let [x, y, z] = atom.position;

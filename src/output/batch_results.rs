@@ -8,7 +8,9 @@ use std::path::Path;
 use csv::StringRecord;
 use serde_json::Value;
 
-use super::poses::{PoseTable, number};
+use super::fields::number;
+
+use super::poses::PoseTable;
 use super::poses_reader::PoseTableError;
 use super::whole_file::{FileError, write_whole};
 

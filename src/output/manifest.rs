@@ -19,6 +19,7 @@ use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
 use crate::options::DockOptions;
 use crate::priors::active_residues::AssumedSite;
+use crate::rank::rescoring::ActingTerm;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
 use crate::tradeoff::choice::Chosen;
@@ -147,6 +148,7 @@ pub struct Manifest<'a> {
     plan: &'a DockPlan,
     rank: usize,
     effects: &'a [EffectCost],
+    pose_terms: Vec<ActingTerm>,
     active_site: Option<&'a AssumedSite>,
     finer_search: Option<FineSearched>,
     error: ErrorRecord,
@@ -194,6 +196,7 @@ impl<'a> Manifest<'a> {
             plan: parts.plan,
             rank: parts.outcome.rank,
             effects: &parts.outcome.effects,
+            pose_terms: parts.plan.rescoring().acting(),
             active_site: parts.plan.active_site(),
             finer_search: parts.outcome.fine,
             error: ErrorRecord {

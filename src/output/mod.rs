@@ -19,6 +19,7 @@ pub mod complexes;
 pub mod cost_model_file;
 mod csv_lines;
 pub mod exclusive;
+pub mod fields;
 pub mod input_record;
 pub mod manifest;
 pub mod molecule_file;

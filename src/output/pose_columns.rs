@@ -12,7 +12,7 @@
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::terms::pose::POSE_TERMS;
 
-use super::poses::number;
+use super::fields::number;
 use crate::dock::outcome::RankedPose;
 
 /// A column: its name, and its field of a pose.

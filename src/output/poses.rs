@@ -11,27 +11,10 @@ use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
+use super::fields::Column;
 use super::pose_columns::columns;
 use super::whole_file::{FileError, write_whole};
 use crate::dock::outcome::RankedPose;
-
-/// A column to append: its name and one field a row.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// Name in the header.
-    pub name: String,
-    /// The fields, in the order of the rows.
-    pub fields: Vec<String>,
-}
-
-/// A number as a field: the shortest digits that read back to the same f64, empty when it is not a finite number.
-pub fn number(value: f64) -> String {
-    if value.is_finite() {
-        (value + 0.0).to_string() // + 0.0 prints a negative zero as 0
-    } else {
-        String::new()
-    }
-}
 
 /// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::evaluate::PoseQuality;
 
-use super::poses::{Column, number};
+use super::fields::{Column, number};
 
 /// Columns `irmsd` and `lrmsd` in Å, `fnat` and `dockq` from 0 to 1, and `capri`, the class's name.
 pub fn columns(qualities: &[PoseQuality]) -> Vec<Column> {

@@ -2,7 +2,7 @@
 
 use crate::dock::outcome::RankedPose;
 
-use super::poses::Column;
+use super::fields::Column;
 
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;

@@ -6,9 +6,9 @@
 use std::path::Path;
 
 use knotdock_structures::mesh::Solid;
-use knotdock_structures::sampler::Ball;
-use knotdock_structures::sampler::grid::ON_SURFACE;
-use knotdock_structures::sampler::skeletal_density::share;
+use knotdock_structures::sampling::Ball;
+use knotdock_structures::sampling::grid::ON_SURFACE;
+use knotdock_structures::sampling::skeletal_density::share;
 use rayon::prelude::*;
 
 use crate::plot::svg::{Colour, Svg};

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
+use super::fields::number;
 use super::manifest::{Inputs, Machine};
-use super::poses::number;
 use super::program::Program;
 use super::whole_file::{FileError, write_json, write_whole};
 use crate::evaluate::MatchReport;
@@ -26,11 +26,11 @@ const STAGES: [&str; 10] = [
 /// A measured setting under the names of its columns, in order.
 pub fn columns(run: &Measured) -> Vec<(String, Value)> {
     let options = &run.setting.options;
-    let real = |value: f64| Number::from_f64(value).map_or(Value::Null, Value::Number);
     let optional = |value: Option<f64>| value.map_or(Value::Null, real);
     let rank = |value: Option<Option<usize>>| value.flatten().map_or(Value::Null, Value::from);
     let native = run.native;
     let [nx, ny, nz] = run.grid;
+    let finer = options.search.fine_rotations;
     let mut columns: Vec<(String, Value)> = [
         ("setting", Value::from(run.setting.name.as_str())),
         ("parameter", run.setting.parameter.name().into()),
@@ -40,21 +40,10 @@ pub fn columns(run: &Measured) -> Vec<(String, Value)> {
         ("tolerance", real(options.kernel.tolerance)),
         ("precision", name_of(options.search.precision).into()),
         ("rotations", options.search.rotations.into()),
-        (
-            "fine_rotations",
-            options
-                .search
-                .fine_rotations
-                .map_or(Value::Null, Value::from),
-        ),
+        ("fine_rotations", finer.map_or(Value::Null, Value::from)),
         (
             "fine_share",
-            optional(
-                options
-                    .search
-                    .fine_rotations
-                    .map(|_| options.search.fine_share),
-            ),
+            optional(finer.map(|_| options.search.fine_share)),
         ),
         ("per_rotation", options.search.per_rotation.into()),
         ("refined", run.refined.into()),
@@ -103,18 +92,27 @@ pub fn columns(run: &Measured) -> Vec<(String, Value)> {
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec();
-    for name in STAGES {
-        let stage = run.timing.iter().find(|stage| stage.name == name);
-        columns.push((
-            format!("{name}_wall_seconds"),
-            optional(stage.map(|stage| stage.wall_seconds)),
-        ));
-        columns.push((
-            format!("{name}_cpu_seconds"),
-            optional(stage.and_then(|stage| stage.cpu_seconds)),
-        ));
-    }
+    columns.extend(stage_times(run));
     columns
+}
+
+/// A number; null where it is not finite.
+fn real(value: f64) -> Value {
+    Number::from_f64(value).map_or(Value::Null, Value::Number)
+}
+
+/// Columns with the times of the stages.
+fn stage_times(run: &Measured) -> impl Iterator<Item = (String, Value)> {
+    let optional = |value: Option<f64>| value.map_or(Value::Null, real);
+    STAGES.into_iter().flat_map(move |name| {
+        let stage = run.timing.iter().find(|stage| stage.name == name);
+        let wall = stage.map(|stage| stage.wall_seconds);
+        let cpu = stage.and_then(|stage| stage.cpu_seconds);
+        [
+            (format!("{name}_wall_seconds"), optional(wall)),
+            (format!("{name}_cpu_seconds"), optional(cpu)),
+        ]
+    })
 }
 
 /// A value as a field of the table.

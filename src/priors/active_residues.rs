@@ -1,56 +1,59 @@
-//! What a pose should touch: residues that the user names, or else the active site of a peptidase.
+//! Active residues: those that the user names, or those of the favoured sites of one side.
 
 use crate::options::DockOptions;
-use crate::priors::{ActiveSite, Antibody};
-use knotdock_scoring::effect::restraint::ResidueRole;
+use crate::priors::{Site, SiteRole};
+use knotdock_scoring::terms::effect::restraint::ResidueRole;
 use knotdock_scoring::terms::pose::Residues;
-use knotdock_structures::molecule::{Molecule, Partner};
-use serde::Serialize;
+use knotdock_structures::molecule::Partner;
+use serde::{Serialize, Serializer};
 
-/// Sets of residues, of which poses should touch all of one, and what those earn.
+/// Sets of active residues with their weight. A pose should touch all residues of one set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ActiveResidues {
-    /// Residues of receptor and ligand, each as the places of its knots.
+    /// Residues of receptor and ligand, each as the indices of its knots.
     pub(crate) sets: Vec<Residues>,
-    /// What a pose earns in which all of a set touch: score.
+    /// Score of a pose in which all residues of a set are in contact.
     pub(crate) weight: f64,
-    /// Where the sets are what is assumed of a peptidase.
+    /// The sites that the sets come from; `None` if the user names the residues.
     pub(crate) assumed: Option<AssumedSite>,
 }
 
-/// A peptidase, and where its partner is assumed to bind.
+/// Sites of one side where the other is assumed to bind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssumedSite {
-    /// Which of the two it is.
+    /// The side with the sites.
     pub partner: Partner,
-    /// Its active sites, any of which may be the one.
-    pub sites: Vec<ActiveSite>,
+    /// Its sites, any of which may bind.
+    #[serde(serialize_with = "records")]
+    pub sites: Vec<Site>,
+}
+
+/// Writes the record of each site.
+fn records<S: Serializer>(sites: &[Site], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(sites.iter().map(|site| &site.record))
 }
 
 impl ActiveResidues {
-    /// Residues that were named.
+    /// Residues that the user names.
     pub(crate) fn named(residues: Residues, options: &DockOptions) -> Self {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.restraints.active_weight,
+            weight: options.terms.weights.get("active_residues"),
             assumed: None,
         }
     }
 
-    /// The active sites of a peptidase, where one of the two is one and nothing speaks against it; `marks` say which atoms are kept free of contact.
+    /// Residues of the favoured sites of one side; none if their weight is 0.
     pub(crate) fn assumed(
-        molecules: [&Molecule; 2],
-        marks: [&[ResidueRole]; 2],
+        sites: [&[Site]; 2],
+        roles: [&[ResidueRole]; 2],
         options: &DockOptions,
     ) -> Self {
         let weight = options.restraints.peptidase_weight;
-        let assumed = (weight > 0.0).then(|| AssumedSite::of(molecules, marks));
+        let assumed = (weight > 0.0).then(|| AssumedSite::of(sites, roles));
         let assumed = assumed.flatten();
-        let sets = assumed.as_ref().map_or(Vec::new(), |assumed| {
-            let sites = assumed.sites.iter().map(|site| site.atoms.clone());
-            sites.map(|atoms| assumed.side(atoms)).collect()
-        });
+        let sets = assumed.as_ref().map_or(Vec::new(), AssumedSite::residues);
         Self {
             sets,
             weight,
@@ -60,45 +63,59 @@ impl ActiveResidues {
 }
 
 impl AssumedSite {
-    /// Where one of the two is a peptidase and the other is none, sites left out that are to stay free of contact. What an antibody was raised against is as
-    /// likely to be anywhere.
-    fn of(molecules: [&Molecule; 2], marks: [&[ResidueRole]; 2]) -> Option<Self> {
-        let (partner, mut sites, marks) = match molecules.map(ActiveSite::all) {
-            [own, other] if other.is_empty() => (Partner::Receptor, own, marks[0]),
-            [own, other] if own.is_empty() => (Partner::Ligand, other, marks[1]),
+    /// The favoured sites of one side, if the other has none, and no side has an exclusive site.
+    ///
+    /// Sites with excluded atoms are left out. An antibody against an enzyme may bind anywhere, so its exclusive site leaves no assumption.
+    fn of(sites: [&[Site]; 2], roles: [&[ResidueRole]; 2]) -> Option<Self> {
+        let of_role =
+            |side: usize, role: SiteRole| sites[side].iter().filter(move |s| s.role == role);
+        let has = |side: usize, role: SiteRole| of_role(side, role).next().is_some();
+        if [0, 1].iter().any(|&side| has(side, SiteRole::Exclusive)) {
+            return None;
+        }
+        let favoured = [0, 1].map(|side| has(side, SiteRole::Favoured));
+        let (side, partner) = match favoured {
+            [true, false] => (0, Partner::Receptor),
+            [false, true] => (1, Partner::Ligand),
             _ => return None,
         };
-        sites.retain(|site| {
-            let mut atoms = site.atoms.iter().flatten();
-            !atoms.any(|&atom| marks.get(atom) == Some(&ResidueRole::Excluded))
-        });
-        let none = sites.is_empty() || molecules.iter().any(|m| Antibody::of(m).is_some());
-        (!none).then_some(Self { partner, sites })
+        let is_free = |site: &&Site| {
+            let mut atoms = site.residues.iter().flatten();
+            !atoms.any(|&atom| roles[side].get(atom) == Some(&ResidueRole::Excluded))
+        };
+        let sites: Vec<Site> = of_role(side, SiteRole::Favoured)
+            .filter(is_free)
+            .cloned()
+            .collect();
+        (!sites.is_empty()).then_some(Self { partner, sites })
     }
 
-    /// Residues of the peptidase, and none of its partner.
-    fn side(&self, residues: Vec<Vec<usize>>) -> Residues {
-        match self.partner {
+    /// Residues of each site, with none of the other side.
+    fn residues(&self) -> Vec<Residues> {
+        let residues = self.sites.iter().map(|site| site.residues.clone());
+        let of_both = |residues: Vec<Vec<usize>>| match self.partner {
             Partner::Receptor => [residues, Vec::new()],
             _ => [Vec::new(), residues],
-        }
+        };
+        residues.map(of_both).collect()
     }
 }
 
 impl std::fmt::Display for AssumedSite {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (partner, sites) = (self.partner, ActiveSite::all_in_words(&self.sites));
-        write!(f, "the {partner} is a peptidase, {sites}")
+        let reasons: Vec<&str> = self.sites.iter().map(|site| site.reason.as_str()).collect();
+        write!(f, "the {} is {}", self.partner, reasons.join("; "))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dock::scene::{Decision, Scene};
+    use crate::dock::effect_decisions::Decision;
+    use crate::dock::scene::Scene;
     use crate::options::AntibodySurface;
-    use knotdock_scoring::effect::Effect;
-    use knotdock_structures::molecule::{Atom, Format, InputSpec, ReadOptions, read};
+    use knotdock_scoring::terms::effect::Effect;
+    use knotdock_structures::molecule::{Atom, Format, InputSpec, Molecule, ReadOptions, read};
 
     fn example(name: &str) -> Molecule {
         let root = env!("CARGO_MANIFEST_DIR");
@@ -106,9 +123,10 @@ mod tests {
         read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
     }
 
-    /// Trypsin, told by itself and not by its inhibitor, on either side; with nothing to earn where nothing is asked, contacts are off, or residues are named.
+    /// Trypsin is detected on either side, and its inhibitor is not. There are no active residues without a weight, without the contact
+    /// effect, with an excluded site or with other residues named.
     #[test]
-    fn a_peptidase_is_attracted_by_its_active_site() {
+    fn the_active_site_of_a_peptidase_is_active() {
         let (trypsin, inhibitor) = (example("receptor_unbound"), example("ligand_unbound"));
         let of = |molecules: [&Molecule; 2], options: &DockOptions| {
             let [receptor, ligand] = molecules;
@@ -156,7 +174,7 @@ mod tests {
             |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
                 options.restraints.active_receptor = Some("A:20".parse().unwrap());
-                options.restraints.active_weight = 0.0;
+                options.terms.weights.set("active_residues", 0.0);
             },
         ];
         for change in changes {
@@ -167,7 +185,7 @@ mod tests {
         assert_eq!(elsewhere.sets, default.sets);
     }
 
-    /// The heavy chain of trastuzumab, as alpha carbons; it is none the less an antibody where all of it may touch.
+    /// The heavy chain of trastuzumab as CA atoms. It is an antibody also where all of it may bind.
     #[test]
     fn an_antibody_against_a_peptidase_may_be_anywhere() {
         let sequence = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLRAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";

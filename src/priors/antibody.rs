@@ -1,11 +1,12 @@
 //! Antibodies, detected from their sequence, and the part of them that binds.
 //!
-//! A variable domain is what the crate immunum aligns to the consensus of heavy, kappa or lambda chains with a confidence of at
-//! least its default. Several may stand in one chain, as where H and L were merged or in a single-chain Fv.
+//! A variable domain is what the crate immunum aligns to the consensus of heavy, kappa or lambda chains with a
+//! confidence of at least its default. Several may stand in one chain, as where H and L were merged or in a
+//! single-chain Fv.
 //!
-//! Complementarity-determining regions (CDRs) are the residues that either of two numberings counts among them: IMGT's (Lefranc
-//! et al., Dev. Comp. Immunol. 27 (2003) 55-77) or Kabat's (Sequences of Proteins of Immunological Interest, 1991). Either alone
-//! misses residues that touch antigens.
+//! Complementarity-determining regions (CDRs) are the residues that either of two numberings counts among them: IMGT's
+//! (Lefranc et al., Dev. Comp. Immunol. 27 (2003) 55-77) or Kabat's (Sequences of Proteins of Immunological Interest,
+//! 1991). Either alone misses residues that touch antigens.
 //!
 //! T-cell receptors do not count as antibodies, since superantigens hold them by their frameworks.
 
@@ -21,7 +22,8 @@ use serde_json::json;
 
 use super::{Findings, Prior, Site, SiteRole};
 
-/// Distance in Å from the nearest atom of a CDR up to which an antibody's atoms belong to the paratope: the reach of a contact.
+/// Distance in Å from the nearest atom of a CDR up to which an antibody's atoms belong to the paratope: the reach of a
+/// contact.
 pub const PARATOPE_EDGE: f64 = 5.0;
 
 /// Chain that a variable domain belongs to.
@@ -65,8 +67,8 @@ pub struct VariableDomain {
     pub chain: String,
     /// First and last residue: the author's number with its insertion code.
     pub residues: [String; 2],
-    /// Residues of its three CDRs, in order, each by the author's number with its insertion code; residues that the file does not
-    /// resolve are left out.
+    /// Residues of its three CDRs, in order, each by the author's number with its insertion code; residues that the
+    /// file does not resolve are left out.
     pub cdrs: [Vec<String>; 3],
 }
 
@@ -139,6 +141,7 @@ impl Prior for AntibodyPrior {
             residues: molecule.atoms_by_residue(&antibody.paratope),
             weight: WEIGHT,
             reason: antibody.reason(),
+            record: json!(antibody.domains),
         };
         Antibody::of(molecule).map(site).into_iter().collect()
     }
@@ -206,7 +209,8 @@ struct Annotators {
 
 impl Annotators {
     fn new() -> Self {
-        // Both schemes number all chains of antibodies, and the default confidence is in range: these are all that can be refused.
+        // Both schemes number all chains of antibodies, and the default confidence is in range: these are all that can
+        // be refused.
         let of = |scheme| {
             Annotator::new(IG_CHAINS, scheme, None)
                 .unwrap_or_else(|error| unreachable!("numbering of antibodies: {error}"))
@@ -217,7 +221,8 @@ impl Annotators {
         }
     }
 
-    /// The variable domains of one chain, each with the CDR (0 to 2) of this domain that each residue of the chain belongs to.
+    /// The variable domains of one chain, each with the CDR (0 to 2) of this domain that each residue of the chain
+    /// belongs to.
     fn variable_domains(
         &self,
         chain: &PeptideChain<'_>,
@@ -305,7 +310,8 @@ mod tests {
             .map(|cdr| cdr.iter().filter_map(letter).collect())
     }
 
-    /// Kabat's regions of trastuzumab as published with it (Carter et al., PNAS 89 (1992) 4285-4289), H1 and H3 longer at their beginnings by IMGT's.
+    /// Kabat's regions of trastuzumab as published with it (Carter et al., PNAS 89 (1992) 4285-4289), H1 and H3 longer
+    /// at their beginnings by IMGT's.
     #[test]
     fn the_regions_of_a_known_antibody() {
         let atoms = [chain("H", HEAVY, 1), chain("L", KAPPA, 1)].concat();

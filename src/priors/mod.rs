@@ -1,7 +1,7 @@
 //! Priors: what is known of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
 //!
-//! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in [`PRIORS`]; the
-//! scene of a docking run and `knotdock inspect` walk the registry.
+//! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in
+//! [`PRIORS`]; the scene of a docking run and `knotdock inspect` walk the registry.
 
 pub mod active_residues;
 pub mod antibody;
@@ -36,6 +36,14 @@ pub struct Site {
     pub weight: f64,
     /// What the molecule is and where it binds, in words that follow "the receptor is".
     pub reason: String,
+    /// Entry of `run.json`.
+    pub record: serde_json::Value,
+}
+
+/// The sites of a molecule that all priors find.
+pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
+    let sites = PRIORS.iter().map(|prior| prior.sites(molecule));
+    sites.flatten().collect()
 }
 
 /// What `knotdock inspect` reports of a molecule.

@@ -2,12 +2,12 @@
 //!
 //! A peptidase cuts proteins, so a protein that binds it, an inhibitor above all, mostly does so at its active site.
 //!
-//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing together in
-//! space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be turned, flipped or
-//! missing, and a nucleophile mutated, modified or left out.
+//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing
+//! together in space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be
+//! turned, flipped or missing, and a nucleophile mutated, modified or left out.
 //!
-//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules besides
-//! (lipases, esterases) are left out.
+//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules
+//! besides (lipases, esterases) are left out.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -21,7 +21,7 @@ use super::{Findings, Prior, Site, SiteRole};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md, "Active
 /// sites").
-const WEIGHT: f64 = 500.0;
+pub const WEIGHT: f64 = 500.0;
 
 /// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
 const TOGETHER: f64 = 12.0;
@@ -41,7 +41,8 @@ pub struct ActiveSite {
 }
 
 impl ActiveSite {
-    /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one each.
+    /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one
+    /// each.
     pub fn all(molecule: &Molecule) -> Vec<Self> {
         let chains = molecule.peptide_chains();
         let chains: Vec<(&PeptideChain<'_>, Vec<char>)> = chains
@@ -94,6 +95,7 @@ impl Prior for PeptidasePrior {
         let site = |site: ActiveSite| Site {
             role: SiteRole::Favoured,
             reason: format!("a peptidase, {}", site.in_words()),
+            record: json!(site),
             residues: site.atoms,
             weight: WEIGHT,
         };
@@ -207,7 +209,8 @@ mod tests {
     use crate::priors::test_chains;
     use knotdock_structures::molecule::{Atom, Format};
 
-    /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and from each other.
+    /// Backbones of a chain, numbered from `first`, with `bent` of them all at one place and the others far from it and
+    /// from each other.
     fn chain(chain: &str, sequence: &str, first: i64, bent: &[i64]) -> Vec<Atom> {
         let position = |number: i64| {
             if bent.contains(&number) {
@@ -233,8 +236,8 @@ mod tests {
         residues.iter().map(|name| (*name).to_owned()).collect()
     }
 
-    /// The segments about the catalytic residues of an enzyme of each family, by its usual numbers: chymotrypsin, subtilisin BPN', papain,
-    /// pepsin, collagenase of fibroblasts and carboxypeptidase A.
+    /// The segments about the catalytic residues of an enzyme of each family, by its usual numbers: chymotrypsin,
+    /// subtilisin BPN', papain, pepsin, collagenase of fibroblasts and carboxypeptidase A.
     #[test]
     fn an_enzyme_of_each_family_is_detected() {
         type Piece = (&'static str, i64);
@@ -281,6 +284,84 @@ mod tests {
         }
     }
 
+    /// Whole enzymes with their catalytic residues in crystal numbering: family, number of the first residue, sequence, residues.
+    ///
+    /// Bovine chymotrypsinogen A (2CGA), subtilisin BPN' (1SBT), papain (9PAP), porcine pepsin A (4PEP), the protease of HIV-1 as a
+    /// dimer (3HVP), the catalytic domain of human collagenase MMP-1 (1HFC) and bovine carboxypeptidase A (5CPA).
+    const ENZYMES: [(&str, i64, &str, &[&str]); 7] = [
+        (
+            "S1",
+            1,
+            "CGVPAIQPVLSGLSRIVNGEEAVPGSWPWQVSLQDKTGFHFCGGSLINENWVVTAAHCGVTTSDVVVAGEFDQGSSSEKIQKLKIAKVFKNSKYNSLTIN\
+             NDITLLKLSTAASFSQTVSAVCLPSASDDFAAGTTCVTTGWGLTRYTNANTPDRLQQASLPLLSNTNCKKYWGTKIKDAMICAGASGVSSCMGDSGGPLV\
+             CKKNGAWTLVGIVSWGSSTCSTSTPGVYARVTALVNWVQQTLAAN",
+            &["A:57", "A:195"],
+        ),
+        (
+            "S8",
+            1,
+            "AQSVPYGVSQIKAPALHSQGYTGSNVKVAVIDSGIDSSHPDLKVAGGASMVPSETNPFQDNNSHGTHVAGTVAALNNSIGVLGVAPSASLYAVKVLGADG\
+             SGQYSWIINGIEWAIANNMDVINMSLGGPSGSAALKAAVDKAVASGVVVVAAAGNEGTSGSSSTVGYPGKYPSVIAVGAVNSASQRASFSSVGPELDVMA\
+             PGVSIQSTLPGNKYGAYNGTSMASPHVAGAAALILSKHPNWTNTQVRSSLENTTTYLGDSFYYGKGLINVQAAAQ",
+            &["A:64", "A:221"],
+        ),
+        (
+            "C1",
+            1,
+            "IPEYVDWRQKGAVTPVKNQGSCGSCWAFSAVVTIEGIIKIRTGNLNEYSEQELLDCDRRSYGCNGGYPWSALQLVAQYGIHYRNTYPYEGVQRYCRSREK\
+             GPYAAKTDGVRQVQPYNEGALLYSIANQPVSVVLEAAGKDFQLYRGGIFVGPCGNKVDHAVAAVGYGPNYILIKNSWGTGWGENGYIRIKRGTGNSYGVC\
+             GLYTSSFYPVKN",
+            &["A:25", "A:159"],
+        ),
+        (
+            "A1",
+            1,
+            "IGDEPLENYLDTEYFGTIGIGTPAQDFTVIFDTGSSNLWVPSVYCSSLACSDHNQFNPDDSSTFEATSQELSITYGTGSMTGILGYDTVQVGGISDTNQI\
+             FGLSETEPGSFLYYAPFDGILGLAYPSISASGATPVFDNLWDQGLVSQDLFSVYLSSNDDSGSVVLLGGIDSSYYTGSLNWVPVSVEGYWQITLDSITMD\
+             GETIACSGGCQAIVDTGTSLLTGPTSAIANIQSDIGASENSDGEMVISCSSIDSLPDIVFTINGVQYPLSPSAYILQDDDSCTSGFEGMDVPTSSGELWI\
+             LGDVFIRQYYTVFDRANNKVGLAPVA",
+            &["A:32", "A:215"],
+        ),
+        (
+            "A1",
+            1,
+            "PQITLWQRPLVTIKIGGQLKEALLDTGADDTVLEEMSLPGRWKPKMIGGIGGFIKVRQYDQILIEICGHKAIGTVLVGPTPVNIIGRNLLTQIGCTLNF",
+            &["A:25", "B:25"],
+        ),
+        (
+            "M10",
+            99,
+            "RFVLTEGNPRWEQTHLTYRIENYTPDLPRADVDHAIEKAFQLWSNVTPLTFTKVSEGQADIMISFVRGDHRDNSPFDGPGGNLAHAFQPGPGIGGDAHFD\
+             EDERWTNNFREYNLHRVAAHELGHSLGLSHSTDIGALMYPSYTFSGDVQLAQDDIDGIYAIYG",
+            &["A:218", "A:219"],
+        ),
+        (
+            "M14",
+            1,
+            "ARSTNTFNYATYHTLDEIYDFMDLLVAEHPQLVSKLQIGRSYEGRPIYVLKFSTGGSNRPAIWIDLGIHSREWITQATGVWFAKKFTEDYGQDPSFTAIL\
+             DSMDIFLEIVTNPDGFAFTHSQNRLWRKTRSVTSSSLCVGVDANRNWDAGFGKAGASSSPCSETYHGKYANSEVEVKSIVDFVKDHGNFKAFLSIHSYSQ\
+             LLLYPYGYTTQSIPDKTELNQVAKSAVAALKSLYGTSYKYGSIITTIYQASGGSIDWSYNQGIKYSFTFELRDTGRYGFLLPASQIIPTAQETWLGVLTI\
+             MEHTVNN",
+            &["A:69", "A:72", "A:196"],
+        ),
+    ];
+
+    /// In each whole enzyme the patterns fit at the catalytic residues that its crystal structure shows, and nowhere else.
+    ///
+    /// All residues stand together here, so the patterns alone decide.
+    #[test]
+    fn catalytic_residues_of_whole_enzymes_are_those_of_crystal_structures() {
+        for (family, first, sequence, residues) in ENZYMES {
+            let last = first + sequence.len() as i64;
+            let all: Vec<i64> = (first..last).collect();
+            let mut atoms = chain("A", sequence, first, &all);
+            if residues.contains(&"B:25") {
+                atoms.extend(chain("B", sequence, first, &all));
+            }
+            assert_eq!(sites(atoms), [(family, named(residues))]);
+        }
+    }
+
     /// Their relatives by the same segments: urokinase, a peptidase of Streptomyces, furin, proteinase K, cathepsins B, L and D, the protease of HIV (of a family
     /// next to A1), ADAM17 and carboxypeptidase B.
     #[test]
@@ -306,8 +387,8 @@ mod tests {
         }
     }
 
-    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two copies, whose
-    /// residues go with the nearer.
+    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two
+    /// copies, whose residues go with the nearer.
     #[test]
     fn sites_span_chains_and_do_without_the_serine() {
         let base = || chain("B", "WVVTAAHCGVTTSD", 51, &[57]);

@@ -1,121 +1,123 @@
-//! Which atoms are to stay free of contact, what of an antibody lies away from its CDRs and what the user blocks, and which are to be in contact.
+//! Roles of atoms in contacts: excluded ones, by residues that the user blocks and by priors, and active ones.
 
 use crate::error::SearchError;
 use crate::options::{AntibodySurface, DockOptions};
-use crate::priors::Antibody;
-use knotdock_scoring::effect::restraint::ResidueRole;
+use crate::priors::{Site, SiteRole};
+use knotdock_scoring::terms::effect::restraint::ResidueRole;
 use knotdock_structures::molecule::{Molecule, ResidueSelection};
 
-/// What is wanted of the contacts of both sides' atoms.
+/// Roles of the atoms of both sides in contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Restraints {
-    /// A mark for each atom of receptor and ligand.
-    pub marks: [Vec<ResidueRole>; 2],
-    /// Of each side, the residues that are attracted, each as the places of its atoms.
-    pub attracted: [Vec<Vec<usize>>; 2],
-    /// Why, in words; empty where all are free.
+    /// Role of each atom of receptor and ligand.
+    pub roles: [Vec<ResidueRole>; 2],
+    /// Active residues of receptor and ligand, each as the indices of its atoms.
+    pub active: [Vec<Vec<usize>>; 2],
+    /// Reasons for the roles, in words; empty if all atoms are free.
     pub reason: String,
 }
 
 impl Restraints {
-    /// What the options and the two molecules call for. Residues that are blocked and attracted are attracted.
+    /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active are active.
     ///
     /// # Errors
     /// [`SearchError::Option`] when residues are named that a molecule does not have.
-    pub fn new(molecules: [&Molecule; 2], options: &DockOptions) -> Result<Self, SearchError> {
+    pub fn new(
+        molecules: [&Molecule; 2],
+        sites: [&[Site]; 2],
+        options: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        let mut restraints = Self::default();
         let mut reasons = Vec::new();
-        let mut marks = molecules.map(|molecule| vec![ResidueRole::Free; molecule.atoms.len()]);
-        let mut attracted = [Vec::new(), Vec::new()];
-        for (((molecule, named), marks), attracted) in molecules
-            .into_iter()
-            .zip(named_residues(options))
-            .zip(&mut marks)
-            .zip(&mut attracted)
-        {
-            let side = named.side;
-            if options.restraints.antibody == AntibodySurface::Cdrs
-                && let Some(antibody) = Antibody::of(molecule)
-            {
-                for (mark, paratope) in marks.iter_mut().zip(&antibody.paratope) {
-                    if !paratope {
-                        *mark = ResidueRole::Excluded;
-                    }
-                }
-                reasons.push(format!("the {side} is {}", antibody.reason()));
+        for (side, named) in named_residues(options).into_iter().enumerate() {
+            let molecule = molecules[side];
+            let mut roles = vec![ResidueRole::Free; molecule.atoms.len()];
+            if options.restraints.antibody == AntibodySurface::Cdrs {
+                let reason = exclude_elsewhere(&mut roles, sites[side]);
+                reasons.extend(reason.map(|reason| format!("the {} is {reason}", named.side)));
             }
-            for (option, residues, mark, told) in [
-                (named.block, named.blocked, ResidueRole::Excluded, "blocked"),
-                (
-                    named.attract,
-                    named.attracted,
-                    ResidueRole::Active,
-                    "attracted",
-                ),
-            ] {
-                let Some(residues) = residues else {
-                    continue;
-                };
-                let chosen = selected(molecule, side, option, residues)?;
-                if mark == ResidueRole::Active {
-                    *attracted = molecule.atoms_by_residue(&chosen);
-                }
-                for (own, chosen) in marks.iter_mut().zip(chosen) {
-                    if chosen {
-                        *own = mark;
-                    }
-                }
-                reasons.push(format!(
-                    "residues {} of the {side} are {told}",
-                    String::from(residues.clone())
-                ));
+            if let Some((option, residues)) = named.blocked {
+                let blocked = selected(molecule, named.side, option, residues)?;
+                set_role(&mut roles, &blocked, ResidueRole::Excluded);
+                reasons.push(named.reason(residues, "blocked"));
             }
+            if let Some((option, residues)) = named.active {
+                let active = selected(molecule, named.side, option, residues)?;
+                restraints.active[side] = molecule.atoms_by_residue(&active);
+                set_role(&mut roles, &active, ResidueRole::Active);
+                reasons.push(named.reason(residues, "active"));
+            }
+            restraints.roles[side] = roles;
         }
-        Ok(Self {
-            marks,
-            attracted,
-            reason: reasons.join("; "),
-        })
-    }
-
-    /// Whether any atom is marked.
-    pub fn any(&self) -> bool {
-        self.marks
-            .iter()
-            .flatten()
-            .any(|mark| *mark != ResidueRole::Free)
+        restraints.reason = reasons.join("; ");
+        Ok(restraints)
     }
 }
 
-/// The residues that options name of one side, and the options' names.
+/// Excludes the atoms outside of a molecule's exclusive sites, and returns the reason; `None` if it has no such site.
+fn exclude_elsewhere(roles: &mut [ResidueRole], sites: &[Site]) -> Option<String> {
+    let exclusive = || sites.iter().filter(|site| site.role == SiteRole::Exclusive);
+    let reasons: Vec<&str> = exclusive().map(|site| site.reason.as_str()).collect();
+    if reasons.is_empty() {
+        return None;
+    }
+    roles.fill(ResidueRole::Excluded);
+    for &atom in exclusive().flat_map(|site| site.residues.iter().flatten()) {
+        roles[atom] = ResidueRole::Free;
+    }
+    Some(reasons.join(" and "))
+}
+
+/// Gives the chosen atoms a role.
+fn set_role(roles: &mut [ResidueRole], chosen: &[bool], role: ResidueRole) {
+    for (own, chosen) in roles.iter_mut().zip(chosen) {
+        if *chosen {
+            *own = role;
+        }
+    }
+}
+
+/// An option's name and the residues that it names.
+type NamedResidues<'a> = Option<(&'static str, &'a ResidueSelection)>;
+
+/// The residues of one side that options name.
 struct Named<'a> {
     side: &'static str,
-    block: &'static str,
-    blocked: Option<&'a ResidueSelection>,
-    attract: &'static str,
-    attracted: Option<&'a ResidueSelection>,
+    blocked: NamedResidues<'a>,
+    active: NamedResidues<'a>,
 }
 
-/// Those of the receptor and those of the ligand.
+impl Named<'_> {
+    fn reason(&self, residues: &ResidueSelection, role: &str) -> String {
+        let residues = String::from(residues.clone());
+        format!("residues {residues} of the {} are {role}", self.side)
+    }
+}
+
+/// The residues of receptor and ligand that options name.
 fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
+    fn named<'a>(
+        option: &'static str,
+        residues: &'a Option<ResidueSelection>,
+    ) -> NamedResidues<'a> {
+        residues.as_ref().map(|residues| (option, residues))
+    }
+    let restraints = &options.restraints;
     [
         Named {
             side: "receptor",
-            block: "block-receptor",
-            blocked: options.restraints.block_receptor.as_ref(),
-            attract: "active-receptor",
-            attracted: options.restraints.active_receptor.as_ref(),
+            blocked: named("block-receptor", &restraints.block_receptor),
+            active: named("active-receptor", &restraints.active_receptor),
         },
         Named {
             side: "ligand",
-            block: "block-ligand",
-            blocked: options.restraints.block_ligand.as_ref(),
-            attract: "active-ligand",
-            attracted: options.restraints.active_ligand.as_ref(),
+            blocked: named("block-ligand", &restraints.block_ligand),
+            active: named("active-ligand", &restraints.active_ligand),
         },
     ]
 }
 
-/// The atoms of the residues that an option names.
+/// Whether each atom of a molecule belongs to the residues that an option names.
 fn selected(
     molecule: &Molecule,
     side: &str,
@@ -136,7 +138,7 @@ pub(crate) mod tests {
     use super::*;
     use knotdock_structures::molecule::{Atom, Format};
 
-    /// Alpha carbons of glycine, number 1 to 4, so many Å apart.
+    /// CA atoms of glycines 1 to 4, each `apart` Å from the next.
     pub fn peptide(apart: f64) -> Molecule {
         let atom = |residue_number: i64| Atom {
             name: "CA".to_owned(),
@@ -164,14 +166,18 @@ pub(crate) mod tests {
                 options.restraints.block_receptor = receptor.map(|text| text.parse().unwrap());
                 options.restraints.block_ligand = ligand.map(|text| text.parse().unwrap());
             });
-            Restraints::new([&molecule, &molecule], &options)
+            Restraints::new([&molecule, &molecule], [&[], &[]], &options)
         };
         let none = of(None, None).unwrap();
-        assert!(!none.any() && none.reason.is_empty());
+        assert!(none.reason.is_empty());
+        assert_eq!(
+            none.roles,
+            [vec![ResidueRole::Free; 4], vec![ResidueRole::Free; 4]]
+        );
         let both = of(Some("A:2-3"), Some("A:4")).unwrap();
         use ResidueRole::{Excluded, Free};
-        assert_eq!(both.marks[0], [Free, Excluded, Excluded, Free]);
-        assert_eq!(both.marks[1], [Free, Free, Free, Excluded]);
+        assert_eq!(both.roles[0], [Free, Excluded, Excluded, Free]);
+        assert_eq!(both.roles[1], [Free, Free, Free, Excluded]);
         assert_eq!(
             both.reason,
             "residues A:2-3 of the receptor are blocked; residues A:4 of the ligand are blocked"
@@ -183,22 +189,55 @@ pub(crate) mod tests {
         );
     }
 
-    /// What is blocked and attracted is attracted, residue by residue.
+    /// Residues that are both blocked and active are active.
     #[test]
-    fn attracted_residues_are_marked_and_listed() {
+    fn active_residues_have_their_role_and_are_listed() {
         let molecule = peptide(10.0);
         let options = DockOptions::default().changed(|options| {
             options.restraints.block_receptor = Some("A:3-4".parse().unwrap());
             options.restraints.active_receptor = Some("A:1,A:4".parse().unwrap());
             options.restraints.active_ligand = Some("A:2".parse().unwrap());
         });
-        let restraints = Restraints::new([&molecule, &molecule], &options).unwrap();
+        let restraints = Restraints::new([&molecule, &molecule], [&[], &[]], &options).unwrap();
         use ResidueRole::{Active, Excluded, Free};
-        assert_eq!(restraints.marks[0], [Active, Free, Excluded, Active]);
-        assert_eq!(restraints.marks[1], [Free, Active, Free, Free]);
+        assert_eq!(restraints.roles[0], [Active, Free, Excluded, Active]);
+        assert_eq!(restraints.roles[1], [Free, Active, Free, Free]);
+        assert_eq!(restraints.active, [vec![vec![0], vec![3]], vec![vec![1]]]);
+    }
+
+    /// Atoms outside of an exclusive site are excluded, unless all of an antibody may bind or the user says otherwise.
+    #[test]
+    fn atoms_outside_of_exclusive_sites_are_excluded() {
+        let molecule = peptide(10.0);
+        let site = |role: SiteRole| Site {
+            role,
+            residues: vec![vec![1], vec![2]],
+            weight: 1.0,
+            reason: "an antibody".to_owned(),
+            record: serde_json::Value::Null,
+        };
+        let (exclusive, favoured) = (site(SiteRole::Exclusive), site(SiteRole::Favoured));
+        let of = |sites: &[Site], change: fn(&mut DockOptions)| {
+            let options = DockOptions::default().changed(change);
+            Restraints::new([&molecule, &molecule], [sites, &[]], &options).unwrap()
+        };
+        use ResidueRole::{Active, Excluded, Free};
+        let found = of(std::slice::from_ref(&exclusive), |_| ());
         assert_eq!(
-            restraints.attracted,
-            [vec![vec![0], vec![3]], vec![vec![1]]]
+            found.roles,
+            [vec![Excluded, Free, Free, Excluded], vec![Free; 4]]
         );
+        assert_eq!(found.reason, "the receptor is an antibody");
+        let named = of(std::slice::from_ref(&exclusive), |options| {
+            options.restraints.active_receptor = Some("A:1".parse().unwrap());
+        });
+        assert_eq!(named.roles[0], [Active, Free, Free, Excluded]);
+        let whole = of(&[exclusive], |options| {
+            options.restraints.antibody = AntibodySurface::Whole;
+        });
+        for free in [whole, of(&[favoured], |_| ())] {
+            assert_eq!(free.roles[0], [Free; 4]);
+            assert!(free.reason.is_empty());
+        }
     }
 }

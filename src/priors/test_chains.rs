@@ -2,8 +2,8 @@
 
 use knotdock_structures::molecule::{Atom, one_letter};
 
-/// The atoms of such `names` of each residue of a chain, numbered from `first`, all of a residue where `position` puts its
-/// number; X is a residue of an unknown name.
+/// The atoms of such `names` of each residue of a chain, numbered from `first`, all of a residue where `position` puts
+/// its number; X is a residue of an unknown name.
 pub fn chain(
     chain: &str,
     sequence: &str,

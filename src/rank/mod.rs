@@ -3,5 +3,6 @@
 pub(crate) mod candidates;
 pub mod cluster;
 pub(crate) mod ranking;
-pub(crate) mod rescoring;
+pub mod rescoring;
+pub mod term_counts;
 pub(crate) mod time_left;

@@ -3,8 +3,20 @@
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
-use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermDefinition, TermInputs};
+use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;
+use serde::Serialize;
+
+/// A pose term that acts in a docking, with its weight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ActingTerm {
+    /// Id of the term: its column in `poses.csv`.
+    pub id: &'static str,
+    /// Its weight.
+    pub weight: f64,
+    /// Unit of the weight.
+    pub unit: &'static str,
+}
 
 /// Inputs and weights of the pose terms between two bodies.
 pub(crate) struct Rescoring<'a> {
@@ -22,10 +34,7 @@ impl<'a> Rescoring<'a> {
         regions: &'a FlexibleRegions,
         options: &'a DockOptions,
     ) -> Self {
-        let weight = |term: &TermDefinition| match term.id {
-            "active_residues" => active.weight,
-            id => options.terms.weight(id),
-        };
+        let weights = &options.terms.weights;
         Self {
             inputs: TermInputs {
                 bodies,
@@ -35,16 +44,28 @@ impl<'a> Rescoring<'a> {
                 unresolved: regions
                     .unresolved
                     .each_ref()
-                    .map(|side| side.stretches.as_slice()),
+                    .map(|side| side.segments.as_slice()),
                 termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
             },
-            weights: std::array::from_fn(|index| weight(&POSE_TERMS[index])),
+            weights: *weights.clone().with("active_residues", active.weight).all(),
         }
     }
 
     /// The terms prepared for scoring poses; `None` if no term acts.
     pub fn rescorer(&self) -> Option<Rescorer> {
         Rescorer::new(&self.inputs, &self.weights)
+    }
+
+    /// The terms that act, in the order of the registry.
+    pub fn acting(&self) -> Vec<ActingTerm> {
+        let terms = POSE_TERMS.iter().zip(self.weights);
+        let acting = terms.filter(|(term, weight)| term.acts(&self.inputs, *weight));
+        let acting = acting.map(|(term, weight)| ActingTerm {
+            id: term.id,
+            weight,
+            unit: term.unit,
+        });
+        acting.collect()
     }
 
     /// Time to rescore a pose, as a share of the time with every term; 0 if no term acts.

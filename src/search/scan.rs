@@ -115,7 +115,7 @@ fn scan_on_cores<T: Real>(
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
-                engine.turn(&rotation, &mut work);
+                engine.transform_ligand(&rotation, &mut work);
                 for (image, half_turn) in HalfTurn::ALL.into_iter().enumerate() {
                     if !group.wanted[image] {
                         continue;

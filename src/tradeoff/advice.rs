@@ -22,6 +22,31 @@ pub struct Advice {
     pub text: String,
 }
 
+/// Share of the reference's rows that a setting finds.
+fn share(run: &Measured) -> String {
+    format!("{:.0}%", 100.0 * run.agreement)
+}
+
+/// What half the time buys: `quick` is the best setting that takes no more.
+fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> String {
+    match quick {
+        Some(quick) if keeps(&quick) => format!(
+            " In half the time or less, {} ({}) finds {}, at an error of {:.1e}.",
+            told(quick),
+            seconds(quick.cost()),
+            share(quick),
+            quick.error.rms
+        ),
+        Some(quick) => format!(
+            " No setting that takes half the time or less keeps the answer: the best, {} ({}), finds {}.",
+            told(quick),
+            seconds(quick.cost()),
+            share(quick)
+        ),
+        None => " No setting takes half the time or less.".to_owned(),
+    }
+}
+
 /// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the reference's rows, where
 /// a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
 ///
@@ -44,7 +69,6 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
         .filter(keeps)
         .max_by(|a, b| worth(a).total_cmp(&worth(b)))
         .unwrap_or(default);
-    let share = |run: &Measured| format!("{:.0}%", 100.0 * run.agreement);
     let mut text = format!(
         "Take {}: {} of processor time ({} on the clock), an error of {:.1e} of the best score, and {} of the first {FIRST} rows of the \
          reference, which has {} times the rotations of the default, within {:.3} of one of its own.",
@@ -67,30 +91,13 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
             share(default)
         );
     }
-    let quick = || {
-        runs()
-            .filter(|run| run.cost() <= 0.5 * take.cost())
-            .max_by(|a, b| {
-                let cheaper = b.cost().total_cmp(&a.cost());
-                a.agreement.total_cmp(&b.agreement).then(cheaper)
-            })
-    };
-    text += &match quick() {
-        Some(quick) if keeps(&quick) => format!(
-            " In half the time or less, {} ({}) finds {}, at an error of {:.1e}.",
-            told(quick),
-            seconds(quick.cost()),
-            share(quick),
-            quick.error.rms
-        ),
-        Some(quick) => format!(
-            " No setting that takes half the time or less keeps the answer: the best, {} ({}), finds {}.",
-            told(quick),
-            seconds(quick.cost()),
-            share(quick)
-        ),
-        None => " No setting takes half the time or less.".to_owned(),
-    };
+    let quick = runs()
+        .filter(|run| run.cost() <= 0.5 * take.cost())
+        .max_by(|a, b| {
+            let cheaper = b.cost().total_cmp(&a.cost());
+            a.agreement.total_cmp(&b.agreement).then(cheaper)
+        });
+    text += &quick_text(quick, keeps);
     let sharper = runs()
         .filter(|run| {
             run.same_score(&default.setting.options) && run.error.rms <= 0.5 * take.error.rms

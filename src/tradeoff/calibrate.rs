@@ -5,10 +5,11 @@ use knotdock_scoring::terms::pose;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 
+use crate::dock::effect_decisions::Decision;
 use crate::dock::outcome::StageTime;
 use crate::dock::plan::{DockPlan, plan_scene};
 use crate::dock::run::dock;
-use crate::dock::scene::{Decision, LengthUnit, Scene};
+use crate::dock::scene::{LengthUnit, Scene};
 use crate::error::SearchError;
 use crate::options::DockOptions;
 use crate::progress::Progress;

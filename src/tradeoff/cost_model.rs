@@ -240,8 +240,9 @@ impl Workload {
     }
 }
 
-/// Fields that a tolerance needs: two of shape, two of electrostatics, three of the contact potential at 1e-2, fewer where more error is
-/// allowed, and where all balls are alike one.
+/// Number of components that a tolerance needs.
+///
+/// At 1e-2 each effect needs those of its definition, and shape one where all balls are alike. Where more error is allowed, fewer do.
 fn expected_rank(plan: &DockPlan) -> f64 {
     let tolerance = plan.options.kernel.tolerance;
     let share = match tolerance {
@@ -251,18 +252,13 @@ fn expected_rank(plan: &DockPlan) -> f64 {
         _ => 1.15,
     };
     let alike = plan.radii == [1, 1];
-    let at_default = [
-        (Effect::Shape, if alike { 1.0 } else { 2.0 }),
-        (Effect::Electrostatics, 2.0),
-        (Effect::Contact, 3.0),
-        (Effect::Restraint, 1.0),
-    ];
-    let fields: f64 = at_default
-        .into_iter()
-        .filter(|(effect, _)| plan.is_on(*effect))
-        .map(|(_, fields)| fields)
-        .sum();
-    (share * fields).max(1.0)
+    let components = |effect: Effect| match effect {
+        Effect::Shape if alike => 1.0,
+        _ => effect.definition().components,
+    };
+    let on = Effect::ALL.into_iter().filter(|effect| plan.is_on(*effect));
+    let components: f64 = on.map(components).sum();
+    (share * components).max(1.0)
 }
 
 /// A setting of the fast path with the error that it makes.

@@ -212,6 +212,16 @@ pub struct Refused {
     pub reason: String,
 }
 
+impl Refused {
+    /// A setting that ended in an error.
+    pub(crate) fn new(setting: &Setting, error: impl std::fmt::Display) -> Self {
+        Self {
+            setting: setting.name.clone(),
+            reason: error.to_string(),
+        }
+    }
+}
+
 /// What changes are typed as, without dashes.
 fn typed(changes: &[Change]) -> String {
     let typed: Vec<String> = changes.iter().map(Change::argument).collect();
@@ -219,6 +229,11 @@ fn typed(changes: &[Change]) -> String {
 }
 
 impl Setting {
+    /// Whether a sweep means nothing without it.
+    pub(crate) fn is_needed(&self) -> bool {
+        matches!(self.parameter, Parameter::Default | Parameter::Reference)
+    }
+
     /// The default with some changes.
     fn new(
         parameter: Parameter,

@@ -44,34 +44,12 @@ pub fn sweep(
     progress: &dyn SweepProgress,
 ) -> Result<Tradeoff, PairError> {
     let mut preparer = Preparer::new(pair, default, &first);
-    let planned = Planned {
-        spacing: first.plan.spacing,
-        refined: first.plan.refined(),
-    };
     let body = RigidBody::new(&first.points);
     let mut refused: Vec<Refused> = Vec::new();
-    let mut ready: Vec<(Setting, PreparedPair)> = Vec::new();
-    let (settings, out_of_range) = settings(default, planned, parameters)?;
-    for left_out in out_of_range {
+    let ready = ready(first, default, parameters, &mut preparer, |left_out| {
         progress.refused(&left_out);
         refused.push(left_out);
-    }
-    let mut settings = settings.into_iter();
-    ready.extend(settings.next().map(|default| (default, first)));
-    for setting in settings {
-        match preparer.prepare(&setting.options) {
-            Ok(prepared) => ready.push((setting, prepared)),
-            Err(error) if setting.parameter == Parameter::Reference => return Err(error),
-            Err(error) => {
-                let left_out = Refused {
-                    setting: setting.name,
-                    reason: error.to_string(),
-                };
-                progress.refused(&left_out);
-                refused.push(left_out);
-            }
-        }
-    }
+    })?;
     // Nothing is searched with it, so it needs no memory for that.
     let exact = preparer.prepare(&default.changed(|options| {
         let tolerance = &mut options.kernel.tolerance;
@@ -84,16 +62,9 @@ pub fn sweep(
         progress.runs(index + 1, setting);
         let (measured, poses) = match run(setting, prepared, evaluator, progress) {
             Ok(run) => run,
-            Err(error)
-                if matches!(setting.parameter, Parameter::Default | Parameter::Reference) =>
-            {
-                return Err(error.into());
-            }
+            Err(error) if setting.is_needed() => return Err(error.into()),
             Err(error) => {
-                let left_out = Refused {
-                    setting: setting.name.clone(),
-                    reason: error.to_string(),
-                };
+                let left_out = Refused::new(setting, error);
                 progress.refused(&left_out);
                 refused.push(left_out);
                 continue;
@@ -136,6 +107,33 @@ pub fn sweep(
         radius: default.ranking.cluster_radius,
         with_native: evaluator.is_some(),
     })
+}
+
+/// The settings that can be run, each prepared; the others go to `refuse`.
+fn ready(
+    first: PreparedPair,
+    default: &DockOptions,
+    parameters: &[Parameter],
+    preparer: &mut Preparer,
+    mut refuse: impl FnMut(Refused),
+) -> Result<Vec<(Setting, PreparedPair)>, PairError> {
+    let planned = Planned {
+        spacing: first.plan.spacing,
+        refined: first.plan.refined(),
+    };
+    let (settings, out_of_range) = settings(default, planned, parameters)?;
+    out_of_range.into_iter().for_each(&mut refuse);
+    let mut settings = settings.into_iter();
+    let mut ready = Vec::new();
+    ready.extend(settings.next().map(|default| (default, first)));
+    for setting in settings {
+        match preparer.prepare(&setting.options) {
+            Ok(prepared) => ready.push((setting, prepared)),
+            Err(error) if setting.parameter == Parameter::Reference => return Err(error),
+            Err(error) => refuse(Refused::new(&setting, error)),
+        }
+    }
+    Ok(ready)
 }
 
 /// What the reference ranks first, and the reference score of each.

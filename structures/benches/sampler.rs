@@ -1,18 +1,20 @@
-//! The paper's Tables 1 and 2 again, on the Stanford bunny: how many balls each sampler needs, how near they come, and the time.
+//! The paper's Tables 1 and 2 again, on the Stanford bunny: how many balls each sampler needs, how near they come, and
+//! the time.
 //!
-//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/sampling.md; `-- 15` goes no further than m = 2^15. Counts are given
-//! only where the inclusions and the Hausdorff bounds were measured to hold; anything else ends the run with an error.
+//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/sampling.md; `-- 15` goes no further
+//! than m = 2^15. Counts are given only where the inclusions and the Hausdorff bounds were measured to hold; anything
+//! else ends the run with an error.
 
 use std::path::Path;
 
 use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, read};
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::ball_tree::BallTree;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights;
-use knotdock_structures::sampler::{Method, Sampling, SetName, sample};
+use knotdock_structures::sampling::ball_tree::BallTree;
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights;
+use knotdock_structures::sampling::{Method, Sampling, SetName, sample};
 
 const MUS: [f64; 3] = [0.25, 0.5, 1.0];
 
@@ -68,11 +70,11 @@ fn run(solid: &Solid, per_axis: usize, method: Method) -> Run {
     let (start, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let sampling = sample(solid, per_axis, method).expect("the bunny has an inside");
     let (wall, cpu) = (start.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
-    let referee = HausdorffMeter::new(solid, &sampling.field);
+    let meter = HausdorffMeter::new(solid, &sampling.field);
     let fits = sampling
         .sets
         .iter()
-        .map(|set| referee.judge(&set.balls))
+        .map(|set| meter.measure(&set.balls))
         .collect();
     Run {
         sampling,
@@ -105,7 +107,7 @@ fn bounds_hold(run: &Run) -> bool {
     near && held && a3.balls.iter().all(|ball| all.contains(&bits(ball)))
 }
 
-fn bits(ball: &knotdock_structures::sampler::Ball) -> [u64; 4] {
+fn bits(ball: &knotdock_structures::sampling::Ball) -> [u64; 4] {
     let [x, y, z] = ball.center;
     [x, y, z, ball.radius].map(f64::to_bits)
 }
@@ -169,14 +171,14 @@ fn main() {
                 run.cpu
             );
             if index == 0 {
-                let referee = HausdorffMeter::new(&solid, &run.sampling.field);
+                let meter = HausdorffMeter::new(&solid, &run.sampling.field);
                 others.push(row(
                     paper,
                     "B&I A3, mu 0.25",
                     &format!("{}", paper.n3[0]),
                     &run,
                     2,
-                    referee.volume(),
+                    meter.volume(),
                 ));
             }
         }

@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 
 use cpu_time::ProcessTime;
 use knotdock_structures::mesh::{Solid, from_triangles};
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::{Method, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::{Method, sample};
 
 type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
@@ -101,9 +101,9 @@ fn seconds((positions, triangles): &Surface) -> [f64; 4] {
     let method = Method::BehandishIlies(DecompositionOptions::default());
     let sampling = sample(&solid, 16, method).expect("it has an inside");
     let sampled = start.elapsed();
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     for set in &sampling.sets {
-        referee.judge(&set.balls);
+        meter.measure(&set.balls);
     }
     let judged = start.elapsed();
     let [read, sampled, judged] = [read, sampled, judged].map(|time| time.as_secs_f64());

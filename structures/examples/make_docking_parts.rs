@@ -1,10 +1,12 @@
-//! Writes pairs of parts that fit together, to try `knotdock dock` on: FOLDER/peg_receptor.stl, FOLDER/peg_ligand.stl and so on, each ligand
-//! turned and moved away, and FOLDER/parts.json with the symmetries of each and the pose that puts it back.
+//! Writes pairs of parts that fit together, to try `knotdock dock` on.
+//!
+//! The files are FOLDER/peg_receptor.stl, FOLDER/peg_ligand.stl and so on, each ligand turned and moved away.
+//! FOLDER/parts.json has the symmetries of each and the pose that puts it back.
 //!
 //!     cargo run -p knotdock-structures --example make_docking_parts -- FOLDER [CLEARANCE]
 //!
-//! The clearance is the least gap between the two parts of a pair in their right pose, in shares of about one part's length; .055 by
-//! default, which is 2 (eps_A + eps_B) of grids of 2^18 nodes and a little more.
+//! The clearance is the smallest gap between the two parts of a pair in their right pose, in shares of about one part's
+//! length. The default .055 is 2 (eps_A + eps_B) of grids of 2^18 nodes and a little more.
 
 mod docking_parts;
 

@@ -5,9 +5,10 @@
 //! cargo run -p knotdock-structures --example make_proteins -- 4e43 DIMER FOLDER
 //! ```
 //!
-//! Everything goes through the crate's own reader and writer. What is docked, the unbound ligand or one molecule of the dimer, is turned by a rotation
-//! drawn once and for all from a seed, and its centroid is moved to the origin, so that its start says nothing of where it binds. The
-//! bound pair stays in its common frame; the bound receptor takes the residue numbers of the unbound one.
+//! Everything goes through the crate's own reader and writer. What is docked, the unbound ligand or one molecule of the
+//! dimer, is turned by a rotation drawn once from a seed, and its centroid is moved to the origin. So its start says
+//! nothing of where it binds. The bound pair stays in its common frame; the bound receptor takes the residue numbers of
+//! the unbound one.
 
 use std::error::Error;
 use std::fs::File;
@@ -169,7 +170,8 @@ fn rotate([w, a, b, c]: [f64; 4], [x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// A uniform random rotation: Shoemake, Graphics Gems III (1992) 124-132, on SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
+/// A uniform random rotation: Shoemake, Graphics Gems III (1992) 124-132, on SplitMix64 (Steele, Lea & Flood, OOPSLA
+/// 2014).
 fn random_quaternion(seed: u64) -> [f64; 4] {
     let mut state = seed;
     let mut uniform = || {

@@ -1,9 +1,9 @@
 //! Volumes of unions of balls, and what two such unions share.
 //!
-//! Parallel lines cross the balls on a square grid; the pieces that a line has inside are known exactly, and their summed length
-//! times the area of a cell is the volume. Three sets of lines, along x, y and z, give three values: their mean is what is
-//! reported, and the farthest of them from it is the error. Volumes are in the cube of the knots' unit (Å^3); weights play no
-//! part. O(balls x lines through one).
+//! Parallel lines cross the balls on a square grid; the pieces that a line has inside are known exactly, and their
+//! summed length times the area of a cell is the volume. Three sets of lines, along x, y and z, give three values:
+//! their mean is what is reported, and the farthest of them from it is the error. Volumes are in the cube of the knots'
+//! unit (Å^3); weights play no part. O(balls x lines through one).
 
 use super::Knots;
 
@@ -45,7 +45,8 @@ impl Overlap {
 const LINES_A_RADIUS: f64 = 16.0;
 /// Balls up to which there are so many: of more the errors cancel, and fewer lines do as well.
 const MANY: f64 = 10_000.0;
-/// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer wait.
+/// Most lines an axis across all balls, so that a huge ball among small ones ends in a larger error, not in a longer
+/// wait.
 const MAX_LINES: f64 = 4096.0;
 
 /// Volume of the union of balls.
@@ -60,7 +61,7 @@ pub fn union_volume(balls: &Knots) -> Volume {
 
 /// Volumes of two unions of balls, in one frame, and of what they share.
 pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
-    let [a, b, both] = if apart(first, second) {
+    let [a, b, both] = if are_disjoint(first, second) {
         let ([a, ..], [b, ..]) = (measure(&[first]), measure(&[second]));
         [a, b, std::array::from_fn(|axis| a[axis] + b[axis])]
     } else {
@@ -84,7 +85,7 @@ pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
 }
 
 /// Whether the boxes about two sets do not meet.
-fn apart(first: &Knots, second: &Knots) -> bool {
+fn are_disjoint(first: &Knots, second: &Knots) -> bool {
     let largest = |set: &Knots| set.radii.iter().copied().fold(0.0, f64::max);
     let reach = largest(first) + largest(second);
     let ((low, high), (other_low, other_high)) = (first.bounds(), second.bounds());
@@ -306,7 +307,7 @@ mod tests {
     fn many_balls_need_fewer_lines() {
         let side = 28;
         let place =
-            |i: usize, step: f64, stretch: f64| 4.4 * i as f64 + (step * i as f64).sin() * stretch;
+            |i: usize, step: f64, height: f64| 4.4 * i as f64 + (step * i as f64).sin() * height;
         let list: Vec<([f64; 3], f64)> = (0..side * side * side)
             .map(|i| {
                 let [x, y, z] = [i % side, i / side % side, i / side / side];

@@ -16,7 +16,8 @@ pub struct Knots {
     pub charges: Vec<f64>,
     /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
     pub contact_types: Vec<Option<u8>>,
-    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where the knots carry none.
+    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where
+    /// the knots carry none.
     pub atom_kinds: Vec<Option<u8>>,
 }
 

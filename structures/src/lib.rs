@@ -6,9 +6,9 @@
 //! - A **knot** is a ball: a centre, a radius and a weight (Behandish & Ilieş, CAD 70, 2016, section 2.2).
 //! - Chains carry the author's names (`auth_asym_id` in mmCIF), residues the author's numbers and insertion codes.
 //!
-//! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes
-//! PDB and mmCIF files, with the feature `mesh` (default) it reads meshes and samples solids by balls; without them only
-//! [`Knots`], the volumes of their balls and [`Conformers`] remain.
+//! This crate knows nothing of scores or transforms. With the feature `molecule` (default) it reads and writes PDB and
+//! mmCIF files. With the feature `mesh` (default) it reads meshes and samples solids by balls. Without them [`Knots`],
+//! the volumes of their balls, [`Conformers`], [`neighbours`] and [`numeric`] remain.
 
 pub mod ball_union;
 mod conformers;
@@ -21,7 +21,7 @@ pub mod neighbours;
 pub mod numeric;
 
 #[cfg(feature = "mesh")]
-pub mod sampler;
+pub mod sampling;
 #[cfg(feature = "mesh")]
 pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]

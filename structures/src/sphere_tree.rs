@@ -1,13 +1,13 @@
 //! A hierarchy of bounding balls over a set of balls, and levels of detail cut from it.
 //!
-//! Hubbard's bottom-up merging (ACM Transactions on Graphics 15:3, 1996), as B&I suggest for A3: the two balls whose smallest
-//! enclosing ball is least become its children, until one is left. Every ball holds those below it, so any cut through the
-//! tree covers whatever the leaves cover.
+//! Hubbard's bottom-up merging (ACM Transactions on Graphics 15:3, 1996), as B&I suggest for A3: the two balls whose
+//! smallest enclosing ball is least become its children, until one is left. Every ball holds those below it, so any cut
+//! through the tree covers whatever the leaves cover.
 //!
 //! Building takes O(n^2) time as a rule and O(n) memory: half a second for 3,000 balls.
 
 use crate::mesh::vector::{along, distance, subtract};
-use crate::sampler::Ball;
+use crate::sampling::Ball;
 
 /// A node: a ball, and the two that it was made of unless it is a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,17 +27,17 @@ pub struct SphereTree {
 
 /// The smallest ball that holds two.
 pub fn enclosing(a: &Ball, b: &Ball) -> Ball {
-    let apart = distance(a.center, b.center);
-    if apart + b.radius <= a.radius {
+    let spacing = distance(a.center, b.center);
+    if spacing + b.radius <= a.radius {
         return *a;
     }
-    if apart + a.radius <= b.radius {
+    if spacing + a.radius <= b.radius {
         return *b;
     }
-    let radius = 0.5 * (apart + a.radius + b.radius);
+    let radius = 0.5 * (spacing + a.radius + b.radius);
     let center = along(
         a.center,
-        (radius - a.radius) / apart,
+        (radius - a.radius) / spacing,
         subtract(b.center, a.center),
     );
     // Rounding of the centre must not let a child peep out.
@@ -120,8 +120,8 @@ impl SphereTree {
         self.leaves
     }
 
-    /// The level of detail with at most `count` balls (one at least): from the root down, the largest ball is replaced by the
-    /// two below it. It covers what the leaves cover.
+    /// The level of detail with at most `count` balls (one at least): from the root down, the largest ball is replaced
+    /// by the two below it. It covers what the leaves cover.
     pub fn level(&self, count: usize) -> Vec<Ball> {
         let mut cut = vec![self.nodes.len() - 1];
         while cut.len() < count {
@@ -153,8 +153,8 @@ fn partnered(nodes: &[SphereNode], open: &[Open], node: usize) -> Open {
     for other in open.iter().filter(|other| other.node != node) {
         let ball = nodes[other.node].ball;
         // The radius of the enclosing ball.
-        let apart = distance(own.center, ball.center);
-        let cost = (0.5 * (apart + own.radius + ball.radius))
+        let spacing = distance(own.center, ball.center);
+        let cost = (0.5 * (spacing + own.radius + ball.radius))
             .max(own.radius)
             .max(ball.radius);
         if cost < best.cost {

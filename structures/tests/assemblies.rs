@@ -7,11 +7,12 @@ mod pdb_text;
 use std::path::Path;
 
 use knotdock_structures::molecule::{
-    BuiltAssembly, DropKind, InputSpec, Molecule, ReadError, ReadOptions, read, read_listed,
+    BuiltAssembly, DropKind, InputSpec, Molecule, ReadError, ReadOptions, read, read_with_fates,
 };
 use pdb_text::{ATOM, Line, text};
 
-/// Two glycine carbons of chain A, at (5, 1, 2) and (6, 1, 2), one of chain B and a zinc of chain A on the axis, (0, 0, 2).
+/// Two glycine carbons of chain A, at (5, 1, 2) and (6, 1, 2), one of chain B and a zinc of chain A on the axis, (0, 0,
+/// 2).
 fn chains() -> String {
     let zinc = "HETATM    9 ZN    ZN A 301       0.000   0.000   2.000  0.50 20.00          ZN  \n";
     let atoms = [
@@ -104,23 +105,23 @@ fn a_dimer_is_built_of_one_chain() {
         on_axes: 1,
     };
     assert_eq!(report.assembly, Some(expected));
-    let told = report.to_string();
+    let shown = report.to_string();
     assert!(
-        told.contains(
+        shown.contains(
             "biological assembly 1: 2 chains, of 2 in the file; 1 atom on its axes kept once"
         ),
-        "{told}"
+        "{shown}"
     );
     assert!(
-        told.contains("1 atom of chains outside the assembly (B)"),
-        "{told}"
+        shown.contains("1 atom of chains outside the assembly (B)"),
+        "{shown}"
     );
     assert!(
         report
             .warnings
             .iter()
             .all(|warning| !warning.contains("--assembly")),
-        "{told}"
+        "{shown}"
     );
 
     let second = built("", "2").unwrap();
@@ -135,7 +136,7 @@ fn a_dimer_is_built_of_one_chain() {
 }
 
 #[test]
-fn every_atom_is_listed_with_the_copies() {
+fn every_atom_has_a_fate_with_the_copies() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.pdb");
     std::fs::write(&path, dimer()).unwrap();
@@ -143,7 +144,7 @@ fn every_atom_is_listed_with_the_copies() {
         assembly: Some("1".to_owned()),
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_listed(&InputSpec::whole(&path), &options).unwrap();
+    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
     let outside: Vec<_> = listed
         .iter()
         .filter(|entry| entry.dropped.is_some())
@@ -168,12 +169,12 @@ fn a_unit_that_is_no_assembly_is_warned_of() {
             .collect();
         of_assemblies.join(" ")
     };
-    let told = warned(&dimer(), "");
+    let shown = warned(&dimer(), "");
     assert!(
-        told.contains(
+        shown.contains(
             "assembly 1 (2 chains in the file, 2 in the assembly): --assembly 1 builds it"
         ),
-        "{told}"
+        "{shown}"
     );
     assert_eq!(warned(&dimer(), ":A"), "");
     let whole = format!(
@@ -221,9 +222,9 @@ fn what_cannot_be_built_says_why() {
         assert!(error.file().is_some() && error.remedy().contains("--assembly"));
         (error.line(), error.to_string())
     };
-    let (line, told) = refused(&dimer(), "3");
+    let (line, shown) = refused(&dimer(), "3");
     assert_eq!(
-        (line, told.as_str()),
+        (line, shown.as_str()),
         (None, "there is no assembly '3'; the file has 1, 2")
     );
     for (from, to, expected_line, what) in [
@@ -247,16 +248,16 @@ fn what_cannot_be_built_says_why() {
             "before the chains",
         ),
     ] {
-        let (line, told) = refused(&dimer().replacen(from, to, 1), "1");
-        assert_eq!(line, Some(expected_line), "{told}");
-        assert!(told.contains(what), "{told}");
+        let (line, shown) = refused(&dimer().replacen(from, to, 1), "1");
+        assert_eq!(line, Some(expected_line), "{shown}");
+        assert!(shown.contains(what), "{shown}");
     }
     // An operator that no coordinates survive.
     let far = dimer().replacen("BIOMT1   2 -1.000000", "BIOMT1   2  9e307   ", 1);
-    let (line, told) = refused(&far, "1");
+    let (line, shown) = refused(&far, "1");
     assert!(
-        line.is_some() && told.contains("out of all bounds"),
-        "{told}"
+        line.is_some() && shown.contains("out of all bounds"),
+        "{shown}"
     );
     let cut = dimer()
         .replacen(IDENTITY.lines().last().unwrap(), "", 3)
@@ -319,7 +320,8 @@ fn mmcif_goes_by_the_names_of_the_archive() {
             ("A-2", 301, [17.0, 1.0, 2.0]),
         ]
     );
-    // Lists that are text fields of several lines, rows of a loop that add up to one assembly, names that are no numbers.
+    // Lists that are text fields of several lines, rows of a loop that add up to one assembly, names that are no
+    // numbers.
     let rows = "loop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n\
                 PAU 1-3\n;X,\nY\n;\nPAU P Z";
     let molecule = built(rows, "PAU");
@@ -351,10 +353,10 @@ fn operators_combine_from_the_last_to_the_first() {
         let error = read_as(folder.path(), "x.cif", &text, "", Some("1")).unwrap_err();
         (error.line(), error.to_string())
     };
-    let (line, told) = refused("1-5");
+    let (line, shown) = refused("1-5");
     assert!(
-        line == Some(2) && told.contains("operator 4 is not in"),
-        "{line:?} {told}"
+        line == Some(2) && shown.contains("operator 4 is not in"),
+        "{line:?} {shown}"
     );
     assert!(refused("Q").1.contains("operator Q"));
     let many = format!("'{}'", "(1,2,3,P)".repeat(9));

@@ -1,4 +1,4 @@
-//! Damaged files are read or refused, and never break the parser behind the sieve.
+//! Damaged files are read or refused, and never break the parser behind the record filter.
 
 #![cfg(feature = "molecule")]
 
@@ -55,7 +55,7 @@ fn check(format: Format, changes: &[Change]) -> Result<(), TestCaseError> {
         Ok(molecule) => {
             prop_assert!(molecule.knots().is_ok());
         }
-        // The sieve let something through that pdbtbx refused or panicked on.
+        // The record filter let something through that pdbtbx refused or panicked on.
         Err(ReadError::Parser { what, .. }) => prop_assert!(false, "{what}"),
         Err(error) => {
             prop_assert!(!error.to_string().is_empty() && error.file().is_some());

@@ -195,8 +195,8 @@ fn cubes_about_an_edge_are_turned_one_by_one() {
 fn a_body_both_ways_round_is_taken_once() {
     let twice = |surface: Surface| surface.clone().and(&surface.inverted());
     let one = cube([0.0; 3], 10.0);
-    for apart in [20.0, 10.0] {
-        let other = cube([apart, 0.0, 0.0], 10.0);
+    for spacing in [20.0, 10.0] {
+        let other = cube([spacing, 0.0, 0.0], 10.0);
         for other in [twice(other.clone()), twice(other.clone().inverted())] {
             for surface in [one.clone().and(&other), other.clone().and(&one)] {
                 let report = with_volume(&surface, 2000.0);

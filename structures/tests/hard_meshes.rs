@@ -7,9 +7,9 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::mesh::{MeshFormat, MeshReport, Solid, parse};
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::{BallSet, Method, SampleError, SetName, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::{BallSet, Method, SampleError, SetName, knots, sample};
 use solids::{Surface, cuboid, sphere};
 
 /// What was made of a shape, and how it fits, lengths as shares of eps.
@@ -32,14 +32,14 @@ fn sampled(surface: &Surface, per_axis: usize) -> Sampled {
         Method::BehandishIlies(DecompositionOptions::default()),
     )
     .unwrap();
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     let epsilon = sampling.field.grid.epsilon();
-    let volume = referee.volume() * solid.frame().unit.powi(3);
+    let volume = meter.volume() * solid.frame().unit.powi(3);
     let fits = sampling
         .sets
         .iter()
         .map(|set| {
-            let mut fit = referee.judge(&set.balls);
+            let mut fit = meter.measure(&set.balls);
             for length in [
                 &mut fit.hausdorff_inward,
                 &mut fit.hausdorff_outward,
@@ -232,8 +232,8 @@ fn an_inverted_mesh_is_the_solid_turned_right() {
     assert_eq!(inverted.inside_nodes, right.inside_nodes);
 }
 
-/// Two balls that cross: their union. parry's inside test by pseudo-normals calls points of one ball near the other's wall
-/// within it outside; a winding number does not.
+/// Two balls that cross: their union. parry's inside test by pseudo-normals calls points of one ball near the other's
+/// wall within it outside; a winding number does not.
 #[test]
 fn a_mesh_that_intersects_itself() {
     let (a, b) = (sphere([0.0; 3], 1.0, 20), sphere([1.0, 0.0, 0.0], 1.0, 20));
@@ -270,8 +270,8 @@ fn degenerate_triangles_do_not_change_the_solid() {
     }
 }
 
-/// A curved sheet: all but a tenth of what would close it is missing, and only a sliver on its hollow side has a winding
-/// number above one half. Where no ball fits at all, that is said.
+/// A curved sheet: all but a tenth of what would close it is missing, and only a sliver on its hollow side has a
+/// winding number above one half. Where no ball fits at all, that is said.
 #[test]
 fn a_sheet_has_next_to_no_inside() {
     let ball = sphere([0.0; 3], 1.0, 40);
@@ -327,9 +327,9 @@ fn a_million_triangles() {
         start.elapsed().as_secs_f64(),
         sampling.steps
     );
-    let referee = HausdorffMeter::new(&solid, &sampling.field);
+    let meter = HausdorffMeter::new(&solid, &sampling.field);
     for set in &sampling.sets {
-        let fit = referee.judge(&set.balls);
+        let fit = meter.measure(&set.balls);
         println!("{:?}: {} balls, {fit:?}", set.name, set.balls.len());
         let epsilon = sampling.field.grid.epsilon();
         assert!(fit.hausdorff_inward <= epsilon && fit.outward_bound <= epsilon * (1.0 + 1e-12));

@@ -77,8 +77,8 @@ fn archive_names_stand_in_for_missing_author_names() {
 
 #[test]
 fn decimals_are_read_exactly() {
-    // pdbtbx sums decimals digit by digit, which is off by an ulp, and wraps integers above 2^32; the number in brackets
-    // is a standard uncertainty.
+    // pdbtbx sums decimals digit by digit, which is off by an ulp, and wraps integers above 2^32; the number in
+    // brackets is a standard uncertainty.
     let file =
         format!("{HEAD}ATOM 1 C CA . GLY A 1 ? 14.219 -5000000000.5 1.25e1(3) 0.37 37.59 1 A 1\n");
     let atom = &read_text(&file, "").unwrap().atoms[0];

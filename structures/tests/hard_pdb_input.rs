@@ -212,7 +212,7 @@ fn what_is_no_structure_is_refused() {
 }
 
 #[test]
-fn gzip_is_told_by_its_magic_bytes() {
+fn gzip_is_detected_from_its_magic_bytes() {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
     encoder.write_all(ATOM.text().as_bytes()).unwrap();
     let packed = encoder.finish().unwrap();
@@ -286,7 +286,8 @@ fn bytes_that_are_not_utf8_stop_nothing_outside_the_atoms() {
     assert!(read_bytes("x.pdb", &tab, "").is_ok());
 }
 
-/// Found by a review: programs that let the serial number grow to the left wrote records that were dropped without a word.
+/// Found by a review: programs that let the serial number grow to the left wrote records that were dropped without a
+/// word.
 #[test]
 fn serial_numbers_may_grow_into_the_columns_before_theirs() {
     let wide = |record: &str| format!("{record}{}", &ATOM.text()[11..]);

@@ -52,7 +52,8 @@ fn dropped(molecule: &Molecule, kind: DropKind) -> Vec<(String, usize)> {
     })
 }
 
-/// Found by a user: the membrane planes that OPM writes into a file were docked as solid; HADDOCK's own example was refused for two mass centres.
+/// Found by a user: the membrane planes that OPM writes into a file were docked as solid; HADDOCK's own example was
+/// refused for two mass centres.
 #[test]
 fn records_that_are_no_atoms_are_dropped_and_reported() {
     let hetero = |name, residue, element| Line::of("HETATM", name, residue, 90, element);
@@ -133,8 +134,8 @@ fn records_that_are_no_atoms_are_dropped_and_reported() {
         let ligand = usize::from(molecule.atoms.iter().any(|atom| atom.name == "C1"));
         assert_eq!(molecule.atoms.len(), 11 + ligand);
         let count: usize = expected.iter().map(|(_, count)| count).sum();
-        let told = molecule.report.to_string();
-        assert!(told.contains(&format!("{count} pseudo-atom")), "{told}");
+        let shown = molecule.report.to_string();
+        assert!(shown.contains(&format!("{count} pseudo-atom")), "{shown}");
     }
 }
 

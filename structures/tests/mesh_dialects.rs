@@ -1,4 +1,5 @@
-//! What other programs write: dialects that are read, files of other kinds that are named, and parts that are left out with a warning.
+//! What other programs write: dialects that are read, files of other kinds that are named, and parts that are left out
+//! with a warning.
 
 #![cfg(feature = "mesh")]
 
@@ -42,10 +43,11 @@ fn is_cube_with_warning(name: &str, bytes: &[u8], words: &[&str]) {
     }
 }
 
-/// OFF is a stream of words by its definition, and ModelNet's files have the counts glued to the keyword; all of these were refused.
+/// OFF is a stream of words by its definition, and ModelNet's files have the counts glued to the keyword; all of these
+/// were refused.
 #[test]
 fn off_in_other_lines() {
-    // Without the colours of faces, which are told by the ends of lines alone.
+    // Without the colours of faces, which are detected from the ends of lines alone.
     let off = cube().off().replace(" 255 0 0", "").replace("# test\n", "");
     is_cube("plain.off", off.as_bytes());
     let body = off.strip_prefix("OFF\n").unwrap();
@@ -109,8 +111,8 @@ fn off_in_other_lines() {
     }
 }
 
-/// A text STL with a zero at its end, in UTF-16, without its first line, after a comment or in one line was taken for a binary one of
-/// 1,684,234,849 triangles, or had none.
+/// A text STL with a zero at its end, in UTF-16, without its first line, after a comment or in one line was taken for a
+/// binary one of 1,684,234,849 triangles, or had none.
 #[test]
 fn text_stl_of_many_kinds() {
     let stl = cube().stl_text();
@@ -273,7 +275,8 @@ fn binary_stl_whose_count_is_wrong() {
     }
 }
 
-/// Numbers that are none in properties that no mesh needs, blank lines, strips of triangles, indices of other types: all were refused.
+/// Numbers that are none in properties that no mesh needs, blank lines, strips of triangles, indices of other types:
+/// all were refused.
 #[test]
 fn ply_dialects() {
     let ply = cube().ply_text();

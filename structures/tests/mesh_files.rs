@@ -25,7 +25,8 @@ fn all_formats(surface: &Surface) -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
     ]
 }
 
-/// A byte order mark before the first vertex, or a comment that ends with a backslash before another, takes neither away; lines that go on go on.
+/// A byte order mark before the first vertex, or a comment that ends with a backslash before another, takes neither
+/// away; lines that go on go on.
 #[test]
 fn marks_and_comments_take_no_vertex_away() {
     let cube = unit_cube();
@@ -248,8 +249,8 @@ fn files_that_are_no_meshes() {
     ));
 }
 
-/// Every file cut at every byte, and every byte changed: an answer or an error, never a panic, an endless loop or a huge
-/// allocation.
+/// Every file cut at every byte, and every byte changed: an answer or an error, never a panic, an endless loop or a
+/// huge allocation.
 #[test]
 fn damaged_files_never_panic() {
     let tetrahedron = Surface {

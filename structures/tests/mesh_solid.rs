@@ -43,7 +43,8 @@ fn depth_in_and_about_a_box() {
     }
 }
 
-/// The polyhedron's vertices lie on the sphere, so its depth is at most that of the ball and less by at most the sagitta.
+/// The polyhedron's vertices lie on the sphere, so its depth is at most that of the ball and less by at most the
+/// sagitta.
 #[test]
 fn depth_in_and_about_a_ball() {
     let (radius, rings) = (0.5, 60);
@@ -124,7 +125,8 @@ fn the_fast_inside_test_is_the_slow_one() {
     }
 }
 
-/// Both sides of every triangle, as programs for pictures write them, bound nothing; the surface twice has twice the volume.
+/// Both sides of every triangle, as programs for pictures write them, bound nothing; the surface twice has twice the
+/// volume.
 #[test]
 fn a_surface_that_is_there_twice_is_taken_once() {
     let ball = sphere([0.0; 3], 1.0, 8);
@@ -173,7 +175,8 @@ fn triangles_and_parts_that_face_the_wrong_way_are_turned() {
     }
 }
 
-/// A surface whose triangles have corners of their own, a little apart from their neighbours', as many programs write them.
+/// A surface whose triangles have corners of their own, a little apart from their neighbours', as many programs write
+/// them.
 fn in_pieces(surface: &Surface) -> Surface {
     let mut pieces = Surface {
         positions: Vec::new(),
@@ -253,7 +256,8 @@ fn pieces_of_a_surface_are_turned_together() {
     }
 }
 
-/// Boxes that share an edge and both face inward, and boxes that overlap, of which one does, whichever of its corners comes first.
+/// Boxes that share an edge and both face inward, and boxes that overlap, of which one does, whichever of its corners
+/// comes first.
 #[test]
 fn touching_and_overlapping_parts_are_turned() {
     let touching = cuboid([0.0; 3], [1.0; 3]).and(&cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
@@ -317,7 +321,7 @@ fn triangles_without_area_do_no_harm() {
 }
 
 #[test]
-fn samples_cover_the_surface_as_densely_as_asked() {
+fn samples_cover_the_surface_as_densely_as_requested() {
     let surface = cuboid([0.0; 3], [1.0, 0.1, 0.001]);
     let (mesh, _) = surface.mesh();
     let solid = Solid::new(&mesh).unwrap();

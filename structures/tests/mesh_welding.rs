@@ -1,4 +1,5 @@
-//! Vertices in one place are one: bridges of polygons with holes, seams within the rounding of numbers, and what must stay apart.
+//! Vertices in one place are one: bridges of polygons with holes, seams within the rounding of numbers, and what must
+//! stay apart.
 
 #![cfg(feature = "mesh")]
 
@@ -66,8 +67,9 @@ fn hole(middle: [f64; 2], radius: f64, corners: usize, first: f64) -> Vec<[f64; 
         .collect()
 }
 
-/// A cap with a hole is one polygon, whose bridge is run through both ways. Where the corners of the bridge were other vertices in the
-/// same places, as exporters without shared vertices write, the hole was filled: a plate of 168 had a volume of 200.
+/// A cap with a hole is one polygon, whose bridge is run through both ways. Where the corners of the bridge were other
+/// vertices in the same places, as exporters without shared vertices write, the hole was filled: a plate of 168 had a
+/// volume of 200.
 #[test]
 fn polygons_with_bridges_to_holes() {
     let rim = [[0., 0.], [10., 0.], [10., 10.], [0., 10.]];
@@ -125,16 +127,16 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         .sqrt()
 }
 
-/// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number that looks random
-/// from `low` to `high`; every other triangle turned over if `turned`.
-fn meshed_apart(
+/// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number
+/// that looks random from `low` to `high`; every other triangle turned over if `turned`.
+fn meshed_separately(
     surface: &Surface,
     low: i64,
     high: i64,
     turned: bool,
     step: impl Fn(f64, i64) -> f64,
 ) -> Surface {
-    let mut apart = Surface::default();
+    let mut separate = Surface::default();
     let mut state: u64 = 1;
     let mut random = |count: i64| {
         state = state
@@ -143,10 +145,10 @@ fn meshed_apart(
         (state >> 33) as i64 % count
     };
     for triangle in &surface.triangles {
-        let start = apart.positions.len() as u32;
+        let start = separate.positions.len() as u32;
         for &corner in triangle {
             let position = surface.positions[corner as usize];
-            apart
+            separate
                 .positions
                 .push(position.map(|x| step(x, low + random(high - low + 1))));
         }
@@ -154,9 +156,9 @@ fn meshed_apart(
         if turned && random(2) == 1 {
             corners.swap(0, 1);
         }
-        apart.triangles.push(corners);
+        separate.triangles.push(corners);
     }
-    apart
+    separate
 }
 
 /// A neighbour among the `float`s.
@@ -164,25 +166,25 @@ fn ulps(x: f64, steps: i64) -> f64 {
     f64::from(f32::from_bits(((x as f32).to_bits() as i64 + steps) as u32))
 }
 
-/// A ball at an offset of 100, its faces meshed apart: corners differ by a last bit of `float`, and triangles face either way. It was open
-/// throughout, had a volume of 9.2 in place of 4100, and took minutes.
+/// A ball at an offset of 100, its faces meshed apart: corners differ by a last bit of `float`, and triangles face
+/// either way. It was open throughout, had a volume of 9.2 in place of 4100, and took minutes.
 #[test]
 fn seams_within_the_rounding_of_a_float_are_closed() {
     let ball = sphere([100.0; 3], 10.0, 16).mapped(|p| p.map(|x| f64::from(x as f32)));
     let whole = ball.mesh().0.volume();
     for (low, high) in [(0, 1), (-1, 1)] {
         for turned in [false, true] {
-            let apart = meshed_apart(&ball, low, high, turned, ulps);
-            let (mesh, report) = read(&apart.stl_binary(), MeshFormat::Stl);
+            let separate = meshed_separately(&ball, low, high, turned, ulps);
+            let (mesh, report) = read(&separate.stl_binary(), MeshFormat::Stl);
             assert!(report.is_closed() && report.parts == 1, "{report}");
             assert_eq!(report.vertices, ball.positions.len());
             assert!(report.seam_vertices > 500 && report.weld_reach < 2e-5);
             assert!((mesh.volume() / whole - 1.0).abs() < 1e-5, "{report}");
             // Doubles that hold floats, as text and not.
             for (bytes, format) in [
-                (apart.ply_binary(false), MeshFormat::Ply),
-                (apart.ply_text().into_bytes(), MeshFormat::Ply),
-                (apart.obj().into_bytes(), MeshFormat::Obj),
+                (separate.ply_binary(false), MeshFormat::Ply),
+                (separate.ply_text().into_bytes(), MeshFormat::Ply),
+                (separate.obj().into_bytes(), MeshFormat::Obj),
             ] {
                 assert!(read(&bytes, format).1.is_closed(), "{format:?}");
             }
@@ -206,11 +208,11 @@ fn seams_within_the_digits_written_are_closed() {
         }),
     ];
     for (unit, write) in written {
-        let apart = meshed_apart(&ball, 0, 1, true, |x, steps| x + unit * steps as f64);
+        let separate = meshed_separately(&ball, 0, 1, true, |x, steps| x + unit * steps as f64);
         let mut obj = String::new();
         let mut stl = String::from("solid\n");
-        for t in &apart.triangles {
-            let corners = t.map(|corner| apart.positions[corner as usize]);
+        for t in &separate.triangles {
+            let corners = t.map(|corner| separate.positions[corner as usize]);
             stl += "facet normal 0 0 0\nouter loop\n";
             for position in corners {
                 let [x, y, z] = position.map(write);
@@ -236,14 +238,14 @@ fn seams_within_the_digits_written_are_closed() {
 fn seams_of_doubles() {
     let ball = sphere([100.0; 3], 10.0, 10);
     let next = |x: f64, steps: i64| f64::from_bits((x.to_bits() as i64 + steps) as u64);
-    let apart = meshed_apart(&ball, 0, 1, false, next);
+    let separate = meshed_separately(&ball, 0, 1, false, next);
     assert!(
-        read(apart.ply_text().as_bytes(), MeshFormat::Ply)
+        read(separate.ply_text().as_bytes(), MeshFormat::Ply)
             .1
             .is_closed()
     );
     // A millionth of a float's last bit is no rounding of a double.
-    let farther = meshed_apart(&ball, 0, 1, false, |x, steps| x + 1e-9 * steps as f64);
+    let farther = meshed_separately(&ball, 0, 1, false, |x, steps| x + 1e-9 * steps as f64);
     let (_, report) = read(farther.ply_text().as_bytes(), MeshFormat::Ply);
     assert!(!report.is_closed() && report.seam_vertices == 0);
 }
@@ -276,7 +278,8 @@ fn thin_features_are_no_seams() {
     assert!((mesh.volume() - 1.0).abs() < 1e-6);
 }
 
-/// Whole numbers are no rounding: a tray of 10 by 10 by 2 stays open at the top, and a slit as wide as a unit stays a slit.
+/// Whole numbers are no rounding: a tray of 10 by 10 by 2 stays open at the top, and a slit as wide as a unit stays a
+/// slit.
 #[test]
 fn few_digits_do_not_close_what_is_open() {
     let mut tray = cuboid([0.0; 3], [10.0, 10.0, 2.0]);
@@ -296,8 +299,8 @@ fn few_digits_do_not_close_what_is_open() {
     );
 }
 
-/// Open meshes finer than their numbers' rounding are left alone but for what lies within it, and no chain of vertices collapses:
-/// a sheet of many small triangles keeps its extent.
+/// Open meshes finer than their numbers' rounding are left alone but for what lies within it, and no chain of vertices
+/// collapses: a sheet of many small triangles keeps its extent.
 #[test]
 fn a_dense_sheet_does_not_collapse() {
     // Triangles a unit of rounding wide, each by itself, and a far one that makes the unit.

@@ -81,7 +81,8 @@ fn warned(molecule: &Molecule) -> bool {
     warnings.contains("--model all reads them as one")
 }
 
-/// Found by a user: of an assembly as the archive has it (`.pdb1`) half was read, and the report said no more than that a model was ignored.
+/// Found by a user: of an assembly as the archive has it (`.pdb1`) half was read, and the report said no more than that
+/// a model was ignored.
 #[test]
 fn models_beside_one_another_are_parts() {
     let dimer = read(
@@ -231,7 +232,7 @@ fn a_choice_of_models_is_read_as_it_is_written() {
     let [first, _] = halves();
     let one = read_by("x.pdb", &first, &of_model(ModelChoice::All)).unwrap();
     assert_eq!((one.atoms.len(), one.report.joined_models), (760, None));
-    // An assembly of models is asked for twice.
+    // An assembly of models is requested twice.
     let remark = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
         REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n\
         REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n\

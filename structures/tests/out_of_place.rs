@@ -29,8 +29,8 @@ fn warnings(molecule: &Molecule) -> String {
     molecule.report.warnings.join("\n")
 }
 
-/// Found by a user: a blank before the first record, as copying leaves it, cost the first atom and with it the charge of the amino end, without a
-/// word.
+/// Found by a user: a blank before the first record, as copying leaves it, cost the first atom and with it the charge
+/// of the amino end, without a word.
 #[test]
 fn a_shifted_record_is_read_and_named() {
     let sound = read_text(&joined(&inhibitor())).unwrap();
@@ -100,7 +100,8 @@ fn a_record_without_columns_is_refused() {
     assert_eq!(molecule.atoms.len(), 221);
 }
 
-/// Found by a user: a chain given twice, and a mutation beside what it replaced, had all atoms counted twice without a word.
+/// Found by a user: a chain given twice, and a mutation beside what it replaced, had all atoms counted twice without a
+/// word.
 #[test]
 fn atoms_of_two_chains_or_names_in_one_place_are_warned_of() {
     assert!(
@@ -210,11 +211,12 @@ fn a_blank_location_beside_a_lettered_one_is_an_alternative() {
         record: "HETATM",
         ..at("LIG", " CA ", 'A', 0.4, 30.0)
     };
-    let apart = [ATOM, water];
-    assert_eq!(read_text(&text(&apart)).unwrap().atoms.len(), 2);
+    let separate = [ATOM, water];
+    assert_eq!(read_text(&text(&separate)).unwrap().atoms.len(), 2);
 }
 
-/// Found by a user: HADDOCK merges a Fab's chains and numbers the second from where the first ends, with a gap: its amino end lost its charge.
+/// Found by a user: HADDOCK merges a Fab's chains and numbers the second from where the first ends, with a gap: its
+/// amino end lost its charge.
 #[test]
 fn the_second_of_two_merged_chains_keeps_its_amino_end() {
     let receptor = example("1ppe_receptor_unbound.pdb");
@@ -247,7 +249,7 @@ fn the_second_of_two_merged_chains_keeps_its_amino_end() {
         let text = name(&ended, chains[0]) + &name(&shifted, chains[1]);
         read_text(&text).unwrap().labels(7.0).report
     };
-    let (merged, apart) = (with(["A", "A"]), with(["A", "B"]));
-    assert_eq!(apart.termini, [2, 2]);
-    assert_eq!(merged, apart);
+    let (merged, separate) = (with(["A", "A"]), with(["A", "B"]));
+    assert_eq!(separate.termini, [2, 2]);
+    assert_eq!(merged, separate);
 }

@@ -6,7 +6,7 @@ mod pdb_text;
 
 use knotdock_structures::molecule::{
     AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, ModelChoice, Molecule, ReadError,
-    ReadOptions, Waters, read, read_listed,
+    ReadOptions, Waters, read, read_with_fates,
 };
 use pdb_text::{ATOM, Line, names, text};
 
@@ -34,7 +34,7 @@ fn mixture() -> String {
 }
 
 #[test]
-fn groups_are_kept_and_dropped_as_asked() {
+fn groups_are_kept_and_dropped_as_requested() {
     let read = |options: ReadOptions| {
         let molecule = read_by(&mixture(), &options).unwrap();
         names(&molecule).join(" ")
@@ -73,7 +73,8 @@ fn groups_are_kept_and_dropped_as_asked() {
     );
 }
 
-/// United-atom radii stand for hydrogens; where these are there, each atom has its own (Bondi 1964; Rowland and Taylor 1996).
+/// United-atom radii stand for hydrogens; where these are there, each atom has its own (Bondi 1964; Rowland and Taylor
+/// 1996).
 #[test]
 fn radii_are_all_atom_ones_only_where_hydrogens_are() {
     let options = ReadOptions {
@@ -192,7 +193,7 @@ fn models_of_mmcif_go_by_their_column() {
 
 /// What becomes of every atom, in the order of the file.
 #[test]
-fn every_atom_is_listed_with_the_reason() {
+fn every_atom_has_a_fate_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.pdb");
     let file = mixture() + &text(&[Line::at(7, " CB ", 'A', 0.2), Line::at(7, " CB ", 'B', 0.8)]);
@@ -201,7 +202,7 @@ fn every_atom_is_listed_with_the_reason() {
         hetatm: Hetatm::Drop,
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_listed(&InputSpec::whole(&path), &options).unwrap();
+    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
     let reasons: Vec<Option<DropKind>> = listed.iter().map(|entry| entry.dropped).collect();
     let dropped = |kind| Some(kind);
     assert_eq!(

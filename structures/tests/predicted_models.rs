@@ -7,7 +7,8 @@ mod pdb_text;
 use std::fmt::Write;
 
 use knotdock_structures::molecule::{
-    Confidence, ConfidenceSource, DropKind, InputSpec, ReadError, ReadOptions, read, read_listed,
+    Confidence, ConfidenceSource, DropKind, InputSpec, ReadError, ReadOptions, read,
+    read_with_fates,
 };
 use pdb_text::{read_bytes, read_text};
 
@@ -67,25 +68,25 @@ fn confidence_of(name: &str, text: &str) -> Option<Confidence> {
 }
 
 const SURE_OF_TEN: Confidence = Confidence {
-    told_by: ConfidenceSource::Values,
+    source: ConfidenceSource::Values,
     mean: 61.5,
     residues: 10,
     below_50: 3,
 };
 
 #[test]
-fn one_value_a_residue_tells_a_prediction() {
+fn one_value_a_residue_shows_a_prediction() {
     let text = glycines(10, |residue, _| rising(residue));
     assert_eq!(confidence_of("x.pdb", &text), Some(SURE_OF_TEN));
     // From 0 to 1, as some programs write it.
     let shares = glycines(10, |residue, _| rising(residue) / 100.0);
     assert_eq!(confidence_of("x.pdb", &shares), Some(SURE_OF_TEN));
-    let told = read_text(&text).unwrap().report.to_string();
+    let shown = read_text(&text).unwrap().report.to_string();
     assert!(
-        told.contains("mean pLDDT 61.5, 3 of 10 residues below 50"),
-        "{told}"
+        shown.contains("mean pLDDT 61.5, 3 of 10 residues below 50"),
+        "{shown}"
     );
-    assert!(told.contains("warning: 3 of 10 residues"), "{told}");
+    assert!(shown.contains("warning: 3 of 10 residues"), "{shown}");
 }
 
 /// B columns that are not one value a residue, or no share of a hundred, or low, or the same throughout, tell nothing.
@@ -154,8 +155,8 @@ fn an_experiment_rules_a_prediction_out() {
     );
 }
 
-/// ModelCIF names its scores: with pLDDT among them values may differ from atom to atom (AlphaFold 3), without it the column is
-/// something else, whatever it looks like.
+/// ModelCIF names its scores: with pLDDT among them values may differ from atom to atom (AlphaFold 3), without it the
+/// column is something else, whatever it looks like.
 #[test]
 fn scores_that_a_model_names_go_before_its_values() {
     let metrics = |first: &str, second: &str| {
@@ -166,7 +167,7 @@ fn scores_that_a_model_names_go_before_its_values() {
     let named = metrics("'mean' pLDDT", "pLDDT pLDDT");
     let by_atom = |residue: usize, atom: usize| rising(residue) + 0.5 * atom as f64 - 0.75;
     let expected = Confidence {
-        told_by: ConfidenceSource::Header,
+        source: ConfidenceSource::Header,
         ..SURE_OF_TEN
     };
     assert_eq!(
@@ -212,7 +213,7 @@ fn residues_below_the_limit_are_left_out_and_named() {
         (50.0, 7, ""),
         (93.0, 1, ""),
     ] {
-        let (molecule, listed) = read_listed(&spec, &options(least)).unwrap();
+        let (molecule, listed) = read_with_fates(&spec, &options(least)).unwrap();
         assert_eq!(molecule.atoms.len(), 4 * residues, "{least}");
         assert!(molecule.atoms.iter().all(|atom| atom.b_factor >= least));
         assert_eq!(molecule.report.confidence, Some(SURE_OF_TEN));
@@ -221,15 +222,15 @@ fn residues_below_the_limit_are_left_out_and_named() {
             .iter()
             .filter(|entry| entry.dropped == Some(DropKind::LowConfidence));
         assert_eq!(dropped.count(), 40 - 4 * residues);
-        let told = molecule.report.to_string();
+        let shown = molecule.report.to_string();
         let warning = "residues have a pLDDT below 50";
-        assert_eq!(told.contains(warning), !warned.is_empty(), "{told}");
-        assert!(told.contains(warned), "{told}");
+        assert_eq!(shown.contains(warning), !warned.is_empty(), "{shown}");
+        assert!(shown.contains(warned), "{shown}");
     }
-    let told = read(&spec, &options(50.0)).unwrap().report.to_string();
+    let shown = read(&spec, &options(50.0)).unwrap().report.to_string();
     assert!(
-        told.contains("12 atoms of 3 residues of low pLDDT (A 1, A 2, A 3)"),
-        "{told}"
+        shown.contains("12 atoms of 3 residues of low pLDDT (A 1, A 2, A 3)"),
+        "{shown}"
     );
     let none = read(&spec, &options(93.01)).unwrap_err();
     assert!(
@@ -244,7 +245,8 @@ fn residues_below_the_limit_are_left_out_and_named() {
     assert_eq!(read(&spec, &options(90.0)).unwrap().atoms.len(), 40);
 }
 
-/// The free inhibitor as Chai-1 and AlphaFold 3 write a prediction: a pLDDT for each atom, of residues 1 to 4 about 35 and of the others about 88.
+/// The free inhibitor as Chai-1 and AlphaFold 3 write a prediction: a pLDDT for each atom, of residues 1 to 4 about 35
+/// and of the others about 88.
 fn by_atom(scale: f64) -> String {
     let path = format!(
         "{}/examples/1ppe_ligand_unbound.pdb",
@@ -273,7 +275,7 @@ fn by_atom(scale: f64) -> String {
 fn values_by_atom_tell_a_prediction_where_they_are_distributed_as_one() {
     for scale in [1.0, 0.01] {
         let confidence = confidence_of("x.pdb", &by_atom(scale)).unwrap();
-        assert_eq!(confidence.told_by, ConfidenceSource::Values);
+        assert_eq!(confidence.source, ConfidenceSource::Values);
         assert_eq!((confidence.residues, confidence.below_50), (29, 4));
     }
     let text = format!("EXPDTA    X-RAY DIFFRACTION\n{}", by_atom(1.0));
@@ -332,7 +334,7 @@ fn the_users_word_is_taken_where_it_can_be_true() {
         let trusted = read_by(&scaled, true);
         let confidence = trusted.report.confidence.unwrap();
         assert_eq!(
-            (confidence.told_by, confidence.below_50),
+            (confidence.source, confidence.below_50),
             (ConfidenceSource::User, 6)
         );
         assert_eq!(trusted.atoms.len(), 16);

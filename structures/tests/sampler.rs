@@ -7,13 +7,13 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::mesh::{Solid, read};
-use knotdock_structures::sampler::ball_tree::BallTree;
-use knotdock_structures::sampler::decomposition::{DecompositionOptions, decompose};
-use knotdock_structures::sampler::feature_size::feature_size;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::hausdorff::HausdorffMeter;
-use knotdock_structures::sampler::skeletal_density::{Priority, SHARE_WIDTH, share};
-use knotdock_structures::sampler::{Ball, Method, SetName, sample};
+use knotdock_structures::sampling::ball_tree::BallTree;
+use knotdock_structures::sampling::decomposition::{DecompositionOptions, decompose};
+use knotdock_structures::sampling::feature_size::feature_size;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::hausdorff::HausdorffMeter;
+use knotdock_structures::sampling::skeletal_density::{Priority, SHARE_WIDTH, share};
+use knotdock_structures::sampling::{Ball, Method, SetName, sample};
 use solids::{Surface, cuboid, scattered, sphere};
 
 /// Past a wall thinner than anything the surface is far, and still no ball fits into the wall.
@@ -42,12 +42,12 @@ fn bunny() -> Solid {
 fn check_bounds(solid: &Solid, per_axis: usize, options: DecompositionOptions) -> [usize; 3] {
     let sampling = sample(solid, per_axis, Method::BehandishIlies(options)).unwrap();
     let epsilon = sampling.field.grid.epsilon();
-    let referee = HausdorffMeter::new(solid, &sampling.field);
+    let meter = HausdorffMeter::new(solid, &sampling.field);
     let [a1, a2, a3] = &sampling.sets[..] else {
         panic!()
     };
     for set in [a1, a2, a3] {
-        let fit = referee.judge(&set.balls);
+        let fit = meter.measure(&set.balls);
         let context = format!(
             "n {per_axis}, {options:?}, {:?}: {fit:?}, eps {epsilon}",
             set.name
@@ -107,8 +107,8 @@ fn every_protrusion_factor_and_order_keeps_the_bounds() {
     check_bounds(&solid, 2, DecompositionOptions::default());
 }
 
-/// Lemma 4 of the paper takes every point of S to lie within eps of an inside node. Under a face just below a plane of nodes
-/// it is sqrt(2) eps.
+/// Lemma 4 of the paper takes every point of S to lie within eps of an inside node. Under a face just below a plane of
+/// nodes it is sqrt(2) eps.
 #[test]
 fn a_face_just_under_a_plane_of_nodes() {
     let (n, h) = (16, 1.0 / 15.0);
@@ -148,11 +148,11 @@ fn any_number_of_threads_gives_the_same_bits() {
                 Method::BehandishIlies(DecompositionOptions::default()),
             )
             .unwrap();
-            let referee = HausdorffMeter::new(&solid, &sampling.field);
+            let meter = HausdorffMeter::new(&solid, &sampling.field);
             let fits: Vec<_> = sampling
                 .sets
                 .iter()
-                .map(|set| referee.judge(&set.balls))
+                .map(|set| meter.measure(&set.balls))
                 .collect();
             let others = [Method::WellerZachmann, Method::Octree, Method::Voxels]
                 .map(|method| sample(&solid, 20, method).unwrap().sets.remove(0).balls);
@@ -263,13 +263,13 @@ fn grids_have_both_ends_and_the_middle() {
 fn hausdorff_distances_and_volumes_of_a_ball_in_a_cube() {
     let solid = cuboid([-0.5; 3], [0.5; 3]).solid();
     let field = DepthField::new(&solid, Grid::new(&solid, 48));
-    let referee = HausdorffMeter::new(&solid, &field);
-    assert!((referee.volume() - 1.0).abs() < 1e-12);
+    let meter = HausdorffMeter::new(&solid, &field);
+    assert!((meter.volume() - 1.0).abs() < 1e-12);
     let ball = Ball {
         center: [0.0; 3],
         radius: 0.5,
     };
-    let inside = referee.judge(&[ball]);
+    let inside = meter.measure(&[ball]);
     let corner = 0.75f64.sqrt() - 0.5;
     let tenth = 0.1 * field.grid.epsilon();
     assert!(inside.hausdorff_inward <= corner && inside.hausdorff_inward >= corner - tenth);
@@ -283,7 +283,7 @@ fn hausdorff_distances_and_volumes_of_a_ball_in_a_cube() {
     );
     // Grown by t it leaves the cube by six caps of height t.
     let t = 0.02f64;
-    let grown = referee.judge(&[ball.grown(t)]);
+    let grown = meter.measure(&[ball.grown(t)]);
     let caps = 6.0 * PI * t * t * (3.0 * 0.52 - t) / 3.0;
     assert!((grown.hausdorff_outward - t).abs() < 1e-14 && (grown.outward_bound - t).abs() < 1e-14);
     assert!(
@@ -297,7 +297,7 @@ fn hausdorff_distances_and_volumes_of_a_ball_in_a_cube() {
     );
     assert!(inside.nodes_missed > grown.nodes_missed && grown.nodes_missed > 0);
     // Nothing covers nothing.
-    let none = referee.judge(&[]);
+    let none = meter.measure(&[]);
     assert!(none.hausdorff_inward == f64::INFINITY && (none.volume_missed - 1.0).abs() < 1e-12);
 }
 
@@ -332,14 +332,14 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
     let solid = Solid::new(&mesh).unwrap();
     let frame = solid.frame();
     let field = DepthField::new(&solid, Grid::new(&solid, 16));
-    let referee = HausdorffMeter::new(&solid, &field);
+    let meter = HausdorffMeter::new(&solid, &field);
     let (center, radius) = ([0.434, -0.514, 0.0], 23.481);
-    let fit = referee.judge(&[Ball {
+    let fit = meter.measure(&[Ball {
         center: frame.inward(center),
         radius: radius / frame.unit,
     }]);
-    // By hand: a point at rho from the ring's axis has the square distance 100 + r^2 - d^2 - rho (20 - 2 d cos phi) from
-    // its core, d the centre's own distance from the axis, so that the farthest point lies on the axis.
+    // By hand: a point at rho from the ring's axis has the square distance 100 + r^2 - d^2 - rho (20 - 2 d cos phi)
+    // from its core, d the centre's own distance from the axis, so that the farthest point lies on the axis.
     let square = 100.0 + radius * radius - center[0].powi(2) - center[1].powi(2);
     let farthest = square.sqrt() - 3.0;
     assert!((farthest - 22.51).abs() < 0.01, "{farthest}");
@@ -374,7 +374,7 @@ fn sheets_have_no_part_in_the_inward_distance() {
     .unwrap();
     assert_eq!(sampling.covering.unwrap().unreachable, 0);
     for set in &sampling.sets {
-        let fit = HausdorffMeter::new(&solid, &sampling.field).judge(&set.balls);
+        let fit = HausdorffMeter::new(&solid, &sampling.field).measure(&set.balls);
         assert!(fit.hausdorff_inward <= sampling.field.grid.epsilon());
     }
 }
@@ -420,14 +420,14 @@ fn packed_balls_lie_inside_and_do_not_overlap() {
             "the largest first"
         );
         for b in &balls[..index] {
-            let apart = (0..3)
+            let spacing = (0..3)
                 .map(|axis| (a.center[axis] - b.center[axis]).powi(2))
                 .sum::<f64>()
                 .sqrt();
-            assert!(apart >= a.radius + b.radius - 1e-12);
+            assert!(spacing >= a.radius + b.radius - 1e-12);
         }
     }
-    let fit = HausdorffMeter::new(&solid, &sampling.field).judge(balls);
+    let fit = HausdorffMeter::new(&solid, &sampling.field).measure(balls);
     assert_eq!(fit.nodes_missed, 0);
 }
 
@@ -438,7 +438,7 @@ fn octree_balls_and_voxels_cover_and_stay_near() {
         let mut counts = Vec::new();
         for method in [Method::Voxels, Method::Octree] {
             let sampling = sample(&solid, n, method).unwrap();
-            let fit = HausdorffMeter::new(&solid, &sampling.field).judge(&sampling.sets[0].balls);
+            let fit = HausdorffMeter::new(&solid, &sampling.field).measure(&sampling.sets[0].balls);
             assert_eq!(fit.nodes_missed, 0);
             assert!(fit.outward_bound <= sampling.field.grid.epsilon() * (1.0 + 1e-12));
             counts.push(sampling.sets[0].balls.len());

@@ -9,8 +9,8 @@ use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 #[test]
 fn alternate_locations_go_by_summed_occupancy_and_then_alphabet() {
-    // Residue 1: B wins, 0.9 to 0.7, though A's first atom is the fuller. Residue 2: a tie of sums that differ in the last
-    // bit in floating point (0.1 + 0.2 and 0.3 + 0.0), so A. Atoms without a location stay once.
+    // Residue 1: B wins, 0.9 to 0.7, though A's first atom is the fuller. Residue 2: a tie of sums that differ in the
+    // last bit in floating point (0.1 + 0.2 and 0.3 + 0.0), so A. Atoms without a location stay once.
     let lines = [
         Line::at(1, " N  ", ' ', 1.0),
         Line::at(1, " CA ", 'A', 0.6),
@@ -199,7 +199,7 @@ fn a_trace_and_missing_side_chains_are_warned_of() {
         .collect();
     let warnings = read_text(&text(&nowhere)).unwrap().report.warnings;
     assert!(
-        warnings.iter().any(|told| told.contains("in one place")),
+        warnings.iter().any(|shown| shown.contains("in one place")),
         "{warnings:?}"
     );
     // The same atom twice: two chains of one name in a file put together by hand.
@@ -234,7 +234,7 @@ fn two_chains() -> String {
     text(&lines)
 }
 
-/// Asked for by users: a domain of a chain is docked without editing the file.
+/// Requested by users: a domain of a chain is docked without editing the file.
 #[test]
 fn residues_are_picked_by_their_numbers() {
     let picked = |selection: &str| {

@@ -7,10 +7,10 @@ mod solids;
 use std::f64::consts::PI;
 
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::grid::{DepthField, Grid};
-use knotdock_structures::sampler::weights::fit;
-use knotdock_structures::sampler::{Ball, Method, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
+use knotdock_structures::sampling::weights::fit;
+use knotdock_structures::sampling::{Ball, Method, sample};
 use solids::{cuboid, sphere};
 
 fn bump(alpha: f64) -> Bump {
@@ -92,11 +92,11 @@ fn weights_meet_the_conditions_of_the_minimum() {
     let fitted = fit(field, balls, bump(2.0), volume);
     let value = |ball: &Ball, node: usize| {
         let place = field.grid.node(node);
-        let apart = (0..3)
+        let spacing = (0..3)
             .map(|axis| (place[axis] - ball.center[axis]).powi(2))
             .sum::<f64>()
             .sqrt();
-        bump(2.0).value(apart / ball.radius)
+        bump(2.0).value(spacing / ball.radius)
     };
     let nodes: Vec<usize> = (0..field.grid.nodes())
         .filter(|&node| field.depth[node] != 0.0)

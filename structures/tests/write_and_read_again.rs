@@ -167,7 +167,7 @@ fn what_does_not_fit_pdb_becomes_mmcif() {
         molecule(vec![changed])
     };
     assert_eq!(complex_format(&[&one, &one]), Format::Pdb);
-    let misfits = [
+    let unfits = [
         ("1e6 Å", with(&|a| a.position[1] = 1e6)),
         ("-1000 Å", with(&|a| a.position[2] = -1000.0)),
         (
@@ -181,16 +181,16 @@ fn what_does_not_fit_pdb_becomes_mmcif() {
         ),
         ("B of 1,000", with(&|a| a.b_factor = 1000.0)),
     ];
-    for (what, misfit) in &misfits {
-        assert_eq!(complex_format(&[&one, misfit]), Format::Mmcif, "{what}");
-        let refused = write_complex(&mut Vec::new(), Format::Pdb, &[&one, misfit], &[]);
+    for (what, unfit) in &unfits {
+        assert_eq!(complex_format(&[&one, unfit]), Format::Mmcif, "{what}");
+        let refused = write_complex(&mut Vec::new(), Format::Pdb, &[&one, unfit], &[]);
         assert!(
             matches!(refused, Err(WriteError::DoesNotFit { .. })),
             "{what}"
         );
         let mut text = Vec::new();
-        write_complex(&mut text, Format::Mmcif, &[&one, misfit], &[]).unwrap();
-        assert_same(&misfit.atoms[0], &read_again(&text, Format::Mmcif).atoms[1]);
+        write_complex(&mut text, Format::Mmcif, &[&one, unfit], &[]).unwrap();
+        assert_same(&unfit.atoms[0], &read_again(&text, Format::Mmcif).atoms[1]);
     }
     let mut mmcif = one.clone();
     mmcif.format = Format::Mmcif;

@@ -56,7 +56,7 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
         "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 2 -o run --quiet",
     );
     let run_folder = folder.path().join("run");
-    run(folder.path(), "complex run --rank 2,4-5 -o more --quiet");
+    run(folder.path(), "export run --rank 2,4-5 -o more --quiet");
     assert_eq!(
         fs::read(folder.path().join("more/rank_0002.pdb")).unwrap(),
         fs::read(run_folder.join("top/rank_0002.pdb")).unwrap(),
@@ -81,11 +81,8 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
         }
     }
     // A file that is there stays, but for the run's own.
-    run(folder.path(), "complex run --rank 2 --quiet");
-    run(
-        folder.path(),
-        "complex run --rank 4 -o more --force --quiet",
-    );
+    run(folder.path(), "export run --rank 2 --quiet");
+    run(folder.path(), "export run --rank 4 -o more --force --quiet");
     let ligand = folder.path().join("rank_0002.pdb");
     fs::write(&ligand, crate::molecules::ligand()).unwrap();
     run(

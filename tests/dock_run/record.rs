@@ -151,10 +151,10 @@ fn a_run_moved_with_its_inputs_still_finds_them() {
     for entry in ["run", "receptor.pdb", "ligand.pdb"] {
         fs::rename(folder.path().join(entry), moved.join(entry)).unwrap();
     }
-    run(&moved, "complex run --rank 1 --quiet");
+    run(&moved, "export run --rank 1 --quiet");
     assert!(moved.join("run/top/rank_0001.pdb").exists());
     // From inside the run's own folder, too.
-    run(&moved.join("run"), "complex . --rank 1 --force --quiet");
+    run(&moved.join("run"), "export . --rank 1 --force --quiet");
     run(&moved.join("run"), "dock --rerun run.json -o again --quiet");
     assert!(moved.join("run/again/poses.csv").exists());
 }
@@ -175,7 +175,7 @@ fn a_folder_whose_name_is_not_unicode_is_no_hindrance() {
         "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 -o run --json",
     );
     // Not under its recorded name, but beside the run.
-    run(&inner, "complex run --rank 1 --quiet");
+    run(&inner, "export run --rank 1 --quiet");
 }
 
 #[cfg(target_os = "linux")]

@@ -32,7 +32,7 @@ fn clashes_with_unresolved_residues_cost() {
     let sides = [&receptor, &ligand].map(|file| {
         let molecule = read(&InputSpec::whole(file), &ReadOptions::default()).unwrap();
         let atoms: Vec<[f64; 3]> = molecule.atoms.iter().map(|atom| atom.position).collect();
-        (atoms, molecule.missing_residues().stretches)
+        (atoms, molecule.unresolved_residues().segments)
     });
     let (fixed, moving) = (&sides[0], &sides[1]);
     let half_cell = 0.5 * 3f64.sqrt();
@@ -69,7 +69,7 @@ fn clashes_with_unresolved_residues_cost() {
 fn inside(atoms: &[[f64; 3]], segments: &[Conformers], reach: f64) -> f64 {
     let mut sum = 0.0;
     for segment in segments {
-        let conformers = segment.courses.len() as f64;
+        let conformers = segment.traces.len() as f64;
         for atom in atoms {
             let at = segment.local(*atom);
             let near = |alpha: &[f64; 3]| {
@@ -77,7 +77,7 @@ fn inside(atoms: &[[f64; 3]], segments: &[Conformers], reach: f64) -> f64 {
                 squares.sum::<f64>() < reach * reach
             };
             let passing = segment
-                .courses
+                .traces
                 .iter()
                 .filter(|conformer| conformer.iter().any(near));
             sum += passing.count() as f64 / conformers;

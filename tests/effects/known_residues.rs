@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Blocked residues cost what touches them, attracted ones draw poses, in the search, in the table and in `score`; what cannot be named is an error.
+/// Contacts of blocked residues cost and active residues draw poses, in the search, the table and `score`. Unknown names are errors.
 #[test]
 fn named_residues_are_kept_free_or_touched() {
     let folder = tempfile::tempdir().unwrap();
@@ -58,11 +58,11 @@ fn named_residues_are_kept_free_or_touched() {
     let (before, after) = (mean(&free), mean(&blocked));
     assert!(after > 0.4 * before && before < -100.0, "{before} {after}");
 
-    // Fourteen residues attract, which the inhibitor cannot all reach.
+    // Fourteen residues are active, which the inhibitor cannot all reach.
     let drawn = rows(&["--active-receptor", sites, "--active-weight", "4000"]);
     let attracting = DockOptions::default().changed(|attracting| {
         attracting.restraints.active_receptor = options.restraints.block_receptor.clone();
-        attracting.restraints.active_weight = 1.0;
+        attracting.terms.weights.set("active_residues", 1.0);
     });
     let scene = Scene::new(&own, &other, &attracting).unwrap();
     let rescorer = scene.rescorer(&attracting).unwrap();
@@ -103,7 +103,7 @@ fn named_residues_are_kept_free_or_touched() {
     }
 }
 
-/// Trypsin's active site counts in the ranking and nowhere else; whoever asks is told of it.
+/// Trypsin's active site counts in the ranking and nowhere else, and reports name it.
 #[test]
 fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,7 +134,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
         site["sites"][0]["residues"],
         serde_json::json!(["A:57", "A:195"])
     );
-    let (told, words) = run(
+    let (printed, words) = run(
         folder.path(),
         &[
             "score",
@@ -145,8 +145,8 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
             "--json",
         ],
     );
-    let told: Value = serde_json::from_str(&told).unwrap();
-    assert_eq!(told["active_site"], site);
+    let scored: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(scored["active_site"], site);
     assert!(words.contains("family S1 like trypsin (catalytic A:57, A:195)"));
     let number = |text: &String| text.parse::<f64>().unwrap();
     let place = |row: &std::collections::BTreeMap<String, String>| {

@@ -113,9 +113,9 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
             &["score", &receptor, &ligand, "--pose", &pose, "--json"],
         );
         let again: Value = serde_json::from_str(&again).unwrap();
-        for told in ["unresolved_residues", "terminus_residues"] {
-            assert_eq!(again[told], object["run"]["plan"][told]);
-            assert!(again[told][0]["residues"].is_number());
+        for name in ["unresolved_residues", "terminus_residues"] {
+            assert_eq!(again[name], object["run"]["plan"][name]);
+            assert!(again[name][0]["residues"].is_number());
         }
         assert!((number(&again["exact"]) - score).abs() < 1e-6 * score.abs());
         for (name, term) in ["shape", "electrostatics", "contact"].iter().zip(terms) {

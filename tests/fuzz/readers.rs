@@ -12,7 +12,7 @@ use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
     AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ModelChoice, ReadError, ReadOptions,
-    Waters, atom_kinds, read_listed, write_molecule,
+    Waters, atom_kinds, read_with_fates, write_molecule,
 };
 
 /// A reader under test.
@@ -214,7 +214,7 @@ fn molecule(path: &Path, index: u64) -> bool {
         trust_plddt: (index / 192) & 1 == 1,
         ..ReadOptions::default()
     };
-    match read_listed(&InputSpec::whole(path), &options) {
+    match read_with_fates(&InputSpec::whole(path), &options) {
         Ok((molecule, listed)) => {
             assert!(!molecule.atoms.is_empty() && listed.len() >= molecule.atoms.len());
             let knots = molecule.knots().unwrap();

@@ -125,7 +125,7 @@ fn the_grids_mean_is_the_same_for_all_rotations() {
     let mut first = None;
     for turn in 0..5 {
         let rotation = Pose::from_parts([0.4, 0.3 * f64::from(turn), -0.5, 0.2], [0.0; 3]).rotation;
-        pair.engine.turn(&rotation, &mut work);
+        pair.engine.transform_ligand(&rotation, &mut work);
         for half_turn in HalfTurn::ALL {
             pair.engine.correlate_turned(half_turn, &mut work);
             let mean = work.grid.iter().sum::<f64>() / work.grid.len() as f64;

@@ -171,7 +171,7 @@ fn all_copies_are_written_and_runs_repeat() {
     assert_eq!(fs::read(at("again/poses.csv")).unwrap(), table);
     succeed(
         folder.path(),
-        "complex run --rank 2 -o later --quiet".split(' '),
+        "export run --rank 2 -o later --quiet".split(' '),
     );
     assert_eq!(fs::read(at("later/rank_0002.pdb")).unwrap(), first);
 
@@ -181,7 +181,7 @@ fn all_copies_are_written_and_runs_repeat() {
     let mut fields: Vec<&str> = row.split(',').collect();
     fields[10] = "99";
     fs::write(at("run/poses.csv"), text.replace(row, &fields.join(","))).unwrap();
-    let told = refused(folder.path(), "complex run --rank 1 -o never");
+    let told = refused(folder.path(), "export run --rank 1 -o never");
     assert!(!at("never").exists());
     assert!(told.contains("no ring of C5"));
 }

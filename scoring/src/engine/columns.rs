@@ -5,7 +5,8 @@ use crate::se3::HalfTurn;
 use crate::transform::Real;
 use num_complex::Complex;
 
-/// How the ligand's transform B(F w), F a half-turn, is read off the half of the modes that is kept, kz >= 0, with B(-w) = conj B(w).
+/// How the ligand's transform B(F w), F a half-turn, is read off the half of the modes that is kept, kz >= 0, with
+/// B(-w) = conj B(w).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Reading {
     /// From the column with -ky.
@@ -37,21 +38,21 @@ impl Reading {
         u32::from(self.mirrored) + 2 * u32::from(self.reversed) + 4 * u32::from(self.conjugate)
     }
 
-    /// Writes sum_q a_q conj(b_q), with b so read, as a column in transform order. `a` and `b` run from kx = -`side` to `side`, `a` the
-    /// other way where b is [`Self::reversed`]; `sums` has room for their packets.
+    /// Writes sum_q a_q conj(b_q), with b so read, as a column in transform order. `a` and `b` run from kx = -`side` to
+    /// `side`, `a` the other way where b is [`Self::reversed`]; `sums` has room for their packets.
     #[inline(always)]
     pub fn multiply<T: Real>(
         self,
-        fields: usize,
+        components: usize,
         side: usize,
         [a, b]: [&[Packet<T>]; 2],
         sums: &mut [Complex<T>],
         column: &mut [Complex<T>],
     ) {
         if self.conjugate {
-            products::<T, false>(fields, a, b, sums);
+            products::<T, false>(components, a, b, sums);
         } else {
-            products::<T, true>(fields, a, b, sums);
+            products::<T, true>(components, a, b, sums);
         }
         let low = column.len() - side;
         let (first, last) = sums[..=2 * side].split_at(side);

@@ -1,11 +1,12 @@
 //! The engine on CPU cores: per rotation q pruned forward transforms, one product, one inverse transform.
 //!
-//! G^(w) = sum_q U_q(w) conj(B_q(w)), B_q the transform of the ligand's knots weighted by d_j V_q(s_j). U holds everything that does
-//! not turn: the receptor's transform, the folded lifted kernel, both windows' deconvolution and 1 / volume.
+//! G^(w) = sum_q U_q(w) conj(B_q(w)), B_q the transform of the ligand's knots weighted by d_j V_q(s_j). U holds
+//! everything that does not turn: the receptor's transform, the lifted kernel, both windows' deconvolution and 1 /
+//! volume.
 //!
-//! A half-turn about a grid axis maps the modes onto themselves, so one ligand transform serves four rotations: with F the half-turn,
-//! B(w; F R) = B(F w; R), which is a mirrored or conjugated reading of the same columns. Columns are multiplied and transformed back
-//! along x while they lie in the first-level cache.
+//! A half-turn about a grid axis maps the modes onto themselves, so one ligand transform serves four rotations. With F
+//! the half-turn, B(w; F R) = B(F w; R): a mirrored or conjugated reading of the same columns. Columns are multiplied
+//! and transformed back along x while they lie in the first-level cache.
 
 use super::columns::Reading;
 use super::packed::{LANES, Packet, Packing, reversed};
@@ -34,7 +35,7 @@ pub struct CpuEngine<T: Real> {
     pub(super) spectra: Vec<Packet<T>>,
     /// U with kx falling in each column, made when a half-turn first asks for it.
     pub(super) reversed: OnceLock<Vec<Packet<T>>>,
-    /// d_j V_q(s_j): [knot][field].
+    /// d_j V_q(s_j): [knot][component].
     pub(super) weights: Vec<T>,
     /// Ligand knots relative to the ligand's centre, Å.
     pub(super) ligand: Vec<Vector3<f64>>,
@@ -79,7 +80,7 @@ impl<T: Real> CpuEngine<T> {
 
     /// Rank q of the lifted axis in use.
     pub fn rank(&self) -> usize {
-        self.forward.fields()
+        self.forward.components()
     }
 
     /// All singular values of the lifted axis as shares of the largest.
@@ -87,15 +88,15 @@ impl<T: Real> CpuEngine<T> {
         &self.singular
     }
 
-    /// U of one column and field with kx rising; what fills the last packet follows.
+    /// U of one column and component with kx rising; what fills the last packet follows.
     #[cfg(feature = "gpu")]
     pub(super) fn spectrum(
         &self,
         column: usize,
-        field: usize,
+        component: usize,
     ) -> impl Iterator<Item = Complex<T>> + '_ {
         let packets = &self.spectra[self.packing.range(column, self.rank())];
-        let packets = packets[field..].iter().step_by(self.rank());
+        let packets = packets[component..].iter().step_by(self.rank());
         packets.flat_map(|packet| (0..LANES).map(|lane| packet.get(lane)))
     }
 
@@ -123,8 +124,8 @@ impl<T: Real> CpuEngine<T> {
         }
     }
 
-    /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `half_turn` gave, in Å, in the box
-    /// centred on the receptor.
+    /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `half_turn` gave, in Å,
+    /// in the box centred on the receptor.
     pub fn position_after(&self, half_turn: HalfTurn, voxel: usize) -> Vector3<f64> {
         let [_, ny, nz] = self.plan.modes().size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
@@ -146,12 +147,12 @@ impl<T: Real> CpuEngine<T> {
 
     /// G over all translations at one rotation, into `work.grid`, and each row's best into `work.row_best`.
     pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
-        self.turn(rotation, work);
+        self.transform_ligand(rotation, work);
         self.correlate_turned(HalfTurn::None, work);
     }
 
     /// Turns the ligand: its transform at `rotation`, which [`Self::correlate_turned`] then reads for each half-turn.
-    pub fn turn(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
+    pub fn transform_ligand(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
         vectorized(
             #[inline(always)]
             || {
@@ -162,8 +163,8 @@ impl<T: Real> CpuEngine<T> {
         );
     }
 
-    /// G over all translations at the rotation last turned to, followed by `half_turn`: into `work.grid`, and each row's best
-    /// into `work.row_best`.
+    /// G over all translations at the rotation last turned to, followed by `half_turn`: into `work.grid`, and each
+    /// row's best into `work.row_best`.
     pub fn correlate_turned(&self, half_turn: HalfTurn, work: &mut Workspace<T>) {
         vectorized(
             #[inline(always)]
@@ -174,8 +175,8 @@ impl<T: Real> CpuEngine<T> {
         );
     }
 
-    /// Time in seconds of each stage of one rotation: spreading, forward planes, forward columns (these three serve all four
-    /// half-turns), product with the inverse along x and y, and rows.
+    /// Time in seconds of each stage of one rotation: spreading, forward planes, forward columns (these three serve all
+    /// four half-turns), product with the inverse along x and y, and rows.
     pub fn stage_seconds(
         &self,
         rotation: &UnitQuaternion<f64>,

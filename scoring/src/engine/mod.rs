@@ -1,7 +1,8 @@
-//! Engines: the correlation over all translations at a rotation. One plan, one answer, whatever runs it: the CPU, or with the feature `gpu` a graphics
-//! processor.
+//! Engines: the correlation over all translations at a rotation. One plan, one answer, whatever runs it: the CPU, or
+//! with the feature `gpu` a graphics processor.
 //!
-//! [`uniform_grid`] is the baseline to compare with: rasterised bumps on a grid, the product kernel alone, a plan of its own.
+//! [`uniform_grid`] is the baseline to compare with: rasterised bumps on a grid, the product kernel alone, a plan of
+//! its own.
 
 mod columns;
 pub mod cpu;

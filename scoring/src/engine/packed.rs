@@ -1,5 +1,6 @@
-//! Columns of modes packed for vector registers: eight modes side by side, real parts and imaginary parts apart, and the fields of the
-//! lifted axis one after another, so that a product is summed over them without being stored and without a number changing its lane.
+//! Columns of modes packed for vector registers: eight modes side by side, real parts before imaginary parts.
+//!
+//! The components of the lifted axis follow one another, so that a product is summed over them in registers.
 
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
@@ -9,7 +10,7 @@ use std::ops::Range;
 /// Modes in a packet.
 pub(super) const LANES: usize = 8;
 
-/// Eight modes of one field.
+/// Eight modes of one component.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Packet<T> {
@@ -26,7 +27,7 @@ impl<T: Real> Packet<T> {
         }
     }
 
-    /// Takes the parts of eight values apart; where they are fewer, zeros follow.
+    /// Separates the parts of eight values; where they are fewer, zeros follow.
     #[inline(always)]
     pub fn of(values: &[Complex<T>]) -> Self {
         let mut packet = Self::zero();
@@ -48,10 +49,10 @@ impl<T: Real> Packet<T> {
     }
 }
 
-/// Where the packets of each column lie: [column][packet][field].
+/// Where the packets of each column lie: [column][packet][component].
 #[derive(Clone, Debug)]
 pub(super) struct Packing {
-    /// For each column the packets before it, for one field; then their number.
+    /// For each column the packets before it, for one component; then their number.
     starts: Vec<u32>,
 }
 
@@ -66,15 +67,15 @@ impl Packing {
         Self { starts }
     }
 
-    /// Packets of one field.
+    /// Packets of one component.
     pub fn count(&self) -> usize {
         self.starts.last().map_or(0, |&count| count as usize)
     }
 
-    /// The packets of a column, of all `fields`.
+    /// The packets of a column, of all `components`.
     #[inline(always)]
-    pub fn range(&self, column: usize, fields: usize) -> Range<usize> {
-        fields * self.starts[column] as usize..fields * self.starts[column + 1] as usize
+    pub fn range(&self, column: usize, components: usize) -> Range<usize> {
+        components * self.starts[column] as usize..components * self.starts[column + 1] as usize
     }
 }
 
@@ -82,33 +83,33 @@ impl Packing {
 pub(super) fn reversed<T: Real>(
     modes: &ModeSet,
     packing: &Packing,
-    fields: usize,
+    components: usize,
     packets: &[Packet<T>],
 ) -> Vec<Packet<T>> {
     let mut turned_round = vec![Packet::zero(); packets.len()];
     for (index, column) in modes.columns.iter().enumerate() {
-        let range = packing.range(index, fields);
+        let range = packing.range(index, components);
         let (from, to) = (&packets[range.clone()], &mut turned_round[range]);
         let last = column.len() - 1;
         for (place, opposite) in (0..=last).zip((0..=last).rev()) {
-            for field in 0..fields {
-                let value = from[opposite / LANES * fields + field].get(opposite % LANES);
-                to[place / LANES * fields + field].set(place % LANES, value);
+            for component in 0..components {
+                let value = from[opposite / LANES * components + component].get(opposite % LANES);
+                to[place / LANES * components + component].set(place % LANES, value);
             }
         }
     }
     turned_round
 }
 
-/// Sums over the fields of a b (`CONJUGATED` false) or a conj(b) (true), mode by mode.
+/// Sums over the components of a b (`CONJUGATED` false) or a conj(b) (true), mode by mode.
 #[inline(always)]
 pub(super) fn products<T: Real, const CONJUGATED: bool>(
-    fields: usize,
+    components: usize,
     a: &[Packet<T>],
     b: &[Packet<T>],
     sums: &mut [Complex<T>],
 ) {
-    let packets = a.chunks_exact(fields).zip(b.chunks_exact(fields));
+    let packets = a.chunks_exact(components).zip(b.chunks_exact(components));
     for ((a, b), sums) in packets.zip(sums.chunks_exact_mut(LANES)) {
         let mut sum = Packet::zero();
         for (a, b) in a.iter().zip(b) {

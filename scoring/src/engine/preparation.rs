@@ -12,22 +12,27 @@ use num_complex::Complex;
 use std::sync::{Arc, OnceLock};
 
 impl<T: Real> CpuEngine<T> {
-    /// Prepares the engine at a rank of the lifted axis (1 to `folded.full_rank()`).
-    pub fn new(plan: Arc<Plan>, folded: &ReceptorSpectra<T>, ligand: &Knots, rank: usize) -> Self {
-        let factors = folded.factor(plan.modes());
-        Self::with_factors(plan, folded, &factors, ligand, rank)
+    /// Prepares the engine at a rank of the lifted axis (1 to `receptor.full_rank()`).
+    pub fn new(
+        plan: Arc<Plan>,
+        receptor: &ReceptorSpectra<T>,
+        ligand: &Knots,
+        rank: usize,
+    ) -> Self {
+        let factors = receptor.factor(plan.modes());
+        Self::with_factors(plan, receptor, &factors, ligand, rank)
     }
 
     /// As [`Self::new`], with factors that are at hand.
     pub fn with_factors(
         plan: Arc<Plan>,
-        folded: &ReceptorSpectra<T>,
+        receptor: &ReceptorSpectra<T>,
         factors: &Factors,
         ligand: &Knots,
         rank: usize,
     ) -> Self {
         let modes = Arc::clone(plan.modes());
-        let rank = rank.clamp(1, folded.full_rank());
+        let rank = rank.clamp(1, receptor.full_rank());
         let Factors {
             combination,
             coefficients,
@@ -52,7 +57,7 @@ impl<T: Real> CpuEngine<T> {
                 values.clear();
                 values.extend((-column.kx_max..=column.kx_max).enumerate().map(|(i, k)| {
                     let mut sum = zero;
-                    for (b, spectrum) in folded.spectra.iter().enumerate() {
+                    for (b, spectrum) in receptor.spectra.iter().enumerate() {
                         sum = sum + spectrum[column.start + i].scale(T::of(combination[(b, q)]));
                     }
                     let factor = outer * factors[0][k.unsigned_abs() as usize];
@@ -88,7 +93,7 @@ impl<T: Real> CpuEngine<T> {
                 .map(|&y| Vector3::from(y) - plan.ligand_center())
                 .collect(),
             block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
-            receptor_center: folded.center,
+            receptor_center: receptor.center,
             mirrors,
             inverse_x: T::inverse_fft(modes.size[0]),
             inverse_y: T::inverse_fft(modes.size[1]),
@@ -110,14 +115,14 @@ impl<T: Real> CpuEngine<T> {
         forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
-    /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first fields are these.
+    /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first components are these.
     #[must_use]
     pub fn truncated(&self, rank: usize) -> Self {
         let full = self.rank();
         let rank = rank.clamp(1, full);
         let mut spectra = Vec::with_capacity(rank * self.packing.count());
-        for fields in self.spectra.chunks_exact(full) {
-            spectra.extend_from_slice(&fields[..rank]);
+        for components in self.spectra.chunks_exact(full) {
+            spectra.extend_from_slice(&components[..rank]);
         }
         let weights = self.weights.chunks_exact(full);
         Self {
@@ -127,7 +132,7 @@ impl<T: Real> CpuEngine<T> {
             spectra,
             reversed: OnceLock::new(),
             weights: weights
-                .flat_map(|fields| &fields[..rank])
+                .flat_map(|components| &components[..rank])
                 .copied()
                 .collect(),
             ligand: self.ligand.clone(),

@@ -1,4 +1,4 @@
-//! The receptor's side of a correlation: its transform with the lifted kernel folded in, and the compression of the lifted axis.
+//! The receptor's side of a correlation: its transform times the lifted kernel, and the compression of the lifted axis.
 
 use super::plan::Plan;
 use crate::effect::{ActiveTerm, Effect, Label, Term};
@@ -39,9 +39,14 @@ pub struct Factors {
 }
 
 impl<T: Real> ReceptorSpectra<T> {
-    /// Transforms the receptor and folds the lifted kernel into it; the plan's further terms belong to the score alone, not to slices and
-    /// sensitivities.
+    /// Transforms the receptor and multiplies by the lifted kernel.
+    ///
+    /// The plan's further terms belong to the score alone, not to slices and sensitivities.
+    ///
+    /// # Panics
+    /// Where the plan was made for other knots.
     pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
+        assert!(plan.holds_ligand(ligand), "the plan is of another ligand");
         let modes = plan.modes();
         let (receptor_size, ligand_size) = plan.basis().sizes(plan.axis());
         let fine = plan.fine();
@@ -143,7 +148,7 @@ impl<T: Real> ReceptorSpectra<T> {
 
     /// The effect that a function belongs to.
     pub fn effect(&self, function: usize) -> Effect {
-        self.effects.get(function).copied().unwrap_or(Effect::Shape)
+        self.effects[function]
     }
 
     /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
@@ -179,8 +184,9 @@ impl<T: Real> ReceptorSpectra<T> {
 
     /// The factorisation of the functions of all effects together, into as many terms as there are functions.
     ///
-    /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'; the singular vectors of
-    /// H S, stacked [Re; Im] so that V stays real, give the best q terms in the mean over knots placed at random.
+    /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'. The singular
+    /// vectors of H S give the best q terms in the mean over knots placed at random. H S is stacked [Re; Im], so that V
+    /// stays real.
     pub fn factor(&self, modes: &ModeSet) -> Factors {
         let size = self.spectra.len();
         let mut gram = DMatrix::<f64>::zeros(size, size);
@@ -206,7 +212,7 @@ impl<T: Real> ReceptorSpectra<T> {
         let largest = ligand.eigenvalues.max();
         let power = |exponent: f64| {
             let scaled = ligand.eigenvalues.map(|value| {
-                // Functions that no ligand knot tells apart carry nothing.
+                // Functions that agree at all ligand knots carry nothing.
                 if value > 1e-13 * largest {
                     value.powf(exponent)
                 } else {
@@ -249,8 +255,8 @@ struct Receptor<T: Real> {
 }
 
 impl<T: Real> Receptor<T> {
-    /// The function of one class; `table` is the term's kernel by wave number. `None` where no knot of the ligand is of the class, or none of
-    /// the receptor means anything to it.
+    /// The function of one class; `table` is the term's kernel by wave number. `None` where no knot of the ligand is of
+    /// the class, or none of the receptor means anything to it.
     fn class_function(
         &self,
         term: &Term,

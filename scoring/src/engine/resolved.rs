@@ -1,9 +1,9 @@
 //! Which balls an engine cannot resolve: the low-pass or the grid leaves too little of them to count on.
 //!
-//! The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than points: what is left
-//! of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so that no error between the two tells of
-//! it. That is why these balls are named. Between coincident balls of radius 1.5 and 1.9 Å at a resolution of 4.5 Å nine tenths of the
-//! overlap or more are left.
+//! The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than
+//! points: what is left of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so
+//! that no error between the two shows it. That is why these balls are named. Between coincident balls of radius 1.5
+//! and 1.9 Å at a resolution of 4.5 Å nine tenths of the overlap or more are left.
 
 use super::plan::{PairKernel, Plan};
 use super::uniform_grid::UniformGridPlan;
@@ -14,8 +14,10 @@ use knotdock_structures::Knots;
 const SHARE: f64 = 0.1;
 
 impl Plan {
-    /// Indices of the knots that the planned correlation cannot resolve: of two of them on one place less than a tenth of their
-    /// overlap is left by the low-pass, or, where there is none, their radius is below the grid spacing.
+    /// Indices of the knots that the planned correlation cannot resolve.
+    ///
+    /// Of two of them at one place the low-pass leaves less than a tenth of the overlap. Without a low-pass their
+    /// radius is below the grid spacing.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
         match &self.pair() {
             PairKernel::Product(kernel) if kernel.band() == Band::Whole => {
@@ -29,8 +31,8 @@ impl Plan {
 }
 
 impl UniformGridPlan {
-    /// Indices of the knots that the grid cannot resolve: their radius is below the grid spacing, so that how many voxels they fill
-    /// depends on where they fall.
+    /// Indices of the knots that the grid cannot resolve: their radius is below the grid spacing, so that how many
+    /// voxels they fill depends on where they fall.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
         by_radius(knots, |radius| radius < self.options.spacing)
     }
@@ -40,6 +42,6 @@ fn by_radius(knots: &Knots, unresolved: impl Fn(f64) -> bool) -> Vec<usize> {
     let (radii, classes) = knots.radius_classes();
     let lost: Vec<bool> = radii.into_iter().map(unresolved).collect();
     (0..knots.len())
-        .filter(|&index| lost.get(classes[index]).copied().unwrap_or(false))
+        .filter(|&index| lost[classes[index]])
         .collect()
 }

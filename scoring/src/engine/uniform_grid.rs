@@ -1,27 +1,28 @@
 //! The uniform-grid baseline: rasterise the bumps of both bodies, transform, multiply, transform back.
 //!
-//! Kavraki's, Lysenko's and ZDock's way, and the one that B&I compare with in their Fig. 8: each body's function is sampled on a grid of
-//! spacing h, one real array per body, since the double skin's factor i only turns the product's sign. With F_A and F_B the sampled
-//! psi_{r+r0} - lambda psi_r of receptor and turned ligand,
+//! This is Kavraki's, Lysenko's and ZDock's way, which B&I compare with in their Fig. 8. Each body's function is
+//! sampled on a grid of spacing h, one real array per body: the double skin's factor i only changes the product's sign.
+//! With F_A and F_B the sampled psi_{r+r0} - lambda psi_r of receptor and turned ligand,
 //!
 //! G(t) = -h^3 sum_n F_A(n h) F_B(n h - t), by one forward and one inverse real transform per rotation.
 //!
 //! # What it computes
 //!
-//! The *product* kernel ([`crate::kernel::product`]), not the lifted one, and so is compared with [`super::Plan::product`] and
-//! [`crate::kernel::ProductScorer`] alone. Its only error is the sampling's: the sum over voxels stands for the integral of
-//! F_A(x) F_B(x - t), and errs by the aliases of both spectra at multiples of 1 / h. For smooth bumps that falls faster than any power
-//! of h, for sharp balls (alpha = infinity) like a power (the tests measure both).
+//! The *product* kernel ([`crate::kernel::product`]), not the lifted one, and so is compared with
+//! [`super::Plan::product`] and [`crate::kernel::ProductScorer`] alone. Its only error is the sampling's: the sum over
+//! voxels stands for the integral of F_A(x) F_B(x - t), and errs by the aliases of both spectra at multiples of 1 / h.
+//! For smooth bumps that falls faster than any power of h, for sharp balls (alpha = infinity) like a power (the tests
+//! measure both).
 //!
-//! Under [`Band::LowPass`] the spectrum is multiplied by W(|w|) before it goes back, which filters the pair kernel, not what was aliased
-//! into the band before.
+//! Under [`Band::LowPass`] the spectrum is multiplied by W(|w|) before it goes back, which filters the pair kernel, not
+//! what was aliased into the band before.
 //!
 //! # Conventions
 //!
-//! Both bodies lie with the middle of their bounding boxes on voxel 0 and wrap around the box, so that voxel (ix, iy, iz) of the result is
-//! the position of the ligand's centre relative to the receptor's, (ix, iy, iz) h less whole box lengths: [`UniformGrid::position`].
-//! The box holds both bodies and twice the kernel's reach per axis, so that no ligand scores with the receptor and its image both.
-//! Scores are in Å^3.
+//! Both bodies lie with the middle of their bounding boxes on voxel 0 and wrap around the box. Voxel (ix, iy, iz) of
+//! the result is then the position (ix, iy, iz) h, less whole box lengths, of the ligand's centre relative to the
+//! receptor's: [`UniformGrid::position`]. The box holds both bodies and twice the kernel's reach per axis, so that no
+//! ligand scores with the receptor and its image both. Scores are in Å^3.
 
 use super::plan::{PlanError, check_bodies};
 use crate::exact::center;
@@ -44,7 +45,8 @@ pub struct UniformGridOptions {
     pub band: Band,
     /// Grid spacing h, Å.
     pub spacing: f64,
-    /// Share of its peak below which the low-passed kernel's ringing may reach through the box's faces; without a low-pass nothing does.
+    /// Share of its peak below which the low-passed kernel's ringing may reach through the box's faces; without a
+    /// low-pass nothing does.
     pub tolerance: f64,
 }
 
@@ -134,7 +136,8 @@ impl UniformGridPlan {
 pub struct UniformGrid<T: Real> {
     plan: UniformGridPlan,
     fft: RealFft3d<T>,
-    /// Each product of the fold: the receptor's spectrum with factor, low-pass, h^3 and 1 / N in it, and the ligand's function.
+    /// Each product of the fold: the receptor's spectrum with factor, low-pass, h^3 and 1 / N in it, and the ligand's
+    /// function.
     products: Vec<(Vec<Complex<T>>, Body)>,
     ligand: Vec<Ball>,
 }
@@ -202,7 +205,8 @@ impl<T: Real> UniformGrid<T> {
         }
     }
 
-    /// Position of the ligand's centre relative to the receptor's for a voxel, in Å, in the box centred on the receptor.
+    /// Position of the ligand's centre relative to the receptor's for a voxel, in Å, in the box centred on the
+    /// receptor.
     pub fn position(&self, voxel: usize) -> Vector3<f64> {
         let [_, ny, nz] = self.plan.size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
@@ -317,6 +321,7 @@ fn rasterise<T: Real>(
                 let half = (reach * reach - near).max(0.0).sqrt();
                 let row = (wrap(ix, nx) * ny + wrap(iy, ny)) * nz;
                 let Some(row) = grid.get_mut(row..row + nz) else {
+                    debug_assert!(false, "a row beyond the grid");
                     continue;
                 };
                 let range = run(z, half);

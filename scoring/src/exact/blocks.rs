@@ -1,8 +1,8 @@
 //! Receptor knots in compact blocks of eight, side by side for vector registers, and the knots within reach of a point.
 //!
-//! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last branch, so
-//! sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass, those knots that lie
-//! within reach are listed one after another, so that what follows, which costs more, is done for none but these.
+//! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last
+//! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass,
+//! the knots within reach are collected, so that the later and dearer steps handle these alone.
 
 use super::near::{LANES, Near, vectors, vectors_mut};
 use nalgebra::Vector3;
@@ -37,7 +37,8 @@ impl Block {
     }
 }
 
-/// Bounding boxes: of a group and, [axis][block], of its blocks. A block that is not there has an empty box, infinitely far away.
+/// Bounding boxes: of a group and, [axis][block], of its blocks. A block that is not there has an empty box, infinitely
+/// far away.
 struct Group {
     low: [f64; 3],
     high: [f64; 3],
@@ -127,6 +128,7 @@ impl Blocks {
     #[inline(always)]
     pub fn position(&self, knot: u32) -> [f64; 3] {
         let (index, lane) = (knot as usize / LANES, knot as usize % LANES);
+        debug_assert!(index < self.blocks.len());
         self.blocks.get(index).map_or([f64::INFINITY; 3], |block| {
             block.positions.map(|of| of[lane])
         })
@@ -165,6 +167,7 @@ impl Blocks {
                 let index = first + within.trailing_zeros();
                 within &= within - 1;
                 let Some(block) = self.blocks.get(index as usize) else {
+                    debug_assert!(false, "a block that is not there lies within reach");
                     break;
                 };
                 if near.is_full() {
@@ -181,8 +184,8 @@ impl Blocks {
     }
 }
 
-/// Distance along one axis from a coordinate to an interval; 0 inside it. Comparisons rather than `f64::max`, whose care for NaN
-/// costs a blend each.
+/// Distance along one axis from a coordinate to an interval; 0 inside it. Comparisons rather than `f64::max`, whose
+/// care for NaN costs a blend each.
 #[inline(always)]
 fn gap(x: f64, low: f64, high: f64) -> f64 {
     let (below, above) = (low - x, x - high);
@@ -190,8 +193,8 @@ fn gap(x: f64, low: f64, high: f64) -> f64 {
     if outside > 0.0 { outside } else { 0.0 }
 }
 
-/// Orders `members` so that blocks in a row are compact: halves along the longest axis of the box, the first half a power of two
-/// of blocks; ties by index.
+/// Orders `members` so that blocks in a row are compact: halves along the longest axis of the box, the first half a
+/// power of two of blocks; ties by index.
 fn halve(points: &[Vector3<f64>], members: &mut [usize]) {
     if members.len() <= LANES {
         members.sort_unstable();
@@ -220,8 +223,9 @@ mod tests {
     use crate::test_support::Numbers;
     use pulp::Scalar;
 
-    /// Every knot within reach must be visited, once, whatever the crowd: a spread cloud, coincident knots (no axis to halve
-    /// along), knots 1e6 Å apart (boxes that a cell list could not hold), and counts around the sizes of blocks and groups.
+    /// Every knot within reach is visited exactly once. Cases: a spread cloud, coincident knots (no axis to halve
+    /// along), knots at distances of 1e6 Å (boxes that a cell list could not hold), counts around the sizes of blocks
+    /// and groups.
     #[test]
     fn every_knot_within_reach_is_visited_once() {
         let mut numbers = Numbers(7);

@@ -37,14 +37,17 @@ impl ExactScorer {
                         for lane in 0..LANES {
                             let (panel, u) = (places.panel(lane), places.low(lane)[1]);
                             let Some(other) = self.knots.get(knots[lane] as usize) else {
+                                debug_assert!(false, "a knot that is not there is near");
                                 continue;
                             };
                             let start = starts.get(other.class as usize).copied();
+                            debug_assert!(start.is_some(), "every class has its tables");
                             let line = self
                                 .tables
                                 .scores()
                                 .get((start.unwrap_or(0) + panel) as usize);
                             let Some(line) = line else {
+                                debug_assert!(false, "a panel beyond the table");
                                 continue;
                             };
                             let (kernel, slope) = value_and_slope(line, u);

@@ -1,9 +1,10 @@
 //! The exact score: the pair sum over all knots in f64, with its gradient over the six degrees of freedom.
 //!
-//! O(ligand knots x receptor knots within reach): receptor knots lie in compact blocks of eight, and of the blocks that come within
-//! reach of a ligand knot only the knots within reach are summed. Kernels come from tables over distance that follow the ranking kernel to about 1e-9 of its
-//! largest value; `unfiltered` evaluates B&I's own kernel directly. Lengths in Å; positions are taken relative to the middles of
-//! the two sets, so that large file coordinates cost no digits. Sums run in one fixed order.
+//! O(ligand knots x receptor knots within reach): receptor knots lie in compact blocks of eight, and of the blocks that
+//! come within reach of a ligand knot only the knots within reach are summed. Kernels come from tables over distance
+//! that follow the ranking kernel to about 1e-9 of its largest value; `unfiltered` evaluates B&I's own kernel directly.
+//! Lengths in Å; positions are taken relative to the middles of the two sets, so that large file coordinates cost no
+//! digits. Sums run in one fixed order.
 
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
@@ -154,9 +155,13 @@ impl ExactScorer {
         self.ligand_center
     }
 
-    /// Rotation of a pose, and the ligand's centre there relative to the receptor's: differences of large file coordinates are
-    /// taken first, so an offset of 1e6 Å costs no digits here.
+    /// Rotation of a pose, and the ligand's centre there relative to the receptor's: differences of large file
+    /// coordinates are taken first, so an offset of 1e6 Å costs no digits here.
     fn placed(&self, pose: &Pose) -> (Rotation3<f64>, Vector3<f64>) {
+        debug_assert!(
+            pose.translation.iter().all(|x| x.is_finite()) && pose.rotation.norm().is_finite(),
+            "a pose must be finite"
+        );
         let rotation = pose.rotation.to_rotation_matrix();
         let center = rotation * self.ligand_center + pose.translation - self.receptor_center;
         (rotation, center)

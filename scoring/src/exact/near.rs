@@ -57,10 +57,12 @@ impl Near {
         self.count = 0;
     }
 
-    /// Adds those of eight knots, the first of which is `first`, that are nearer than the root of `square_reach`. Whether one is near is a
-    /// coin toss that no branch predictor wins, so all eight are written, the near ones first, and only these are counted.
+    /// Adds those of eight knots, the first of which is `first`, that are nearer than the root of `square_reach`.
+    /// Whether one is near is a coin toss that no branch predictor wins, so all eight are written, the near ones first,
+    /// and only these are counted.
     #[inline(always)]
     pub fn add(&mut self, first: u32, squares: &[f64; LANES], square_reach: f64) {
+        debug_assert!(!self.is_full());
         let from = self.count.min(CAPACITY - LANES);
         let places = &mut self.squares[from..from + LANES];
         let knots = &mut self.knots[from..from + LANES];

@@ -1,11 +1,11 @@
 //! The score of a pose: alone, for ranking, or with its slices and the unfiltered sum, for the table.
 //!
-//! A polynomial sum_k c_k u^k of degree 7 is (c_0..c_3 + u^4 c_4..c_7) . (1, u, u^2, u^3): two vectors of four from one cache line, and
-//! the last product need not be summed across before all pairs are.
+//! A polynomial sum_k c_k u^k of degree 7 is (c_0..c_3 + u^4 c_4..c_7) . (1, u, u^2, u^3): two vectors of four from one
+//! cache line, and the last product need not be summed across before all pairs are.
 //!
-//! Closures are inlined by order: what the compiler leaves outside the dispatched function is compiled without its vector features. Vectors are
-//! spelt out where it found none of its own: that took the score with its slices from 0.71 to 0.39 of the plain loop's time
-//! (`cargo bench --bench exact`, AMD EPYC, AVX2).
+//! Closures are inlined by order: what the compiler leaves outside the dispatched function is compiled without its
+//! vector features. Vectors are spelt out where it found none of its own: that took the score with its slices from 0.71
+//! to 0.39 of the plain loop's time (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
 use super::near::{LANES, Near, vectors, vectors_mut};
 use super::tables::{Line, Places};
@@ -15,8 +15,8 @@ use crate::se3::Pose;
 use pulp::{Arch, Simd, WithSimd};
 
 impl ExactScorer {
-    /// The score of one pose, all terms together, and nothing else: what poses are ranked by, at a fraction of [`Self::score`]'s price.
-    /// Agrees with it but for rounding.
+    /// The score of one pose, all terms together, and nothing else: what poses are ranked by, at a fraction of
+    /// [`Self::score`]'s price. Agrees with it but for rounding.
     pub fn score_only(&self, pose: &Pose) -> f64 {
         Arch::new().dispatch(Alone { scorer: self, pose })
     }
@@ -83,7 +83,7 @@ impl ExactScorer {
         (totals, terms)
     }
 
-    /// Sums over the listed knots of their weights times kernels, both of which `pair` gives by knot and panel.
+    /// Sums over the collected knots of their weights times kernels, both of which `pair` gives by knot and panel.
     #[inline(always)]
     fn add_up<'a, S: Simd, const KERNELS: usize>(
         &self,
@@ -102,6 +102,8 @@ impl ExactScorer {
                         for (sum, line) in sums.iter_mut().zip(lines) {
                             powers.add(simd, line, sum);
                         }
+                    } else {
+                        debug_assert!(false, "a knot, class or panel that is not there");
                     }
                 }
             }
@@ -133,9 +135,11 @@ impl ExactScorer {
                 |near| {
                     for (square, number) in near.pairs() {
                         let Some(other) = self.knots.get(number as usize) else {
+                            debug_assert!(false, "a knot that is not there is near");
                             continue;
                         };
                         let Some(radius_sum) = radius_sums.get(other.class as usize) else {
+                            debug_assert!(false, "every class has its radius sum");
                             continue;
                         };
                         let widest = radius_sum + offsets[2];

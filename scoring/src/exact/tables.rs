@@ -1,9 +1,10 @@
 //! Kernels of all pairs of radii over distance, laid out for the pair sum: a polynomial of degree 7 is one cache line.
 //!
-//! Panel k of a table covers distances within half a panel of k panel widths, so that rounding finds the panel and leaves the
-//! argument u in [-1/2, 1/2]; the kernel is even in the distance, so panel 0 sees it on both sides of 0. The last real panel
-//! ends at the reach; one of zeros follows, in which all farther pairs end up. The score's table is the weighted sum of the slices' own
-//! coefficients, so the score alone and the score from the slices differ by rounding only.
+//! Panel k of a table covers distances within half a panel of k panel widths, so that rounding finds the panel and
+//! leaves the argument u in [-1/2, 1/2]. The kernel is even in the distance: panel 0 covers both sides of 0. The last
+//! real panel ends at the reach. One of zeros follows, in which all farther pairs end up. The score's table is the
+//! weighted sum of the slices' own coefficients, so the score alone and the score from the slices differ by rounding
+//! only.
 
 use super::near::{LANES, vectors, vectors_mut};
 use crate::kernel::RankingKernel;
@@ -126,12 +127,12 @@ impl PairTables {
 
     /// First lines of the tables that a ligand class needs, by receptor class.
     pub fn starts(&self, ligand_class: usize) -> &[u32] {
-        self.starts.get(ligand_class).map_or(&[], Vec::as_slice)
+        &self.starts[ligand_class]
     }
 
     /// Radius sums in Å of a ligand class, by receptor class.
     pub fn sums(&self, ligand_class: usize) -> &[f64] {
-        self.sums.get(ligand_class).map_or(&[], Vec::as_slice)
+        &self.sums[ligand_class]
     }
 
     /// Panels per Å.

@@ -27,8 +27,8 @@ fn some_pose() -> Pose {
     Pose::from_parts([0.3, -0.2, 0.8, 0.4], [4.0, -2.0, 7.0])
 }
 
-/// The cell list must change nothing against the plain double sum over the kernel's definition, and the one-array form with
-/// complex weights must give the same score as the three slices.
+/// The cell list must change nothing against the plain double sum over the kernel's definition, and the one-array form
+/// with complex weights must give the same score as the three slices.
 #[test]
 fn equals_the_plain_double_sum_and_the_complex_one_array_form() {
     let (kernel, a, b, pose) = (
@@ -190,15 +190,15 @@ fn poses(count: usize, spread: f64) -> Vec<Pose> {
         .collect()
 }
 
-/// Score alone, score from slices, and a double loop over the kernel's own distance tables, which have other panels, must agree to
-/// 1e-9 of the best score, and so must the gradient's. Hard cases: coincident knots, whose distance is 0; knots 1e6 Å apart; more
-/// blocks within reach than are listed at a time (2,048 knots); radii of a ratio of 1e6, where tables reach far beyond the panels of
-/// the small pairs.
+/// Score alone, score from slices, and a double loop over the kernel's own distance tables, which have other panels,
+/// must agree to 1e-9 of the best score, and so must the gradient's. Hard cases: coincident knots, whose distance is 0;
+/// knots at distances of 1e6 Å; more knots within reach than are collected at a time. Also radii of a ratio of 1e6,
+/// whose tables reach far beyond the panels of small pairs.
 #[test]
 fn score_alone_slices_and_plain_loop_agree() {
     let mut far = cloud(50, 12.0, 11);
-    let apart: Vec<[f64; 3]> = far.centers.iter().map(|x| x.map(|x| x + 1e6)).collect();
-    far.centers.extend(apart);
+    let shifted: Vec<[f64; 3]> = far.centers.iter().map(|x| x.map(|x| x + 1e6)).collect();
+    far.centers.extend(shifted);
     let far = knots(far.centers, &[1.5, 1.9]);
     let protein = [1.5, 1.65, 1.9];
     let cases = [
@@ -209,7 +209,7 @@ fn score_alone_slices_and_plain_loop_agree() {
             knots(vec![[2.0; 3]; 9], &protein),
             3.0,
         ),
-        ("apart", far, cloud(40, 10.0, 12), 15.0),
+        ("distant", far, cloud(40, 10.0, 12), 15.0),
         ("crowded", cloud(5000, 9.0, 13), cloud(10, 9.0, 14), 10.0),
         (
             "ratio 1e6",
@@ -250,7 +250,8 @@ fn score_alone_slices_and_plain_loop_agree() {
         };
         let poses = poses(12, spread);
         let expected: Vec<f64> = poses.iter().map(plain).collect();
-        // The best score stands for the scale; crowds that only overlap have none worth the name, there it is what a pair can lose.
+        // The best score stands for the scale; crowds that only overlap have none worth the name, there it is what a
+        // pair can lose.
         let best = expected
             .iter()
             .fold(100.0f64, |best, &score| best.max(score));

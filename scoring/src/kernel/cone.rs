@@ -1,11 +1,12 @@
 //! The lifted cone (B&I eq. 44): one kernel over (x, r) whose slice at height rho is the pair kernel of two balls.
 //!
-//! kappa(d, sigma) = psi_alpha(d / sigma) w(sigma), with sigma = r + s + rho for balls of radii r, s and a slice at offset
-//! rho. w is the trim along the radius axis: it makes the cone periodic in sigma, so that it has Fourier modes.
+//! kappa(d, sigma) = psi_alpha(d / sigma) w(sigma). For balls of radii r, s and a slice at offset rho, sigma = r + s +
+//! rho. The factor w is the trim along the radius axis: it makes the cone periodic in sigma, so that it has Fourier
+//! modes.
 //!
-//! B&I's r axis runs the other way, r = -sigma. Their trim as printed, psi_alpha(1 - r / L) on -2 L < r < 0 (after eq. 44;
-//! psi_alpha(1 - 2 r / L) on -L < r < 0 in section 2.2), has an argument above 1 on the whole of that range, where psi_alpha
-//! is 0: it vanishes on its own support. The working sign, psi_alpha(1 + r / L) = psi_alpha(1 - sigma / L), is used here.
+//! B&I's r axis runs the other way, r = -sigma. Their trim is printed as psi_alpha(1 - r / L) after eq. 44, and as
+//! psi_alpha(1 - 2 r / L) in section 2.2. For r < 0 the argument is above 1, where psi_alpha is 0: as printed it
+//! vanishes on its own support. The working sign, psi_alpha(1 + r / L) = psi_alpha(1 - sigma / L), is used here.
 
 use super::low_pass::smooth_step_down;
 use knotdock_structures::numeric::Bump;
@@ -20,11 +21,11 @@ pub enum Trim {
     FlatTop,
     /// B&I's product trim with the working sign, psi_alpha(1 - sigma / length).
     ///
-    /// It weights pairs by their radii, which changes the meaning of lambda. It is smooth, and its series short, only where
-    /// alpha is even.
+    /// It weights pairs by their radii, which changes the meaning of lambda. It is smooth, and its series short, only
+    /// where alpha is even.
     BehandishIlies {
-        /// Radius sum at which the trim is 1, in Å. It falls to 0 at 0 and at twice this length, which must lie beyond all
-        /// radius sums in use.
+        /// Radius sum at which the trim is 1, in Å. It falls to 0 at 0 and at twice this length, which must lie beyond
+        /// all radius sums in use.
         length: f64,
     },
 }

@@ -2,7 +2,8 @@
 
 /// C-infinity step from 1 (x <= start) down to 0 (x >= stop); `start` < `stop`.
 ///
-/// f(1 - u) / (f(1 - u) + f(u)) with f(t) = exp(-1 / t) and u the way from start to stop: all derivatives vanish at both ends.
+/// f(1 - u) / (f(1 - u) + f(u)) with f(t) = exp(-1 / t) and u the way from start to stop: all derivatives vanish at
+/// both ends.
 pub fn smooth_step_down(x: f64, start: f64, stop: f64) -> f64 {
     let u = (x - start) / (stop - start);
     if u <= 0.0 {

@@ -1,5 +1,5 @@
-//! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product kernel of
-//! rasterised bumps.
+//! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product
+//! kernel of rasterised bumps.
 
 pub mod cone;
 pub mod exponent;

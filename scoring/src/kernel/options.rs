@@ -53,7 +53,8 @@ pub enum KernelError {
         /// What it must satisfy.
         bound: &'static str,
     },
-    /// The kernel is so long against its resolution, or rings so long, that its tables would take more than seconds, up to hours, or all memory.
+    /// The kernel is so long against its resolution, or rings so long, that its tables would take more than seconds, up
+    /// to hours, or all memory.
     #[error(
         "the kernel reaches {reach:.3e} at a resolution of {resolution:.3e}: its tables would take too long; use a coarser resolution, \
          or a pass length farther from it, smaller radii or a smaller offset"
@@ -61,17 +62,18 @@ pub enum KernelError {
     TooLong {
         /// Distance at which the kernel would end, or radius sum at which its trim does if that is farther, in Å.
         reach: f64,
-        /// The resolution asked for, in Å.
+        /// The requested resolution, in Å.
         resolution: f64,
     },
 }
 
-/// Longest reach of a kernel in resolutions: tables take the square of it in time, those of the lifted axis here 5 s on one core (as measured 2.7 s at 100, 11 s at 200),
-/// and those of a pair sum a second for each sum of two radii.
+/// Longest reach of a kernel in resolutions. Tables take the square of it in time. Those of the lifted axis take 5 s
+/// here on one core (measured: 2.7 s at 100, 11 s at 200), those of a pair sum a second for each sum of two radii.
 pub(super) const LONGEST: f64 = 140.0;
-/// Most resolutions that the low-pass may ring over, those of a pass length a hundredth above the resolution. Balls that are many resolutions wide need long tables, this does not.
+/// Most resolutions that the low-pass may ring over: those of a pass length a hundredth above the resolution.
 pub(super) const MAX_RING_LENGTH: f64 = 102.0;
-/// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal numbers.
+/// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal
+/// numbers.
 pub(super) const SMALLEST: f64 = 1e-6;
 /// What errors call `Trim::BehandishIlies::length`.
 pub(super) const TRIM_LENGTH: &str = "length of the trim";
@@ -81,8 +83,8 @@ const LARGEST_LAMBDA: f64 = 1e6;
 impl KernelOptions {
     /// Weights of the slices at rho = 0, r0, 2 r0 in the score: -lambda^2, 2 lambda, -1.
     ///
-    /// F_S = i (f_{S+B0} - lambda f_S) (B&I eq. 51), and the product of two such functions carries i * i = -1. B&I's eq. (52)-(53)
-    /// conjugate one factor and so lose this sign; their text needs it.
+    /// F_S = i (f_{S+B0} - lambda f_S) (B&I eq. 51), and the product of two such functions carries i * i = -1. B&I's
+    /// eq. (52)-(53) conjugate one factor and so lose this sign; their text needs it.
     pub fn slice_weights(&self) -> [f64; 3] {
         [-self.lambda * self.lambda, 2.0 * self.lambda, -1.0]
     }

@@ -1,7 +1,8 @@
-//! The exact score of the product kernel: the plain sum over all pairs in f64, the reference that grid and lifted engines are held to.
+//! The exact score of the product kernel: the plain sum over all pairs in f64, the reference that grid and lifted
+//! engines are held to.
 //!
-//! O(receptor knots x ligand knots), radial kernels from tables that follow [`ProductKernel::value`] to about 1e-9 of its peak (sharp balls:
-//! the lens volumes themselves). No cell list: a reference is better plain than fast.
+//! O(receptor knots x ligand knots), radial kernels from tables that follow [`ProductKernel::value`] to about 1e-9 of
+//! its peak (sharp balls: the lens volumes themselves). No cell list: a reference is better plain than fast.
 
 use super::product::ProductKernel;
 use super::table::Table;

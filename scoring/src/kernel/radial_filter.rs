@@ -1,11 +1,13 @@
-//! The filter of the ranking kernel, for any radial function: a low-pass in the Fourier domain, then a window in the real one.
+//! The filter of the ranking kernel, for any radial function: a low-pass in the Fourier domain, then a window in the
+//! real one.
 //!
-//! The low-pass W(|w|) is 1 up to the pass frequency and falls C-infinity to 0 at the stop frequency; the window V(d) is 1 where kernels
-//! live and falls C-infinity to 0 at the reach. Both are linear, so they apply to slices, lifted modes and the kernels of further
-//! effects alike, and all of them end at one reach and one frequency.
+//! The low-pass W(|w|) is 1 up to the pass frequency and falls C-infinity to 0 at the stop frequency; the window V(d)
+//! is 1 where kernels live and falls C-infinity to 0 at the reach. Both are linear, so they apply to slices, lifted
+//! modes and the kernels of further effects alike, and all of them end at one reach and one frequency.
 //!
-//! Both integrals are trapezoidal sums of smooth even functions that vanish with all derivatives at their ends, for which that
-//! rule converges faster than any power. What the sums leave out is part of the definition: every engine and the exact sum use them.
+//! Both integrals are trapezoidal sums of smooth even functions that vanish with all derivatives at their ends, for
+//! which that rule converges faster than any power. What the sums leave out is part of the definition: every engine and
+//! the exact sum use them.
 
 use super::low_pass::smooth_step_down;
 use super::radial_transform::sinc;
@@ -26,8 +28,9 @@ pub struct RadialFilter {
 }
 
 impl RadialFilter {
-    /// A filter that passes all below `pass`, nothing from `stop` on, for kernels that live within `support`. The low-pass rings over
-    /// lengths of 1 / (stop - pass); the window falls over `reach_factor` of them, beginning soon after the support.
+    /// A filter that passes all below `pass`, nothing from `stop` on, for kernels that live within `support`. The
+    /// low-pass rings over lengths of 1 / (stop - pass); the window falls over `reach_factor` of them, beginning soon
+    /// after the support.
     pub(crate) fn new(pass: f64, stop: f64, support: f64, reach_factor: f64) -> Self {
         let [window_start, reach] = Self::window_ends(pass, stop, support, reach_factor);
         let frequency_step = 1.0 / (8.0 * reach);
@@ -109,7 +112,8 @@ impl RadialFilter {
         smooth_step_down(distance, self.window_start, self.reach)
     }
 
-    /// The filtered kernel of a band at the distance nodes, times their quadrature weights: the input of [`Self::spectrum_of`].
+    /// The filtered kernel of a band at the distance nodes, times their quadrature weights: the input of
+    /// [`Self::spectrum_of`].
     pub(crate) fn profile(&self, band: &[f64]) -> Vec<f64> {
         self.distances
             .iter()

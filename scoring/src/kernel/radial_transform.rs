@@ -1,7 +1,8 @@
 //! The three-dimensional Fourier transform of the bump function, a radial function of q = |w| (cycles per unit length).
 //!
-//! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z). A ball of radius
-//! sigma has the transform sigma^3 psi^(q sigma), which continues to sigma < 0 as an odd function.
+//! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z).
+//!
+//! A ball of radius sigma has the transform sigma^3 psi^(q sigma), which continues to sigma < 0 as an odd function.
 
 use knotdock_structures::numeric::{Bump, double_exponential};
 use std::f64::consts::PI;
@@ -16,8 +17,8 @@ pub fn sinc(z: f64) -> f64 {
     }
 }
 
-/// psi^ of one bump function, by double-exponential quadrature: absolute error below 1e-12 for |q| up to the range it was
-/// built for (the tests hold it to 1e-10 against closed forms and mpmath).
+/// psi^ of one bump function, by double-exponential quadrature: absolute error below 1e-12 for |q| up to the range it
+/// was built for (the tests hold it to 1e-10 against closed forms and mpmath).
 #[derive(Clone, Debug)]
 pub struct RadialTransform {
     kind: Kind,

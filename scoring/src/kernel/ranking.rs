@@ -1,9 +1,10 @@
 //! The ranking kernel: B&I's pair kernel, low-passed to a stated resolution and cut at a stated reach, in both domains.
 //!
-//! With lambda about 10 the pair kernel is stiff, and a grid's cut-off would be part of the score without saying so. Here it
-//! is said: each slice kappa(d, sigma) is multiplied in the Fourier domain by W(|w|) (1 up to the pass frequency, C-infinity
-//! down to 0 at the stop frequency 1 / resolution) and then, in the real domain, by a window V(d) that is 1 where the kernel
-//! lives and falls C-infinity to 0 at the reach. Both steps are linear in kappa, so they apply to slices and lifted modes alike.
+//! With lambda about 10 the pair kernel is stiff, and a grid's cut-off would be a hidden part of the score. Here it is
+//! explicit. Each slice kappa(d, sigma) is multiplied in the Fourier domain by W(|w|): 1 up to the pass frequency,
+//! C-infinity down to 0 at the stop frequency 1 / resolution. Then, in the real domain, it is multiplied by a window
+//! V(d): 1 within the kernel, C-infinity down to 0 at the reach. Both steps are linear in kappa, so they apply to
+//! slices and lifted modes alike.
 //!
 //! Both are the work of [`super::radial_filter`].
 
@@ -24,8 +25,9 @@ pub struct RankingKernel {
 }
 
 impl RankingKernel {
-    /// The kernel for pairs whose radius sums r + s lie in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more) lengthens
-    /// the window's fall, which sharpens the kernel's own cut in frequency: 1 serves a tolerance of 1e-2, 4 one of 1e-6.
+    /// The kernel for pairs whose radius sums r + s lie in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more)
+    /// lengthens the window's fall, which sharpens the kernel's own cut in frequency: 1 serves a tolerance of 1e-2, 4
+    /// one of 1e-6.
     ///
     /// # Errors
     /// [`KernelError`] on options that define no kernel.
@@ -126,8 +128,10 @@ impl RankingKernel {
         self.filter.low_passed(&self.band(sigma), distance) * self.filter.window(distance)
     }
 
-    /// What the low-pass leaves of the overlap of two coincident balls of radius sum sigma (Å), which is 1 without it: near or above 1
-    /// for balls that the resolution shows, and falling like sigma^3 for smaller ones. Trim and window are not in it.
+    /// Overlap of two coincident balls of radius sum sigma (Å) after the low-pass; without it, 1.
+    ///
+    /// Near or above 1 for balls that the resolution shows, falling like sigma^3 for smaller ones. Trim and window are
+    /// not in it.
     pub fn overlap_left(&self, sigma: f64) -> f64 {
         // Beyond this the transform is not tabulated, and the resolution shows all there is.
         if sigma > self.cone.high {
@@ -147,7 +151,8 @@ impl RankingKernel {
         self.filter.spectrum_of(profile, w)
     }
 
-    /// The slices at rho = 0, r0, 2 r0 of one pair of radii as functions of distance, by their definition; 0 from the reach on.
+    /// The slices at rho = 0, r0, 2 r0 of one pair of radii as functions of distance, by their definition; 0 from the
+    /// reach on.
     pub(crate) fn slices_of(&self, radius_sum: f64) -> impl Fn(f64) -> [f64; 3] + '_ {
         let bands = self
             .options
@@ -177,7 +182,8 @@ impl RankingKernel {
         })
     }
 
-    /// Largest value of the score kernel over d, of a radius sum's [`Self::distance_table`]: what one touching pair can earn.
+    /// Largest value of the score kernel over d, of a radius sum's [`Self::distance_table`]: what one touching pair can
+    /// earn.
     pub fn peak_score(&self, table: &Table<4>) -> f64 {
         (0..1000)
             .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
@@ -193,8 +199,8 @@ impl RankingKernel {
             .unwrap_or(0.0)
     }
 
-    /// Least frequency, from the stop frequency on, beyond which the integral of 4 pi w^2 |transform of the score kernel| is at most `allowed`: no pair moves by
-    /// more than that when all modes beyond it are dropped.
+    /// Least frequency, from the stop frequency on, beyond which the integral of 4 pi w^2 |transform of the score
+    /// kernel| is at most `allowed`. No pair moves by more when all modes beyond it are dropped.
     pub fn band_end(&self, radius_sum: f64, allowed: f64) -> f64 {
         let weights = self.options.slice_weights();
         let mut profile = vec![0.0; self.filter.nodes()];
@@ -280,7 +286,8 @@ mod tests {
             a
         });
         assert!(stop < ends[0] && ends.is_sorted() && ends[0] < ends[2] && ends[2] <= 4.0 * stop);
-        // What lies beyond, summed far finer from the kernel's definition alone, is what was allowed but for what one step holds.
+        // What lies beyond, summed far finer from the kernel's definition alone, is what was allowed but for what one
+        // step holds.
         let offsets = short.options.slice_offsets().into_iter();
         let slices = offsets.zip(short.options.slice_weights());
         let profiles: Vec<(Vec<f64>, f64)> = slices

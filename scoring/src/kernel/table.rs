@@ -75,7 +75,8 @@ impl PanelFit {
         Self { nodes, inverse }
     }
 
-    /// Coefficients [power][lane] in (x - middle) / half_width of the polynomials that agree with `function` at the nodes.
+    /// Coefficients [power][lane] in (x - middle) / half_width of the polynomials that agree with `function` at the
+    /// nodes.
     pub(crate) fn coefficients<const LANES: usize>(
         &self,
         middle: f64,

@@ -20,8 +20,8 @@ pub enum RadiusBasis {
     },
     /// 1, cos and sin of 2 pi eta_k r for k = 1..=K: the lifted modes themselves, for any number of radii.
     Modes,
-    /// Lagrange polynomials on Chebyshev nodes (Å): any number of radii for the product kernel, whose factors are smooth in the radius
-    /// and have no lifted modes.
+    /// Lagrange polynomials on Chebyshev nodes (Å): any number of radii for the product kernel, whose factors are
+    /// smooth in the radius and have no lifted modes.
     Nodes {
         /// Nodes over the receptor's radii.
         receptor: Vec<f64>,
@@ -40,8 +40,9 @@ impl RadiusBasis {
         }
     }
 
-    /// The basis for a product kernel on |w| <= `w_max`, and the largest error of interpolating over radii relative to the largest ball's
-    /// transform: 0 for as many radii as are carried as they are, else as near to `tolerance` as `MAX_NODES` nodes bring it.
+    /// The basis for a product kernel on |w| <= `w_max`, and its largest error of interpolating over radii, relative to
+    /// the largest ball's transform. The error is 0 where each radius has its own class, else as near to `tolerance` as
+    /// `MAX_NODES` nodes bring it.
     pub fn for_product(
         kernel: &ProductKernel,
         receptor: Vec<f64>,
@@ -85,7 +86,7 @@ impl RadiusBasis {
         }
     }
 
-    /// Radial spectrum that couples receptor function a with ligand function b in the folded kernel, on 0 <= |w| <= `w_max`;
+    /// Radial spectrum that couples receptor function a with ligand function b in a quantity, on 0 <= |w| <= `w_max`;
     /// `None` where it is zero.
     pub fn coupling(
         &self,
@@ -132,8 +133,9 @@ impl RadiusBasis {
         }))
     }
 
-    /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a radius, and the two
-    /// bodies' transforms at their radii multiply. `None` for [`Self::Modes`], whose functions stand for no radius.
+    /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a
+    /// radius, and the two bodies' transforms at their radii multiply. `None` for [`Self::Modes`], whose functions
+    /// stand for no radius.
     pub fn product_coupling(
         &self,
         kernel: &ProductKernel,

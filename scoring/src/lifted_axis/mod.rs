@@ -5,14 +5,14 @@
 //! Of a receptor with knots (x_i, r_i), weights c_i, and a ligand with knots (y_j, s_j), weights d_j, at rotation R:
 //!
 //! - rhoA(w, eta) = sum_i c_i exp(-2 pi i (w.x_i + eta r_i));
-//! - rhoB(w, eta) = sum_j d_j exp(-2 pi i (w.R y_j - eta s_j)), the ligand's r-mirror (B&I eq. 38, 49): s_j enters with the
-//!   other sign. Its conjugate is then sum_j d_j exp(+2 pi i (w.R y_j - eta s_j)), so that the product depends on r + s.
-//!   Without the mirror it would depend on r - s;
+//! - rhoB(w, eta) = sum_j d_j exp(-2 pi i (w.R y_j - eta s_j)), the ligand's r-mirror (B&I eq. 38, 49): s_j enters with
+//!   the other sign. Its conjugate is then sum_j d_j exp(+2 pi i (w.R y_j - eta s_j)), so that the product depends on r
+//!   + s. Without the mirror it would depend on r - s;
 //! - K(w, eta_k) = (1 / P) integral of kappa^(|w|; sigma) exp(+2 pi i eta_k sigma) d sigma.
 //!
-//! The slice at offset rho is
-//! g^(w; rho) = sum_k K(w, eta_k) exp(-2 pi i eta_k rho) rhoA(w, eta_k) conj(rhoB(w, eta_k)).
-//! The score's slices add up to one factor a mode, C_k = -lambda^2 + 2 lambda exp(-2 pi i eta_k r0) - exp(-4 pi i eta_k r0).
+//! The slice at offset rho is g^(w; rho) = sum_k K(w, eta_k) exp(-2 pi i eta_k rho) rhoA(w, eta_k) conj(rhoB(w,
+//! eta_k)). The score's slices add up to one factor a mode, C_k = -lambda^2 + 2 lambda exp(-2 pi i eta_k r0) - exp(-4
+//! pi i eta_k r0).
 
 mod basis;
 mod nodes;
@@ -67,8 +67,9 @@ impl LiftedAxis {
         Self { period, profiles }
     }
 
-    /// The fewest modes whose series reproduces the kernel at all radius sums in use to `tolerance`, relative to the largest
-    /// transform value among them; at most 64, or 128 for a tolerance below 1e-7. Returns them with the error reached.
+    /// The fewest modes whose series reproduces the kernel at all radius sums in use to `tolerance`, relative to the
+    /// largest transform value among them; at most 64, or 128 for a tolerance below 1e-7. Returns them with the error
+    /// reached.
     pub fn for_tolerance(kernel: &RankingKernel, tolerance: f64) -> (Self, f64) {
         let most = if tolerance < 1e-7 { 128 } else { 64 };
         let full = Self::new(kernel, most);
@@ -140,7 +141,7 @@ impl LiftedAxis {
             .multiplier(eta)
             .powi(2),
             Quantity::Slice(index) => {
-                let offset = kernel.options().slice_offsets()[index.min(2)];
+                let offset = kernel.options().slice_offsets()[index];
                 Complex64::cis(-2.0 * PI * eta * offset)
             }
             // Modes turn as exp(-2 pi i eta rho): to differentiate is to multiply by -2 pi i eta.

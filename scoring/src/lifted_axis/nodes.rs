@@ -4,7 +4,8 @@ use crate::kernel::ProductKernel;
 use crate::kernel::product::Body;
 use knotdock_structures::numeric::chebyshev;
 
-/// Most nodes of [`super::RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product kernel.
+/// Most nodes of [`super::RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product
+/// kernel.
 pub(super) const MAX_NODES: usize = 32;
 
 /// Value at `radius` of the Lagrange polynomial that is 1 at node `index`.
@@ -18,7 +19,8 @@ pub(super) fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
         .product()
 }
 
-/// The fewest Chebyshev nodes over a range of radii that carry both bodies' transforms to `tolerance`, and the error reached.
+/// The fewest Chebyshev nodes over a range of radii that carry both bodies' transforms to `tolerance`, and the error
+/// reached.
 pub(super) fn nodes_for(
     kernel: &ProductKernel,
     radii: &[f64],

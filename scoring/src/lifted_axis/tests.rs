@@ -17,8 +17,8 @@ fn series_converges_to_the_slices() {
     }
 }
 
-/// The period and the radii sampled were once those of the flat top whatever the trim was: B&I's then met its own image, or was cut, and no number of modes brought the series
-/// closer than 3e-4 to 1e-2.
+/// The period and the radii sampled were once those of the flat top whatever the trim was. B&I's then met its own
+/// image, or was cut: no number of modes brought the series closer than 3e-4 to 1e-2.
 #[test]
 fn series_converges_with_the_trim_of_behandish_and_ilies() {
     for length in [4.0, 6.0, 9.0] {

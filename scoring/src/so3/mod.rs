@@ -1,7 +1,8 @@
 //! Rotation sets: near-uniform, of any size, closed under half-turns, the same on every machine.
 //!
-//! [`rotation_set`] starts from a super-Fibonacci spiral (Alexa, CVPR 2022) and relaxes it. [`covering_radius`] measures
-//! how far from its nearest rotation of a set a rotation can lie. Rotations are unit quaternions, angles radians.
+//! [`rotation_set`] starts from a super-Fibonacci spiral (Alexa, CVPR 2022) and relaxes it. [`covering_radius`]
+//! measures how far from its nearest rotation of a set a rotation can lie. Rotations are unit quaternions, angles
+//! radians.
 
 mod covering;
 mod relaxation;
@@ -81,7 +82,8 @@ mod tests {
         for count in [60, 500, 3600] {
             let set = rotation_set(count);
             let radius = covering_radius(&set);
-            // A ball of angle a is the share (a - sin a) / pi of SO(3). No covering radius is below that of share 1 / n.
+            // A ball of angle a is the share (a - sin a) / pi of SO(3). No covering radius is below that of share 1 /
+            // n.
             let mut least = 0.0f64;
             while (least - least.sin()) / PI < 1.0 / count as f64 {
                 least += 1e-4;

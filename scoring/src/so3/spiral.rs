@@ -1,7 +1,8 @@
 //! Super-Fibonacci spirals of rotations (Alexa, CVPR 2022).
 //!
-//! Rotation i of n is the unit quaternion (r sin a, r cos a, R sin b, R cos b) with s = i + 1/2, r = sqrt(s / n),
-//! R = sqrt(1 - s / n), a = 2 pi s / sqrt 2 and b = 2 pi s / 1.5337511687....
+//! Rotation i of n is the unit quaternion (r sin a, r cos a, R sin b, R cos b).
+//!
+//! With s = i + 1/2: r = sqrt(s / n), R = sqrt(1 - s / n), a = 2 pi s / sqrt 2 and b = 2 pi s / 1.5337511687....
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::PI;

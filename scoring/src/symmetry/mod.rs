@@ -1,14 +1,17 @@
 //! Rings: n copies of one molecule about an axis, each the image of the one before it by the same pose.
 //!
-//! Such a pose M turns by 2 pi / n about an axis and does not slide along it, so that M^n is the identity: with u the axis' direction, t the
-//! translation and p the axis' point nearest the origin, u.t = 0, t = p - R p and p = (t + cot(pi / n) u x t) / 2. The same pose takes the
+//! Such a pose M turns by 2 pi / n about an axis and does not slide along it, so that M^n is the identity. With u the
+//! axis' direction, t the translation and p the axis' point nearest the origin: u.t = 0, t = p - R p and p = (t +
+//! cot(pi / n) u x t) / 2.
+//!
+//! The same pose takes the
 //! first copy to the second and any copy to the next, so its score is that of each pair of neighbours.
 //!
-//! A molecule that is moved by C under the axis, or an axis that is moved by C over the molecule, makes C M C^-1 of M: that is how a ring is
-//! varied without ceasing to be one.
+//! Where the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies
+//! a ring and keeps it a ring.
 //!
-//! Dihedral symmetry Dn is a ring of two whose molecule is a ring of n itself: half a turn about an axis that crosses that ring's own at a right
-//! angle ([`RingAxis`]) lays one ring face to face with the other.
+//! Dihedral symmetry Dn is a ring of two whose molecule is itself a ring of n. A half-turn about an axis that crosses
+//! the ring's own at a right angle ([`RingAxis`]) lays one ring face to face with the other.
 
 mod ring_axis;
 
@@ -25,8 +28,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 const MOST: usize = 24;
 /// Most copies in each of two rings.
 const MAX_FOLDS: usize = 12;
-/// How far from a ring's a pose may be: radians of its angle, and its slide along the axis in Å and besides as a share of how far it moves in all, which
-/// is far where the file's origin is.
+/// Largest departure of a pose from a ring's: in radians of its angle, and in Å of its slide along the axis. This share
+/// of its translation is added, which is long where the file's origin is far.
 const OFF: f64 = 1e-6;
 
 /// How copies of a molecule stand to each other: Cn, n of them about an axis, or Dn, two rings of n face to face.
@@ -103,7 +106,8 @@ impl Symmetry {
         UnitQuaternion::from_axis_angle(axis, self.angle())
     }
 
-    /// The ring's pose about the same axis that lies nearest: without the slide along it. `pose` turns by the ring's angle, rounding aside.
+    /// The ring's pose about the same axis that lies nearest: without the slide along it. `pose` turns by the ring's
+    /// angle, rounding aside.
     pub fn nearest(self, pose: &Pose) -> Pose {
         let axis = direction(pose);
         let slide = axis.dot(&pose.translation);
@@ -138,8 +142,9 @@ impl Symmetry {
         })
     }
 
-    /// Poses of the copies beyond the second that stand to the first as no nearer one does, each with the number of such pairs for each pair of
-    /// neighbours: one, and half as many across an even ring.
+    /// Poses of the copies beyond the second, relative to the first, each kind of pair once.
+    ///
+    /// With each comes the number of such pairs for each pair of neighbours: one, and a half across an even ring.
     pub fn beyond(self, pose: &Pose) -> impl Iterator<Item = (Pose, f64)> + use<> {
         let copies = self.copies;
         let half = copies / 2 + 1;
@@ -159,7 +164,8 @@ fn direction(pose: &Pose) -> Unit<Vector3<f64>> {
     Unit::new_normalize(Vector3::new(x, y, z))
 }
 
-/// The pose C M C^-1 that a pose M becomes when C, a turn about `center` and then a shift, moves the molecule under the axis.
+/// The pose C M C^-1 that a pose M becomes when C, a turn about `center` and then a shift, moves the molecule under the
+/// axis.
 pub fn conjugated(
     pose: &Pose,
     center: Vector3<f64>,
@@ -170,13 +176,15 @@ pub fn conjugated(
     motion.after(pose).after(&motion.inverse())
 }
 
-/// What a score gains by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its gradient at `pose` by the ligand's own.
+/// What a score gains by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its
+/// gradient at `pose` by the ligand's own.
 pub fn conjugated_gradient(
     pose: &Pose,
     center: Vector3<f64>,
     gradient: &PoseGradient,
 ) -> PoseGradient {
-    // A shift b moves the ligand's centre by b - R b; a turn a about the centre moves it by a x (its place less the centre) and turns by a - R a.
+    // A shift b moves the ligand's centre by b - R b; a turn a about the centre moves it by a x (its place less the
+    // centre) and turns by a - R a.
     let back = pose.rotation.inverse();
     let arm = pose.rotation * center + pose.translation - center;
     let (force, torque) = (gradient.force, gradient.torque);
@@ -209,7 +217,7 @@ mod tests {
         }
     }
 
-    fn apart(a: &Pose, b: &Pose) -> f64 {
+    fn difference(a: &Pose, b: &Pose) -> f64 {
         a.angle_to(b) + (a.translation - b.translation).norm()
     }
 
@@ -243,14 +251,15 @@ mod tests {
             assert_eq!(images.len(), copies);
             let mut power = Pose::identity();
             for image in &images {
-                assert!(apart(image, &power) < 1e-10, "{symmetry}");
+                assert!(difference(image, &power) < 1e-10, "{symmetry}");
                 power = pose.after(&power);
             }
-            assert!(apart(&power, &Pose::identity()) < 1e-10, "{symmetry}");
+            assert!(difference(&power, &Pose::identity()) < 1e-10, "{symmetry}");
         }
     }
 
-    /// Where the file's origin lies on the axis nothing moves it, and where it lies far off it moves far: either is a ring, as printed too.
+    /// Where the file's origin lies on the axis nothing moves it, and where it lies far off it moves far: either is a
+    /// ring, as printed too.
     #[test]
     fn rings_are_known_wherever_the_origin_lies() {
         for copies in [2, 3, 7, MOST] {
@@ -261,7 +270,7 @@ mod tests {
                 let printed = Pose::from_parts(pose.quaternion(), pose.translation.into());
                 let images = symmetry.ring(&symmetry.nearest(&printed)).unwrap();
                 let last = pose.after(&images[copies - 1]);
-                assert!(apart(&last, &Pose::identity()) < 1e-9 * (1.0 + scale));
+                assert!(difference(&last, &Pose::identity()) < 1e-9 * (1.0 + scale));
             }
         }
     }
@@ -291,7 +300,7 @@ mod tests {
         slid.translation += 0.01 * *direction(&pose);
         assert_eq!(symmetry.ring(&slid), None);
         assert_eq!(symmetry.ring(&Pose::identity()), None);
-        assert!(apart(&symmetry.nearest(&slid), &pose) < 1e-12);
+        assert!(difference(&symmetry.nearest(&slid), &pose) < 1e-12);
         assert_eq!(cyclic("C4").ring(&pose), None);
     }
 

@@ -1,8 +1,9 @@
-//! The axis of a ring that a file holds, and the half turns about axes across it that lay two such rings face to face (Dn).
+//! The axis of a ring that a file holds, and the half turns about axes across it that lay two such rings face to face
+//! (Dn).
 //!
-//! The mean of an atom's places in all copies of an exact ring lies on its axis, so the axis is the line through the means of all atoms. An axis across it
-//! has a direction u at a right angle to the ring's and meets it at a height h: two degrees of freedom, which the moves of a molecule along and about
-//! the ring's axis span.
+//! The mean of an atom's places in all copies of an exact ring lies on its axis, so the axis is the line through the
+//! means of all atoms. An axis across it has a direction u at a right angle to the ring's and meets it at a height h.
+//! These are two degrees of freedom; moves along and about the ring's axis span them.
 
 use super::{conjugated, direction};
 use crate::exact::PoseGradient;
@@ -10,8 +11,8 @@ use crate::se3::Pose;
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};
 
-/// How far in Å (RMSD) a copy may be from where a turn about the axis takes the first: what the copies of crystals differ by, and little enough that the
-/// second ring fits whichever of its copies faces whichever.
+/// Largest RMSD in Å between a copy and the first one turned about the axis. Copies in crystals differ by as much, and
+/// the second ring still fits whichever of its copies faces whichever.
 const SAME: f64 = 2.0;
 
 /// The axis of a ring of copies.
@@ -102,7 +103,8 @@ impl RingAxis {
         })
     }
 
-    /// Directions of `count` axes across the ring's, evenly over pi / n radians: the others lay the same two rings together, their copies counted from another one.
+    /// Directions of `count` axes across the ring's, evenly over pi / n radians: the others lay the same two rings
+    /// together, their copies counted from another one.
     pub fn across(&self, count: usize) -> Vec<Unit<Vector3<f64>>> {
         let axis = self.direction;
         let first = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
@@ -136,7 +138,8 @@ impl RingAxis {
         self.half_turn(&across, height)
     }
 
-    /// The direction across both the ring's axis and that of a half turn, and how far along it (Å) the half turn shifts a point at the origin.
+    /// The direction across both the ring's axis and that of a half turn, and how far along it (Å) the half turn shifts
+    /// a point at the origin.
     pub fn sideways(&self, rotation: &UnitQuaternion<f64>) -> (Unit<Vector3<f64>>, f64) {
         let across = Unit::new_normalize(rotation.imag());
         let sideways = Unit::new_normalize(self.direction.cross(&across));
@@ -144,7 +147,8 @@ impl RingAxis {
         (sideways, sideways.dot(&level.translation))
     }
 
-    /// The pose that a half turn becomes when the molecule is turned about the ring's axis and shifted along it, by as much as a move has of either.
+    /// The pose that a half turn becomes when the molecule is turned about the ring's axis and shifted along it, by as
+    /// much as a move has of either.
     pub fn moved(&self, pose: &Pose, turn: UnitQuaternion<f64>, shift: Vector3<f64>) -> Pose {
         let [turned, shifted] = [turn.scaled_axis(), shift].map(|of| self.direction.dot(&of));
         let turn = UnitQuaternion::from_axis_angle(&self.direction, turned);
@@ -185,7 +189,7 @@ mod tests {
         ((0..folds).map(copy).collect(), point, axis)
     }
 
-    fn apart(a: &Pose, b: &Pose) -> f64 {
+    fn difference(a: &Pose, b: &Pose) -> f64 {
         a.angle_to(b) + (a.translation - b.translation).norm()
     }
 
@@ -235,7 +239,8 @@ mod tests {
         assert!(RingAxis::of(&bent).is_err());
     }
 
-    /// Dn: a half turn across undoes itself and turns the ring's own turns about, and the ring's turns take it to those about other axes across.
+    /// Dn: a half turn across undoes itself and turns the ring's own turns about, and the ring's turns take it to those
+    /// about other axes across.
     #[test]
     fn half_turns_across_make_dihedral_groups() {
         for folds in [2, 3, 5] {
@@ -245,11 +250,11 @@ mod tests {
                 assert!(across.dot(&axis.direction).abs() < 1e-12);
             }
             let half = some(&axis);
-            assert!(apart(&half.after(&half), &Pose::identity()) < 1e-10);
+            assert!(difference(&half.after(&half), &Pose::identity()) < 1e-10);
             for turn in axis.turns() {
                 let other = half.after(&turn);
-                assert!(apart(&other.after(&other), &Pose::identity()) < 1e-10);
-                assert!(apart(&axis.nearest(&other), &other) < 1e-10);
+                assert!(difference(&other.after(&other), &Pose::identity()) < 1e-10);
+                assert!(difference(&axis.nearest(&other), &other) < 1e-10);
             }
         }
     }
@@ -262,10 +267,10 @@ mod tests {
         assert!((sideways.dot(&half.translation) - shift).abs() < 1e-10);
         let mut off = half;
         off.translation += 0.7 * *sideways + 0.4 * *direction(&half);
-        assert!(apart(&axis.nearest(&off), &half) < 1e-10);
+        assert!(difference(&axis.nearest(&off), &half) < 1e-10);
         off.translation += 0.6 * *axis.direction;
         let higher = axis.half_turn(&direction(&half), 8.5 + 0.3);
-        assert!(apart(&axis.nearest(&off), &higher) < 1e-10);
+        assert!(difference(&axis.nearest(&off), &higher) < 1e-10);
     }
 
     /// Moves leave a half turn across the axis, and what they gain is what the gradient says.
@@ -290,7 +295,7 @@ mod tests {
             let slope = |turn: Vector3<f64>, shift: Vector3<f64>| {
                 let at = |sign: f64| {
                     let moved = axis.moved(&half, UnitQuaternion::new(sign * turn), sign * shift);
-                    assert!(apart(&axis.nearest(&moved), &moved) < 1e-9);
+                    assert!(difference(&axis.nearest(&moved), &moved) < 1e-9);
                     score(&moved)
                 };
                 (at(1.0) - at(-1.0)) / (2.0 * step)

@@ -1,11 +1,12 @@
 //! The direct nufft sum over a box of modes, as fast as it goes without a fast transform.
 //!
-//! f_k = sum_j c_j exp(-2 pi i k.x_j) for several sets of weights c on the same points. Phases are products of three tables, one an
-//! axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x modes), in vector lanes.
-//! For few modes or few points it needs less time than [`super::nufft`], whose grid has a price of its own.
+//! f_k = sum_j c_j exp(-2 pi i k.x_j) for several sets of weights c on the same points. Phases are products of three
+//! tables, one an axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x
+//! modes), in vector lanes. For few modes or few points it needs less time than [`super::nufft`], whose grid has a
+//! price of its own.
 //!
-//! Conventions are those of [`super::ndft::forward`], against which it is tested: points in units of the period, modes from
-//! -floor(n/2) on each axis, row-major, the last axis fastest.
+//! Conventions are those of [`super::ndft::forward`], against which it is tested: points in units of the period, modes
+//! from -floor(n/2) on each axis, row-major, the last axis fastest.
 
 use crate::vectorized::vectorized;
 use num_complex::Complex64;
@@ -58,7 +59,8 @@ impl Lane {
     }
 }
 
-/// All modes of every field, a field a set of weights with one for each point: as many arrays of modes as there are fields.
+/// All modes of every field, a field a set of weights with one for each point: as many arrays of modes as there are
+/// fields.
 pub fn forward(
     points: &[[f64; 3]],
     fields: &[Vec<Complex64>],

@@ -2,7 +2,8 @@
 
 /// All modes with kz >= 0, |k_i| < n_i / 2 and |w| < cut, as columns along x.
 ///
-/// Columns come by rising kz, then ky in transform order (0, 1, ..., -2, -1); within a column kx runs from -kx_max to kx_max.
+/// Columns come by rising kz, then ky in transform order (0, 1, ..., -2, -1); within a column kx runs from -kx_max to
+/// kx_max.
 #[derive(Clone, Debug)]
 pub struct ModeSet {
     /// Grid points per axis (nx, ny, nz), each even.
@@ -86,8 +87,8 @@ impl ModeSet {
         }
     }
 
-    /// Visits every mode in order with its frequency (wx, wy, wz), cycles per Å, and its multiplicity: 1 at kz = 0, where the
-    /// set holds both signs, else 2.
+    /// Visits every mode in order with its frequency (wx, wy, wz), cycles per Å, and its multiplicity: 1 at kz = 0,
+    /// where the set holds both signs, else 2.
     pub fn for_each(&self, mut visit: impl FnMut(usize, [f64; 3], f64)) {
         for column in &self.columns {
             let wy = f64::from(column.ky) / self.lengths[1];

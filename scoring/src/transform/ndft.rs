@@ -1,12 +1,13 @@
-//! The nonequispaced discrete Fourier transform, direct and in f64: slow, the reference that every fast path is tested against.
+//! The discrete Fourier transform of points anywhere (NDFT), direct and in f64: slow, the reference that every fast
+//! path is tested against.
 
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Type 1 in any number of dimensions: f_k = sum_j c_j exp(-2 pi i k.x_j) for all `modes`, O(points x modes).
 ///
-/// Points are in units of the period; modes run from -floor(n/2) on each axis and stand row-major, the last axis fastest, as
-/// in [`super::nufft`].
+/// Points are in units of the period; modes run from -floor(n/2) on each axis and stand row-major, the last axis
+/// fastest, as in [`super::nufft`].
 pub fn forward<const D: usize>(
     points: &[[f64; D]],
     weights: &[Complex64],

@@ -1,13 +1,17 @@
 //! The search's transform: type 1 (knots to modes), pruned at both ends.
 //!
-//! Knots are spread with a Kaiser-Bessel window onto a grid finer than the modes need, but only over the block that they
-//! occupy. The three one-dimensional transforms then skip the lines that hold nothing and the modes that are not kept.
-//! Several components (sets of weights on the same knots) go through together.
+//! Knots are spread with a Kaiser-Bessel window onto a grid finer than the modes need, but only over the block that
+//! they occupy. The three one-dimensional transforms then skip the lines that hold nothing and the modes that are not
+//! kept. Several components (sets of weights on the same knots) go through together.
 //!
-//! How it differs from the general transform, [`super::nufft`]: it takes lengths in Å relative to a block's centre, not
-//! fractions of a period; it keeps the modes of a [`ModeSet`], not a box of them; it runs in stages, so that an engine can
-//! use a column while it is in the cache; and it checks its input in debug builds alone. The window's own transform is
-//! *not* divided out: [`Forward::deconvolution`] gives the factors, which the caller multiplies into its own.
+//! How it differs from the general transform, [`super::nufft`]:
+//!
+//! - it takes lengths in Å relative to a block's centre, not fractions of a period;
+//! - it keeps the modes of a [`ModeSet`], not a box of them;
+//! - it runs in stages, so that an engine can use a column while it is in the cache;
+//! - it checks its input in debug builds alone;
+//! - it does not divide out the window's own transform: [`Forward::deconvolution`] gives the factors, which the caller
+//!   multiplies into its own.
 
 use super::Real;
 use super::modes::{ModeSet, place};
@@ -24,7 +28,7 @@ pub struct Forward<T: Real> {
     modes: Arc<ModeSet>,
     fine: [usize; 3],
     block: [usize; 3],
-    fields: usize,
+    components: usize,
     kernel: SpreadingKernel<T>,
     along_x: Arc<dyn Fft<T>>,
     along_y: Arc<dyn Fft<T>>,
@@ -33,26 +37,26 @@ pub struct Forward<T: Real> {
 
 /// Buffers of one transform in flight.
 pub struct ForwardWorkspace<T> {
-    /// [field][x][y][z], z padded by `MAX_WIDTH`.
+    /// [component][x][y][z], z padded by `MAX_WIDTH`.
     block: Vec<T>,
     /// [pair of rows][z]: two real rows as one complex row.
     pairs: Vec<Complex<T>>,
     /// [x in group][kz][y].
     lines: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
-    /// [column][field][x].
+    /// [column][component][x].
     planes: Vec<Complex<T>>,
 }
 
 impl<T: Real> Forward<T> {
-    /// Plans a transform of `fields` sets of weights to `modes` over a fine grid of `fine` points an axis, for knots within
-    /// `extent` cells of the block's centre on each axis.
+    /// Plans a transform of `components` sets of weights to `modes` over a fine grid of `fine` points an axis, for
+    /// knots within `extent` cells of the block's centre on each axis.
     pub fn new(
         modes: Arc<ModeSet>,
         fine: [usize; 3],
         width: usize,
         extent: [f64; 3],
-        fields: usize,
+        components: usize,
     ) -> Self {
         let oversampling = (0..3)
             .map(|axis| fine[axis] as f64 / modes.size[axis] as f64)
@@ -66,7 +70,7 @@ impl<T: Real> Forward<T> {
         Self {
             fine,
             block,
-            fields,
+            components,
             kernel,
             along_x: T::forward_fft(fine[0]),
             along_y: T::forward_fft(fine[1]),
@@ -117,11 +121,11 @@ impl<T: Real> Forward<T> {
             .max(self.along_y.get_inplace_scratch_len())
             .max(self.along_z.get_inplace_scratch_len());
         ForwardWorkspace {
-            block: vec![T::zero(); self.fields * bx * by * (bz + MAX_WIDTH)],
+            block: vec![T::zero(); self.components * bx * by * (bz + MAX_WIDTH)],
             pairs: vec![zero; by / 2 * self.fine[2]],
             lines: vec![zero; GROUP * planes * self.fine[1]],
             scratch: vec![zero; scratch],
-            planes: vec![zero; self.modes.columns.len() * self.fields * bx],
+            planes: vec![zero; self.modes.columns.len() * self.components * bx],
         }
     }
 
@@ -129,12 +133,12 @@ impl<T: Real> Forward<T> {
     pub fn workspace_bytes(&self) -> usize {
         let [bx, by, bz] = self.block;
         std::mem::size_of::<T>()
-            * (self.fields * bx * by * (bz + MAX_WIDTH)
+            * (self.components * bx * by * (bz + MAX_WIDTH)
                 + 2 * GROUP * self.modes.planes.len() * self.fine[1]
-                + 2 * self.modes.columns.len() * self.fields * bx)
+                + 2 * self.modes.columns.len() * self.components * bx)
     }
 
-    /// Spreads knots onto the block: `points` in Å relative to the block's centre, `weights` as `[knot][field]`.
+    /// Spreads knots onto the block: `points` in Å relative to the block's centre, `weights` as `[knot][component]`.
     ///
     /// Knots farther from the centre than the planned extent are not allowed (debug builds panic).
     #[inline(always)]
@@ -162,7 +166,7 @@ impl<T: Real> Forward<T> {
         let center = self.center();
         let scale = self.cells_per_length();
         let mut values = [[T::zero(); MAX_WIDTH]; 3];
-        for (point, weights) in points.iter().zip(weights.chunks_exact(self.fields)) {
+        for (point, weights) in points.iter().zip(weights.chunks_exact(self.components)) {
             let mut first = [0usize; 3];
             for axis in 0..3 {
                 let u = point[axis] * scale[axis] + center[axis];
@@ -172,14 +176,15 @@ impl<T: Real> Forward<T> {
             }
             let mut z_values = [T::zero(); LANES];
             z_values.copy_from_slice(&values[2][..LANES]);
-            for (field, &weight) in weights.iter().enumerate() {
+            for (component, &weight) in weights.iter().enumerate() {
                 for (ix, &vx) in values[0][..width].iter().enumerate() {
                     let scaled = weight * vx;
-                    let plane = (field * bx + first[0] + ix) * by;
+                    let plane = (component * bx + first[0] + ix) * by;
                     for (iy, &vy) in values[1][..width].iter().enumerate() {
                         let value = scaled * vy;
                         let start = (plane + first[1] + iy) * stride + first[2];
                         let Some(row) = work.block.get_mut(start..start + LANES) else {
+                            debug_assert!(false, "a window beyond the block");
                             continue;
                         };
                         for lane in 0..LANES {
@@ -200,12 +205,12 @@ impl<T: Real> Forward<T> {
         let [_, my, mz] = self.fine;
         let zero = Complex::new(T::zero(), T::zero());
         let half = T::of(0.5);
-        for field in 0..self.fields {
+        for component in 0..self.components {
             for group in (0..bx).step_by(GROUP) {
                 let members = GROUP.min(bx - group);
                 for member in 0..members {
                     let lines = &mut work.lines[member * count * my..(member + 1) * count * my];
-                    let plane = (field * bx + group + member) * by;
+                    let plane = (component * bx + group + member) * by;
                     for (pair, out) in work.pairs.chunks_exact_mut(mz).enumerate() {
                         let start = (plane + 2 * pair) * stride;
                         let (even, odd) = (&work.block[start..], &work.block[start + stride..]);
@@ -235,7 +240,7 @@ impl<T: Real> Forward<T> {
                 for (kz, range) in self.modes.planes.iter().enumerate() {
                     for column in range.clone() {
                         let y = place(self.modes.columns[column].ky, my);
-                        let out = (column * self.fields + field) * bx + group;
+                        let out = (column * self.components + component) * bx + group;
                         for member in 0..members {
                             work.planes[out + member] = work.lines[(member * count + kz) * my + y];
                         }
@@ -245,7 +250,7 @@ impl<T: Real> Forward<T> {
         }
     }
 
-    /// Transforms columns `range` along x into `lines`, laid out `[column][field][kx place in 0..fine_x]`.
+    /// Transforms columns `range` along x into `lines`, laid out `[column][component][kx place in 0..fine_x]`.
     #[inline(always)]
     pub fn columns(
         &self,
@@ -255,9 +260,9 @@ impl<T: Real> Forward<T> {
     ) {
         let bx = self.block[0];
         let mx = self.fine[0];
-        let count = range.len() * self.fields;
+        let count = range.len() * self.components;
         let zero = Complex::new(T::zero(), T::zero());
-        let start = range.start * self.fields * bx;
+        let start = range.start * self.components * bx;
         let source = &work.planes[start..start + count * bx];
         for (line, values) in lines.chunks_exact_mut(mx).zip(source.chunks_exact(bx)) {
             line[..bx].copy_from_slice(values);
@@ -272,12 +277,15 @@ impl<T: Real> Forward<T> {
         self.fine[0]
     }
 
-    /// Number of fields transformed together.
-    pub fn fields(&self) -> usize {
-        self.fields
+    /// Number of components transformed together.
+    pub fn components(&self) -> usize {
+        self.components
     }
 
-    /// The whole transform with the window divided out, for one set-up call: `output` is `[field][mode]`.
+    /// The whole transform with the window divided out, for one set-up call: `output` is `[component][mode]`.
+    ///
+    /// # Panics
+    /// Where a knot lies outside the planned block.
     pub fn transform(
         &self,
         points: &[[f64; 3]],
@@ -285,10 +293,19 @@ impl<T: Real> Forward<T> {
         work: &mut ForwardWorkspace<T>,
         output: &mut [Complex<T>],
     ) {
+        let reach = [0, 1, 2].map(|axis| {
+            let cells = 0.5 * (self.block[axis] as f64 - self.kernel.width() as f64);
+            cells / self.cells_per_length()[axis]
+        });
+        let inside = |point: &[f64; 3]| (0..3).all(|axis| point[axis].abs() <= reach[axis]);
+        assert!(
+            points.iter().all(inside),
+            "a knot lies outside the planned block"
+        );
         self.spread(points, weights, work);
         self.planes(work);
         let mx = self.fine[0];
-        let mut lines = vec![Complex::new(T::zero(), T::zero()); self.fields * mx];
+        let mut lines = vec![Complex::new(T::zero(), T::zero()); self.components * mx];
         let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
             (0..=self.modes.size[axis] as i32 / 2)
                 .map(|k| self.deconvolution(axis, k))
@@ -299,11 +316,11 @@ impl<T: Real> Forward<T> {
             self.columns(index..index + 1, work, &mut lines);
             let outer =
                 factors[1][column.ky.unsigned_abs() as usize] * factors[2][column.kz as usize];
-            for field in 0..self.fields {
+            for component in 0..self.components {
                 for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
                     let factor = T::of(outer * factors[0][k.unsigned_abs() as usize]);
-                    output[field * modes.count + column.start + i] =
-                        lines[field * mx + place(k, mx)].scale(factor);
+                    output[component * modes.count + column.start + i] =
+                        lines[component * mx + place(k, mx)].scale(factor);
                 }
             }
         }
@@ -348,11 +365,11 @@ mod tests {
             .collect();
         let mut error: f64 = 0.0;
         let mut largest: f64 = 0.0;
-        for field in 0..2 {
-            let of_field: Vec<f64> = weights.iter().skip(field).step_by(2).copied().collect();
+        for component in 0..2 {
+            let of_field: Vec<f64> = weights.iter().skip(component).step_by(2).copied().collect();
             modes.for_each(|mode, w, _| {
                 let exact = ndft_3d(&shifted, &of_field, w);
-                let ours = output[field * modes.count + mode];
+                let ours = output[component * modes.count + mode];
                 error = error.max((exact - Complex::new(ours.re.wide(), ours.im.wide())).norm());
                 largest = largest.max(exact.norm());
             });

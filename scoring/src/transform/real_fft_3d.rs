@@ -1,7 +1,9 @@
-//! The three-dimensional Fourier transform of a whole real grid, out of place: one-dimensional transforms with transposes between them.
+//! The three-dimensional Fourier transform of a whole real grid, out of place: one-dimensional transforms with
+//! transposes between them.
 //!
 //! Forward exp(-2 pi i ...), inverse with +, both without a factor. The grid is (nx, ny, nz) row-major; the spectrum is
-//! (nz / 2 + 1, ny, nx) row-major with kx fastest, all frequencies in transform order, so that no transpose back is needed.
+//! (nz / 2 + 1, ny, nx) row-major with kx fastest, all frequencies in transform order, so that no transpose back is
+//! needed.
 
 use super::Real;
 use num_complex::Complex;
@@ -69,22 +71,30 @@ impl<T: Real> RealFft3d<T> {
     }
 
     /// Grid to spectrum. The grid's values are lost.
+    ///
+    /// # Panics
+    /// Where grid, spectrum or workspace belong to another size.
     pub fn forward(
         &self,
         grid: &mut [T],
         spectrum: &mut [Complex<T>],
         work: &mut RealFft3dWorkspace<T>,
     ) {
+        assert_eq!(grid.len(), self.size.iter().product::<usize>());
+        assert_eq!(spectrum.len(), self.spectrum_len());
         let [nx, ny, nz] = self.size;
         let half = nz / 2 + 1;
         for (row, line) in grid
             .chunks_exact_mut(nz)
             .zip(spectrum.chunks_exact_mut(half))
         {
-            // Lengths fit by construction, the only thing that it can refuse.
-            let _ = self
+            let done = self
                 .z_forward
                 .process_with_scratch(row, line, &mut work.scratch);
+            assert!(
+                done.is_ok(),
+                "grid, spectrum and workspace are of this size"
+            );
         }
         // (x, y, z) -> (x, z, y), plane by plane; then (x, zy) -> (zy, x).
         let planes = spectrum.chunks_exact(ny * half);
@@ -97,12 +107,17 @@ impl<T: Real> RealFft3d<T> {
     }
 
     /// Spectrum of a real grid to the grid, times the number of points. The spectrum's values are lost.
+    ///
+    /// # Panics
+    /// Where grid, spectrum or workspace belong to another size.
     pub fn inverse(
         &self,
         spectrum: &mut [Complex<T>],
         grid: &mut [T],
         work: &mut RealFft3dWorkspace<T>,
     ) {
+        assert_eq!(grid.len(), self.size.iter().product::<usize>());
+        assert_eq!(spectrum.len(), self.spectrum_len());
         let [nx, ny, nz] = self.size;
         let half = nz / 2 + 1;
         self.x[1].process_with_scratch(spectrum, &mut work.scratch);
@@ -121,9 +136,13 @@ impl<T: Real> RealFft3d<T> {
             if nz % 2 == 0 {
                 line[half - 1].im = T::zero();
             }
-            let _ = self
+            let done = self
                 .z_inverse
                 .process_with_scratch(line, row, &mut work.scratch);
+            assert!(
+                done.is_ok(),
+                "grid, spectrum and workspace are of this size"
+            );
         }
     }
 }

@@ -1,7 +1,8 @@
-//! The window that carries a knot onto a few points of a uniform grid: Kaiser-Bessel, with its transform in closed form.
+//! The window that carries a knot onto a few points of a uniform grid: Kaiser-Bessel, with its transform in closed
+//! form.
 //!
-//! phi(u) = I0(beta sqrt(1 - (2u / width)^2)) / I0(beta) for |u| <= width / 2 in grid cells. Values come from one polynomial per
-//! grid point (in the knot's offset), so that one Horner chain fills the whole window.
+//! phi(u) = I0(beta sqrt(1 - (2u / width)^2)) / I0(beta) for |u| <= width / 2 in grid cells. Values come from one
+//! polynomial per grid point (in the knot's offset), so that one Horner chain fills the whole window.
 
 use super::Real;
 use knotdock_structures::numeric::chebyshev;
@@ -21,8 +22,14 @@ pub struct SpreadingKernel<T> {
 
 impl<T: Real> SpreadingKernel<T> {
     /// A window of `width` points (2 to 16) for grids that are `oversampling` (> 1) times finer than the modes need.
+    ///
+    /// # Panics
+    /// On any other width.
     pub fn new(width: usize, oversampling: f64) -> Self {
-        let width = width.clamp(2, MAX_WIDTH);
+        assert!(
+            (2..=MAX_WIDTH).contains(&width),
+            "a window of {width} points; 2 to {MAX_WIDTH} are possible"
+        );
         let w = width as f64;
         // Beatty, Nishimura, Pauly, IEEE Trans. Med. Imaging 24 (2005) 799, eq. 5.
         let beta = PI
@@ -63,13 +70,15 @@ impl<T: Real> SpreadingKernel<T> {
         self.width
     }
 
-    /// [power][point]: polynomials in 2 f - 1, f in [0, 1) the distance of the window's first point from its edge, of its points' values.
+    /// [power][point]: polynomials in 2 f - 1, f in [0, 1) the distance of the window's first point from its edge, of
+    /// its points' values.
     #[cfg(feature = "gpu")]
     pub(crate) fn coefficients(&self) -> &[[T; MAX_WIDTH]] {
         &self.coefficients
     }
 
-    /// Window values at the `width` grid points from ceil(u - width/2) on, for a knot at u in cells; returns the first point.
+    /// Window values at the `width` grid points from ceil(u - width/2) on, for a knot at u in cells; returns the first
+    /// point.
     #[inline(always)]
     pub fn place(&self, u: f64, values: &mut [T; MAX_WIDTH]) -> i64 {
         let low = u - 0.5 * self.width as f64;

@@ -2,10 +2,12 @@
 //!
 //! # Conventions
 //!
-//! - `modes` counts three-dimensional frequencies, both of a conjugate pair; the lifted axis is folded already.
-//! - Modes come and go in groups of up to four, (±kx, ky, kz) and their conjugates: they cost together what one costs, and keep
-//!   the correlation real. So a selection of at most m modes keeps m - 3 to m of them while there are any left.
-//! - A magnitude is |G^(w)| / volume of a stored mode: what that frequency and its conjugate each add to a value at most.
+//! - `modes` counts three-dimensional frequencies, both of a conjugate pair; the lifted axis is summed over already.
+//! - Modes come and go in groups of up to four, (±kx, ky, kz) and their conjugates: they cost together what one costs,
+//!   and keep the correlation real. So a selection of at most m modes keeps m - 3 to m of them while there are any
+//!   left.
+//! - A magnitude is |G^(w)| / volume of a stored mode: what that frequency and its conjugate each add to a value at
+//!   most.
 
 use super::modes::ModeSet;
 
@@ -59,17 +61,22 @@ impl Selection {
         Self::first(modes, &groups, most)
     }
 
-    /// At most `most` modes by falling magnitude, a group standing where its mean square puts it; ties go by place in the set.
+    /// At most `most` modes by falling magnitude, a group standing where its mean square puts it; ties go by place in
+    /// the set.
     ///
-    /// `magnitudes` has one value for each mode of the set; modes without one count as zero.
+    /// `magnitudes` has one value for each mode of the set.
+    ///
+    /// # Panics
+    /// Where they are fewer or more.
     pub fn by_magnitude(modes: &ModeSet, magnitudes: &[f64], most: usize) -> Self {
+        assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
         let mut keyed: Vec<(f64, Group)> = groups(modes)
             .into_iter()
             .map(|group| {
-                let squares = group.places().iter().map(|&place| {
-                    let magnitude = magnitudes.get(place).copied().unwrap_or(0.0);
-                    magnitude * magnitude
-                });
+                let squares = group
+                    .places()
+                    .iter()
+                    .map(|&place| magnitudes[place] * magnitudes[place]);
                 (squares.sum::<f64>() / group.stored as f64, group)
             })
             .collect();
@@ -102,7 +109,7 @@ impl Selection {
 
     /// Whether a mode is kept, by its place in the set.
     pub fn keeps(&self, place: usize) -> bool {
-        self.kept.get(place).copied().unwrap_or(false)
+        self.kept[place]
     }
 }
 
@@ -111,18 +118,28 @@ impl Selection {
 pub struct Tail {
     /// The sum of their magnitudes: no value at any translation moves by more.
     pub bound: f64,
-    /// The root of the sum of their squared magnitudes: by Parseval the root mean square of the error over all translations.
+    /// The root of the sum of their squared magnitudes: by Parseval the root mean square of the error over all
+    /// translations.
     pub rms: f64,
 }
 
 impl Tail {
-    /// The tail beyond a selection. With magnitudes of one rotation it holds at that rotation, with an envelope over all
-    /// rotations at each of them (then `rms` is an upper bound).
+    /// The tail beyond a selection. With magnitudes of one rotation it holds at that rotation, with an envelope over
+    /// all rotations at each of them (then `rms` is an upper bound).
+    ///
+    /// # Panics
+    /// Where magnitudes or selection belong to another set.
     pub fn of(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) -> Self {
+        assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
+        assert_eq!(
+            selection.kept.len(),
+            modes.count,
+            "the selection of these modes"
+        );
         let (mut sum, mut squares) = (0.0, 0.0);
         modes.for_each(|place, _, multiplicity| {
             if !selection.keeps(place) {
-                let magnitude = magnitudes.get(place).copied().unwrap_or(0.0);
+                let magnitude = magnitudes[place];
                 sum += multiplicity * magnitude;
                 squares += multiplicity * magnitude * magnitude;
             }
@@ -145,8 +162,9 @@ pub fn total(modes: &ModeSet) -> usize {
     2 * modes.count - plane
 }
 
-/// The modes of the largest ball of frequencies that has at most `most`: what a correlation is cut to when it shall also cost
-/// less. Its shells are whole, so it may hold fewer than [`Selection::low_frequency`] keeps; it always holds frequency zero.
+/// The modes of the largest ball of frequencies that has at most `most`: what a correlation is cut to when it shall
+/// also cost less. Its shells are whole, so it may hold fewer than [`Selection::low_frequency`] keeps; it always holds
+/// frequency zero.
 pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
     let mut groups = groups(modes);
     groups.sort_by(|a, b| a.square.total_cmp(&b.square));
@@ -238,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn low_frequencies_come_first_and_the_count_is_what_was_asked() {
+    fn low_frequencies_come_first_and_the_count_is_the_requested_one() {
         let modes = set();
         for most in [1, 2, 50, 333, total(&modes) - 1, total(&modes), 1 << 30] {
             let selection = Selection::low_frequency(&modes, most);
@@ -259,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_has_whole_shells_and_no_more_than_asked() {
+    fn a_ball_has_whole_shells_and_no_more_than_requested() {
         let modes = set();
         for most in [1, 7, 100, 500, 1 << 30] {
             let ball = ball(&modes, most);

@@ -1,8 +1,11 @@
 //! Modes of a real function as columns along x, a harmonic |kx| at a time.
 //!
-//! With H_k the modes of a column (ky, kz) and theta = 2 pi x / Lx, sum_k H_k exp(i k theta) = sum_{k >= 0} E_k cos k theta +
-//! O_k sin k theta, where E_k = H_k + H_-k and O_k = i (H_k - H_-k). Cosine and sine are real, so a value costs half of what the
-//! complex sum does, and its slope along x, sum_k k (O_k cos k theta - E_k sin k theta), as much again. Of a conjugate pair of
+//! With H_k the modes of a column (ky, kz) and theta = 2 pi x / Lx,
+//!
+//! sum_k H_k exp(i k theta) = sum_{k >= 0} E_k cos k theta + O_k sin k theta,
+//!
+//! where E_k = H_k + H_-k and O_k = i (H_k - H_-k). Cosine and sine are real, so a value costs half of what the complex
+//! sum does, and its slope along x, sum_k k (O_k cos k theta - E_k sin k theta), as much again. Of a conjugate pair of
 //! columns one is kept, with twice the weight, and the real part of the sum is the function.
 
 use crate::transform::modes::ModeSet;
@@ -58,7 +61,7 @@ impl Layout {
         };
         for (kz, range) in modes.planes.iter().enumerate() {
             let first = layout.columns.len();
-            let plane = modes.columns.get(range.clone()).unwrap_or_default();
+            let plane = &modes.columns[range.clone()];
             for column in plane.iter().filter(|column| kz > 0 || column.ky >= 0) {
                 let start = layout.harmonics.len();
                 let middle = column.start + column.kx_max as usize;

@@ -30,15 +30,15 @@ impl GatherTables {
         }
     }
 
-    /// Sums all knots, turned, into one spectrum: E and O of sum over fields of H conj(B).
+    /// Sums all knots, turned, into one spectrum: E and O of sum over components of H conj(B).
     ///
-    /// With conj(B) = sum_j c_j exp(i k theta_j), c_j the weight and the phase along y and z, X = sum c cos k theta and
-    /// Y = sum c sin k theta, the product's E is E X + O Y and its O is O X - E Y.
+    /// Let conj(B) = sum_j c_j exp(i k theta_j), with c_j the weight and the phase along y and z. With X = sum c cos k
+    /// theta and Y = sum c sin k theta, the product's E is E X + O Y and its O is O X - E Y.
     #[inline(always)]
     pub fn gather(
         &mut self,
         layout: &Layout,
-        fields: &[Vec<Harmonic>],
+        components: &[Vec<Harmonic>],
         blocks: &[Block],
         rotation: &Rotation3<f64>,
         out: &mut [Harmonic],
@@ -82,7 +82,7 @@ impl GatherTables {
                     let k = layout.harmonics[entry] as usize;
                     let along_x = &self.x[k * count..(k + 1) * count];
                     let mut start = 0;
-                    for run in blocks.chunk_by(|a, b| a.field == b.field) {
+                    for run in blocks.chunk_by(|a, b| a.component == b.component) {
                         let range = start..start + run.len();
                         start = range.end;
                         let (mut xr, mut xi) = ([0.0; LANES], [0.0; LANES]);
@@ -98,7 +98,7 @@ impl GatherTables {
                         }
                         let total = |lanes: Lane| lanes.iter().sum::<f64>();
                         let (xr, xi, yr, yi) = (total(xr), total(xi), total(yr), total(yi));
-                        let [er, ei, or, oi] = fields[run[0].field][entry];
+                        let [er, ei, or, oi] = components[run[0].component][entry];
                         out[entry][0] += er * xr - ei * xi + or * yr - oi * yi;
                         out[entry][1] += er * xi + ei * xr + or * yi + oi * yr;
                         out[entry][2] += or * xr - oi * xi - er * yr + ei * yi;

@@ -10,11 +10,11 @@ pub(super) const LANES: usize = 8;
 /// One number of each knot of a block.
 pub(super) type Lane = [f64; LANES];
 
-/// Up to `LANES` knots that read the same field; places without a knot have weight 0.
+/// Up to `LANES` knots that read the same component; places without a knot have weight 0.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// The field.
-    pub field: usize,
+    /// The component.
+    pub component: usize,
     /// Relative to the ligand's centre, Å.
     positions: [Vector3<f64>; LANES],
     pub weights: Lane,
@@ -30,16 +30,16 @@ pub(super) struct Read {
 pub(super) type Arms = [Lane; 3];
 
 impl Block {
-    /// The blocks of a field.
+    /// The blocks of a component.
     pub fn of(
-        field: usize,
+        component: usize,
         knots: &[(usize, f64)],
         ligand: &Knots,
         center: Vector3<f64>,
     ) -> Vec<Self> {
         let fill = |chunk: &[(usize, f64)]| {
             let mut block = Self {
-                field,
+                component,
                 positions: [Vector3::zeros(); LANES],
                 weights: [0.0; LANES],
             };

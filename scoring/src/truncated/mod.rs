@@ -1,22 +1,22 @@
 //! The correlation at one pose, without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
 //!
-//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I
-//! section 4.1, eq. 50 for collision and the end of 4.2 for the score; their Fig. 9 times it). There are two ways:
+//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes. B&I:
+//! section 4.1, eq. 50 for collision, the end of 4.2 for the score, Fig. 9 for times. There are two ways:
 //!
 //! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation. Each translation then
 //!   costs O(m') by [`RotationSpectrum::gradient`], with the force.
-//! - [`TruncatedCorrelation::gradient`] takes a pose with a new rotation: every knot reads the receptor's components and
-//!   their slopes, which gives force and torque together, O(m' x ligand knots).
+//! - [`TruncatedCorrelation::gradient`] takes a pose with a new rotation: every knot reads the receptor's components
+//!   and their slopes, which gives force and torque together, O(m' x ligand knots).
 //!
 //! # Conventions
 //!
 //! A pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
-//! ligand's centre. Modes are counted with their conjugates, and the lifted axis is summed over. All sums run in f64. The
-//! polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches, value
-//! and gradient are zero.
+//! ligand's centre. Modes are counted with their conjugates, and the lifted axis is summed over. All sums run in f64.
+//! The polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches,
+//! value and gradient are zero.
 
 mod columns;
-mod fields;
+mod components;
 mod frame;
 mod gather;
 mod knots;
@@ -46,37 +46,40 @@ use std::sync::Arc;
 pub struct TruncatedCorrelation {
     layout: Arc<Layout>,
     frame: Frame,
-    /// The receptor's fields that knots read: E and O of each kept mode, over the volume.
-    fields: Vec<Vec<Harmonic>>,
-    /// The ligand's knots by the field that they read.
+    /// The receptor's components that knots read: E and O of each kept mode, over the volume.
+    components: Vec<Vec<Harmonic>>,
+    /// The ligand's knots by the component that they read.
     blocks: Vec<Block>,
 }
 
 impl TruncatedCorrelation {
-    /// Takes the selected modes of a folded correlation ([`crate::quantity::Quantity`] says of what: score, slice or sensitivity).
+    /// Takes the selected modes of a correlation ([`crate::quantity::Quantity`] says of what: score, slice or
+    /// sensitivity).
     pub fn new<T: Real>(
         plan: &Plan,
-        folded: &ReceptorSpectra<T>,
+        spectra: &ReceptorSpectra<T>,
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
         let layout = Layout::new(plan.modes(), selection);
-        let fields = fields::of(plan, folded, ligand.len());
+        let components = components::of(plan, spectra, ligand.len());
         let volume = plan.modes().volume();
         // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
-        let turns = fields::centering(plan, folded);
-        let values = fields
+        let turns = components::centering(plan, spectra);
+        let values = components
             .iter()
-            .map(|field| {
+            .map(|component| {
                 layout.harmonics_of(1.0 / volume, |place| {
-                    field.mode(folded, place) * turns(place)
+                    component.mode(spectra, place) * turns(place)
                 })
             })
             .collect();
-        let blocks = fields
+        let blocks = components
             .iter()
             .enumerate()
-            .flat_map(|(index, field)| Block::of(index, &field.knots, ligand, plan.ligand_center()))
+            .flat_map(|(index, component)| {
+                Block::of(index, &component.knots, ligand, plan.ligand_center())
+            })
             .collect();
         Self {
             frame: Frame {
@@ -85,7 +88,7 @@ impl TruncatedCorrelation {
                 half: Vector3::from(plan.modes().lengths) * 0.5,
             },
             layout: Arc::new(layout),
-            fields: values,
+            components: values,
             blocks,
         }
     }
@@ -113,7 +116,7 @@ impl TruncatedCorrelation {
                 let mut gradient = PoseGradient::default();
                 for block in &self.blocks {
                     let arms = block.turned(&rotation);
-                    let values = &self.fields[block.field];
+                    let values = &self.components[block.component];
                     let read = work.read.read(&self.layout, values, &arms, &center);
                     block.gather(&read, &arms, &mut score, &mut gradient);
                 }
@@ -134,7 +137,7 @@ impl TruncatedCorrelation {
             || {
                 work.gather.gather(
                     &self.layout,
-                    &self.fields,
+                    &self.components,
                     &self.blocks,
                     &rotation.to_rotation_matrix(),
                     &mut values,
@@ -145,15 +148,15 @@ impl TruncatedCorrelation {
     }
 }
 
-/// For every mode the most that |G^(w; R)| / volume can be at any rotation: sum over fields of |H| times the knots' weights. With
-/// [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
-pub fn envelope<T: Real>(plan: &Plan, folded: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
-    let fields = fields::of(plan, folded, ligand.len());
+/// For every mode the most that |G^(w; R)| / volume can be at any rotation: sum over components of |H| times the knots'
+/// weights. With [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
+pub fn envelope<T: Real>(plan: &Plan, spectra: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
+    let components = components::of(plan, spectra, ligand.len());
     let mut envelope = vec![0.0; plan.modes().count];
-    for field in &fields {
-        let weight: f64 = field.knots.iter().map(|knot| knot.1.abs()).sum();
+    for component in &components {
+        let weight: f64 = component.knots.iter().map(|knot| knot.1.abs()).sum();
         for (place, value) in envelope.iter_mut().enumerate() {
-            *value += field.mode(folded, place).norm() * weight / plan.modes().volume();
+            *value += component.mode(spectra, place).norm() * weight / plan.modes().volume();
         }
     }
     envelope

@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 /// Phases of one place.
 #[derive(Clone, Debug)]
 pub(super) struct PlaceTables {
-    /// \[k\]: (cos, cos, sin, sin) and (-k sin, -k sin, k cos, k cos) of k theta_x, to go with a harmonic's four numbers.
+    /// \[k\]: (cos, cos, sin, sin) and (-k sin, -k sin, k cos, k cos) of k theta_x, to go with a harmonic's four
+    /// numbers.
     x: Vec<[Harmonic; 2]>,
     /// \[k\]: cos, sin of k theta_y.
     y: Vec<[f64; 2]>,

@@ -1,7 +1,7 @@
-//! A new rotation: every knot of a block reads a field and its slope.
+//! A new rotation: every knot of a block reads a component and its slope.
 //!
-//! Phases of all modes are products of three tables, one an axis. For each column the sum along x is two real products a harmonic
-//! and part; columns are then turned by their phase along y, planes by theirs along z.
+//! Phases of all modes are products of three tables, one an axis. For each column the sum along x is two real products
+//! a harmonic and part; columns are then turned by their phase along y, planes by theirs along z.
 
 use super::columns::{Harmonic, Layout};
 use super::knots::{Arms, LANES, Lane, Read, powers};
@@ -29,7 +29,7 @@ impl ReadTables {
         }
     }
 
-    /// What a block at `arms` about `center` reads of a field.
+    /// What a block at `arms` about `center` reads of a component.
     #[inline(always)]
     pub fn read(
         &mut self,

@@ -34,9 +34,9 @@ impl RotationSpectrum {
         }
     }
 
-    /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place in the set, and
-    /// must be that of a real function. Both bodies have their centres at the origin and the rotation is none, so that a pose's
-    /// translation is the place in the box at which the correlation is read.
+    /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place
+    /// in the set, and must be that of a real function. Both bodies have their centres at the origin and the rotation
+    /// is none, so that a pose's translation is the place in the box at which the correlation is read.
     pub fn from_spectrum(
         modes: &ModeSet,
         selection: &Selection,
@@ -73,7 +73,8 @@ impl RotationSpectrum {
         self.layout.magnitudes(&self.values, count)
     }
 
-    /// Value at a pose of this rotation with translation `translation` (Å, as in [`crate::se3::Pose`]), and its gradient per Å. O(modes).
+    /// Value at a pose of this rotation with translation `translation` (Å, as in [`crate::se3::Pose`]), and its
+    /// gradient per Å. O(modes).
     pub fn gradient(
         &self,
         translation: &Vector3<f64>,

@@ -1,5 +1,5 @@
-//! Scenes for tests: clouds of knots, options, and the fast path held to the exact pair sum. One set for all test files, the root
-//! package's included.
+//! Scenes for tests: clouds of knots, options, and the fast path held to the exact pair sum. One set for all test
+//! files, the root package's included.
 
 // Every test file is a program of its own and uses a part of this.
 #![allow(dead_code)]
@@ -97,9 +97,9 @@ impl<T: Real> Pair<T> {
     /// The pair with the fast path's full rank.
     pub fn new(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
         let plan = Arc::new(Plan::new(a, b, options).unwrap());
-        let folded = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
+        let spectra = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
         Self {
-            engine: CpuEngine::new(Arc::clone(&plan), &folded, b, folded.full_rank()),
+            engine: CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank()),
             scorer: ExactScorer::new(plan.kernel(), a, b).unwrap(),
             plan,
         }
@@ -123,7 +123,8 @@ impl<T: Real> Pair<T> {
         self.scorer.score_only(&self.pose(rotation, voxel))
     }
 
-    /// Largest |fast - exact| over every `step`-th voxel and the `best` of the grid, with the best exact score among them.
+    /// Largest |fast - exact| over every `step`-th voxel and the `best` of the grid, with the best exact score among
+    /// them.
     pub fn error(&self, rotation: UnitQuaternion<f64>, step: usize, best: usize) -> (f64, f64) {
         let work = self.correlate(&rotation);
         let mut order: Vec<usize> = (0..work.grid.len()).collect();

@@ -11,14 +11,11 @@ use knotdock::output::batch_results::RESULTS;
 use knotdock::output::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::cli::dock::{Dock, refusing_recorded};
+use crate::cli::dock::{Dock, PLACE, refusing_recorded};
 use crate::cli::inputs::molecules::label;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
 use crate::cli::messages::usage::with_negative_numbers;
-
-/// Options that are the batch's to set.
-const OWN: [&str; 3] = ["output", "rerun", "force"];
 
 /// One pair's command line.
 #[derive(Parser, Debug)]
@@ -173,7 +170,7 @@ fn command(
 ) -> Result<Dock, (String, Option<String>)> {
     let mut words = vec!["knotdock dock".to_owned()];
     for (column, value) in &row.options {
-        if OWN.contains(&column.as_str()) {
+        if PLACE.contains(&column.as_str()) {
             return Err((format!("a column cannot be `{column}`"), None));
         }
         let value = if names_files(column) {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use knotdock::output::input_record::InputRecord;
 use knotdock::output::manifest::InputEntry;
 use knotdock_structures::molecule::{
-    DropKind, InputSpec, Listed, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
-    read_bytes_listed,
+    AtomFate, DropKind, InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
+    read_bytes_with_fates,
 };
 
 use crate::cli::inputs::meshes::is_mesh;
@@ -64,7 +64,10 @@ impl Input {
     }
 
     /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is taken.
-    pub fn read_listed(text: &str, options: &ReadOptions) -> Result<(Self, Vec<Listed>), Failure> {
+    pub fn read_with_fates(
+        text: &str,
+        options: &ReadOptions,
+    ) -> Result<(Self, Vec<AtomFate>), Failure> {
         let spec = InputSpec::parse(text)?;
         refuse_mesh(&spec)?;
         let bytes = file_bytes(&spec.path)?;
@@ -73,7 +76,7 @@ impl Input {
             trust_plddt: options.min_plddt.is_some(),
             ..options.clone()
         };
-        let (molecule, listed) = read_bytes_listed(&spec, bytes, &options)?;
+        let (molecule, listed) = read_bytes_with_fates(&spec, bytes, &options)?;
         check_used(&options, [&molecule])?;
         Ok((Self { record, molecule }, listed))
     }

@@ -1,4 +1,4 @@
-//! What `knotdock dock` tells of a run: effects, errors, and what was assumed of the inputs.
+//! Reports of `knotdock dock`: effects, errors, and what was assumed of the inputs.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use knotdock::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
-/// Which effects were on and what they cost, and how far the fast path was off.
+/// The effects that were on with their costs, and the error of the fast path.
 pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
     let effects = outcome
         .effects
@@ -29,7 +29,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
         });
     let mut lines: Vec<String> = effects.collect();
     if let Some(site) = plan.active_site() {
-        lines.push(site_told(site));
+        lines.push(site_text(site));
     }
     if let Some(adapter) = &outcome.adapter {
         lines.insert(
@@ -73,7 +73,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
     if let (false, Some(stage)) = (names.is_empty(), stage) {
         lines.push(format!(
             "Rescored by {} in {:.2} s",
-            listed(&names),
+            joined(&names),
             stage.wall_seconds
         ));
     }
@@ -98,7 +98,7 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
     lines.join("\n")
 }
 
-/// What is wrong with a run's scores, if its fast path was farther from the exact sum than was asked for.
+/// Warning that the fast path was farther from the exact sum than the tolerance.
 pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
     let (worst, tolerance) = (outcome.error.worst, plan.options.kernel.tolerance);
     if !worst.is_finite() {
@@ -118,7 +118,7 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
     })
 }
 
-/// That a deadline left time for too few rotations.
+/// Warning that a deadline left time for too few rotations.
 pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
     let few = has_deadline && outcome.searched < MIN_ROTATIONS;
     few.then(|| {
@@ -130,15 +130,15 @@ pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Optio
     })
 }
 
-/// That an active site is assumed, and what follows.
-pub fn site_told(site: &AssumedSite) -> String {
+/// Remark that an active site is assumed, and what follows.
+pub fn site_text(site: &AssumedSite) -> String {
     format!(
         "Active site: {site}; poses that touch it rank higher, --peptidase-weight 0 leaves that out"
     )
 }
 
-/// Names with commas between them, and the last after an "and".
-fn listed(names: &[&str]) -> String {
+/// Names joined by commas, the last by "and".
+fn joined(names: &[&str]) -> String {
     match names {
         [] => String::new(),
         [name] => (*name).to_owned(),
@@ -168,7 +168,7 @@ pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
                     "{ends} termini past which residues may be unresolved"
                 )),
             }
-            if !unresolved.stretches.is_empty() {
+            if !unresolved.segments.is_empty() {
                 options.push("--unresolved-weight 0");
             } else if let Some(last) = parts.last_mut() {
                 last.push_str(", for which the body leaves no room");
@@ -188,7 +188,7 @@ pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
     lines.flatten().collect()
 }
 
-/// How many Cys and His are charged as what binds a metal, behind other words.
+/// Number of Cys and His charged as bound to a metal, to follow other words; empty if none is.
 pub fn metal_bound(labels: &LabelReport) -> String {
     match labels.metal_bound {
         0 => String::new(),
@@ -196,7 +196,7 @@ pub fn metal_bound(labels: &LabelReport) -> String {
     }
 }
 
-/// What was assumed of one side's charges and contact types, where effects use them.
+/// Charges and contact types assumed of one side, where effects use them.
 pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
     let names = |unknown: &BTreeMap<String, usize>| {
         let names = unknown

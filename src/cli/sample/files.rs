@@ -7,7 +7,7 @@ use knotdock::output::sample_picture::write_picture;
 use knotdock::output::whole_file::is_stream;
 use knotdock_structures::Knots;
 use knotdock_structures::mesh::Solid;
-use knotdock_structures::sampler::Ball;
+use knotdock_structures::sampling::Ball;
 
 use super::Sample;
 use crate::cli::arguments::output_file::{check_output, is_same};

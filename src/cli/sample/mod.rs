@@ -11,10 +11,12 @@ use knotdock::options::SampleGrid;
 use knotdock::options::values::{above_zero, at_least_one, protrusion};
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampler::decomposition::DecompositionOptions;
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights::{self, FittedWeights};
-use knotdock_structures::sampler::{Ball, BallSet, Method, Sampling, SetName, Step, knots, sample};
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{
+    Ball, BallSet, Method, Sampling, SetName, Step, knots, sample,
+};
 use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
@@ -140,7 +142,7 @@ impl Sample {
         let fits: Vec<Fit> = sampling
             .sets
             .iter()
-            .map(|set| referee.judge(&set.balls))
+            .map(|set| referee.measure(&set.balls))
             .collect();
         let step = Step::since("measuring the fit", start);
         sampling.steps.push(step);
@@ -233,7 +235,7 @@ impl Sample {
             if let Some(tree) = SphereTree::new(&finished.balls) {
                 finished.balls = tree.level(count);
             }
-            finished.level = Some(referee.judge(&finished.balls));
+            finished.level = Some(referee.measure(&finished.balls));
             finished.step = Some(Step::since("sphere tree", start));
         }
         Ok(finished)

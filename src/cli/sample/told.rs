@@ -2,9 +2,9 @@
 
 use knotdock::output::report;
 use knotdock_structures::mesh::{Figure, Solid};
-use knotdock_structures::sampler::hausdorff::{Fit, HausdorffMeter};
-use knotdock_structures::sampler::weights::FittedWeights;
-use knotdock_structures::sampler::{Sampling, SetName};
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights::FittedWeights;
+use knotdock_structures::sampling::{Sampling, SetName};
 use serde_json::{Value, json};
 
 /// What is told of a sampled solid, in the file's unit.

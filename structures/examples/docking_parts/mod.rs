@@ -1,12 +1,14 @@
 //! Pairs of parts that fit together, with the symmetries of each and the gap between them known.
 //!
-//! Both parts of a pair are made in the frame in which they are together; the docking tests then turn one away. Lengths are in shares of
-//! the first part's longest edge, about one. Corners run anticlockwise seen from outside.
+//! Both parts of a pair are made in the frame in which they are together; the docking tests then turn one away. Lengths
+//! are in shares of the first part's longest edge, about one. Corners run anticlockwise seen from outside.
 //!
-//! - **Keyed peg and blind hole.** A rod with a fin along it, and a block with a hole of that outline, grown by the clearance, that ends
-//!   inside. The peg may go in by either end: half a turn about the axis of its fin. The block has no symmetry but a mirror.
-//! - **Linked halves of a torus.** The cut turns once with the way around, so that the halves are two linked rings (as of a bagel, after
-//!   G. Hart). Each half is its own image under half a turn about one axis, which is the same for both.
+//! - **Keyed peg and blind hole.** A rod with a fin along it, and a block with a hole of that outline, grown by the
+//!   clearance, that ends inside. The peg may go in by either end: half a turn about the axis of its fin. The block has
+//!   no symmetry but a mirror.
+//! - **Linked halves of a torus.** The cut turns once with the way around, so that the halves are two linked rings (as
+//!   of a bagel, after G. Hart). Each half is its own image under half a turn about one axis, which is the same for
+//!   both.
 //! - **Broken block.** A block broken along four planes that meet in a point off its middle. No part has a symmetry.
 
 use std::f64::consts::PI;

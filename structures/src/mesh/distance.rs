@@ -1,13 +1,15 @@
 //! The distance to a mesh's surface, by parry's tree of bounding boxes.
 //!
-//! parry's own inside test (`TriMeshFlags::ORIENTED`, pseudo-normals of the nearest feature) is not used: it is wrong on
-//! open meshes and also on closed ones that intersect themselves, which no cheap check finds. See [`super::winding`].
+//! parry's own inside test (`TriMeshFlags::ORIENTED`, pseudo-normals of the nearest feature) is not used: it is wrong
+//! on open meshes and also on closed ones that intersect themselves, which no cheap check finds. See
+//! [`super::winding`].
 
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::point::PointQuery;
 use parry3d_f64::shape::TriMesh;
 
-use super::{Mesh, MeshErrorKind};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::triangle_mesh::Mesh;
 
 /// The triangles of a mesh, to measure distances to.
 pub(crate) struct Surface {
@@ -15,8 +17,8 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// Triangles without area are left out: they lie within the edges of their neighbours, and projecting to one divides
-    /// zero by zero.
+    /// Triangles without area are left out: they lie within the edges of their neighbours, and projecting to one
+    /// divides zero by zero.
     pub fn new(mesh: &Mesh) -> Result<Self, MeshErrorKind> {
         let positions = mesh
             .positions
@@ -60,6 +62,6 @@ impl Surface {
 
     /// The distance to the surface.
     pub fn distance(&self, point: [f64; 3]) -> f64 {
-        super::vector::distance(self.nearest(point), point)
+        crate::mesh::vector::distance(self.nearest(point), point)
     }
 }

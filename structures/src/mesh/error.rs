@@ -83,7 +83,7 @@ pub enum MeshErrorKind {
     /// All vertices lie in one plane.
     #[error("the mesh is flat: all its vertices lie in one plane, so it bounds no solid")]
     Flat,
-    /// The mesh is smaller than numbers can tell apart.
+    /// The mesh is smaller than numbers can distinguish.
     #[error("the mesh is {extent:e} across; lengths below 1e-60 are not distinguished from zero")]
     Tiny {
         /// Longest edge of the bounding box, in the file's unit.

@@ -25,7 +25,7 @@ impl fmt::Display for Figure {
 
 #[cfg(test)]
 mod tests {
-    use super::Figure;
+    use crate::mesh::figure::Figure;
 
     #[test]
     fn small_and_large_figures_keep_their_digits() {

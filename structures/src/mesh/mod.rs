@@ -1,4 +1,4 @@
-//! Meshes: the surface of a solid as triangles, and what can be asked of it.
+//! Meshes: the surface of a solid as triangles, with volume, area, distance and winding number.
 //!
 //! # Conventions
 //!
@@ -11,162 +11,36 @@
 //!
 //! # From file to solid
 //!
-//! path -> `read` (bytes to polygons) -> `weld` (with `rounding`, `seams`; polygons to triangles) -> `repeats` (a whole
-//! surface that is there twice) -> `topology` (open and non-manifold edges, parts) -> [`Mesh`] with its [`MeshReport`]
-//! -> [`Solid`]: `distance` to the surface, `winding` number, and the sign by it.
+//! path -> `read` (bytes to polygons) -> `repair` -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the
+//! surface, `winding` number, and the sign by it.
 //!
-//! `topology` calls `shells` where triangles meet at non-manifold edges or are there several times (`distinct`
-//! triangles -> `clusters` -> `cells` about their edges -> `labels`: which are solid), and `facing` for which way
-//! surfaces face, by their volume and their `nesting`.
+//! `repair` welds vertices (`weld`, with `rounding` and `seams`), cuts polygons into triangles, drops a whole surface
+//! that is there twice (`repeats`) and finds open and non-manifold edges and parts (`topology`). Where triangles meet
+//! at non-manifold edges or are there several times, `shells` cuts space into `cells` and `labels` the solid ones.
+//! `facing` turns surfaces outward by their volume and `nesting`.
 
-mod cells;
-mod clusters;
 mod distance;
-mod distinct;
-mod edges;
 mod error;
-mod faces;
-mod facing;
 mod figure;
-mod labels;
-mod nesting;
-mod polygon;
 mod probe;
 mod read;
-mod repeats;
+mod repair;
 mod report;
-mod rounding;
-mod seams;
-mod shells;
 mod slivers;
 mod solid;
 mod surface;
-mod topology;
+mod triangle_mesh;
 mod triangle_tree;
 pub(crate) mod vector;
-mod weld;
 pub(crate) mod winding;
 
-pub use error::{MeshError, MeshErrorKind};
-pub use figure::Figure;
-pub(crate) use probe::{Probe, is_beside};
-pub use read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
-pub use report::MeshReport;
-pub use solid::{Frame, Solid};
-pub use surface::SurfaceSample;
-pub(crate) use surface::surface_pieces;
-
-use vector::{cross, dot, norm, scale, subtract};
-
-/// A triangle mesh with distinct vertices, oriented outward as far as it can be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
-    /// Vertices, in the file's unit.
-    pub(crate) positions: Vec<[f64; 3]>,
-    /// Corners of each triangle, three different indices into `positions`.
-    pub(crate) triangles: Vec<[u32; 3]>,
-    /// Whether every edge is run through as often one way as the other.
-    pub(crate) closed: bool,
-}
-
-/// Height over longest edge below which a triangle counts as having no area.
-const SLIVER: f64 = 1e-12;
-
-impl Mesh {
-    /// The vertices, in the file's unit.
-    pub fn positions(&self) -> &[[f64; 3]] {
-        &self.positions
-    }
-
-    /// The corners of each triangle, as indices into [`positions`](Self::positions).
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
-    }
-
-    /// Whether every edge is run through as often one way as the other, so that a point is plainly in or out.
-    pub fn is_closed(&self) -> bool {
-        self.closed
-    }
-
-    /// The corner points of a triangle.
-    pub(crate) fn corners(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {
-        triangle.map(|corner| self.positions[corner as usize])
-    }
-
-    /// Smallest and largest coordinate on each axis, in the file's unit.
-    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for position in &self.positions {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(position[axis]);
-                high[axis] = high[axis].max(position[axis]);
-            }
-        }
-        (low, high)
-    }
-
-    /// Longest edge of the bounding box, in the file's unit.
-    pub fn extent(&self) -> f64 {
-        let (low, high) = self.bounds();
-        (0..3)
-            .map(|axis| high[axis] - low[axis])
-            .fold(0.0, f64::max)
-    }
-
-    /// Volume inside, in the file's unit cubed, by the divergence theorem; parts that overlap count twice, and that of an
-    /// open mesh depends on where its bounding box stands.
-    pub fn volume(&self) -> f64 {
-        let (low, high) = self.bounds();
-        let middle = scale(vector::add(low, high), 0.5);
-        self.triangles
-            .iter()
-            .map(|&triangle| {
-                let [a, b, c] = self
-                    .corners(triangle)
-                    .map(|corner| subtract(corner, middle));
-                dot(a, cross(b, c)) / 6.0
-            })
-            .sum()
-    }
-
-    /// Area of the surface, in the file's unit squared.
-    pub fn area(&self) -> f64 {
-        self.triangles
-            .iter()
-            .map(|&triangle| norm(doubled_normal(self.corners(triangle))) / 2.0)
-            .sum()
-    }
-
-    /// Whether a triangle has no area to speak of.
-    pub(crate) fn is_sliver(&self, triangle: [u32; 3]) -> bool {
-        let [a, b, c] = self.corners(triangle);
-        let longest = [subtract(b, a), subtract(c, b), subtract(a, c)]
-            .map(norm)
-            .into_iter()
-            .fold(0.0, f64::max);
-        norm(doubled_normal([a, b, c])) <= SLIVER * longest * longest
-    }
-
-    /// Whether all vertices lie in one plane, to within rounding.
-    fn is_flat(&self) -> bool {
-        let normals = self
-            .triangles
-            .iter()
-            .map(|&t| (t, doubled_normal(self.corners(t))));
-        let Some((triangle, normal)) =
-            normals.max_by(|(_, a), (_, b)| norm(*a).total_cmp(&norm(*b)))
-        else {
-            return true;
-        };
-        let origin = self.positions[triangle[0] as usize];
-        let normal = scale(normal, 1.0 / norm(normal));
-        let off = |position: &[f64; 3]| dot(subtract(*position, origin), normal).abs();
-        self.positions.iter().map(off).fold(0.0, f64::max) <= 1e-13 * self.extent()
-    }
-}
-
-/// The normal of a triangle, outward by its orientation, as long as twice its area.
-pub(crate) fn doubled_normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    cross(subtract(b, a), subtract(c, a))
-}
+pub use self::error::{MeshError, MeshErrorKind};
+pub use self::figure::Figure;
+pub(crate) use self::probe::{Probe, is_beside};
+pub use self::read::format::MeshFormat;
+pub use self::read::{file_bytes, from_triangles, parse, read, read_bytes};
+pub use self::report::MeshReport;
+pub use self::solid::{Frame, Solid};
+pub use self::surface::SurfaceSample;
+pub(crate) use self::surface::surface_pieces;
+pub use self::triangle_mesh::Mesh;

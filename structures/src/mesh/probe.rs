@@ -1,7 +1,8 @@
 //! Whether a sample of the surface is a point of the solid: whether some of the solid lies beside it at once.
 
-use super::vector::along;
-use super::{Solid, SurfaceSample};
+use crate::mesh::solid::Solid;
+use crate::mesh::surface::SurfaceSample;
+use crate::mesh::vector::along;
 
 /// Samples of one triangle that bound nothing, after which only every so many are looked at.
 const PATIENCE: usize = 32;

@@ -4,11 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::figure::Figure;
-use super::read::MeshFormat;
-use super::topology::Topology;
-use super::vector::{add, norm};
-use super::{Mesh, doubled_normal};
+use crate::mesh::figure::Figure;
+use crate::mesh::read::format::MeshFormat;
+use crate::mesh::repair::topology::Topology;
+use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
+use crate::mesh::vector::{add, norm};
 
 /// What was read, and what is amiss with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,7 +31,8 @@ pub struct MeshReport {
     pub weld_reach: f64,
     /// What was left out of the file, or read otherwise than it says: a sentence each.
     pub reading_notes: Vec<String>,
-    /// How often the file holds each triangle, one way round or both; they are kept once. 1 but for surfaces that are there several times.
+    /// How often the file holds each triangle, one way round or both; they are kept once. 1 but for surfaces that are
+    /// there several times.
     pub times: usize,
     /// Edges of one triangle only.
     pub open_edges: usize,
@@ -41,8 +42,8 @@ pub struct MeshReport {
     pub nonmanifold_edges: usize,
     /// Edges run through more often one way than the other: none in a closed mesh.
     pub unbalanced_edges: usize,
-    /// Area that is missing at least, as a share of the area that is there: the length of the sum of area vectors, which is
-    /// zero for a closed surface.
+    /// Area that is missing at least, as a share of the area that is there: the length of the sum of area vectors,
+    /// which is zero for a closed surface.
     pub missing_share: f64,
     /// Sets of triangles connected across edges of two or, where more than two meet, walls of one body.
     pub parts: usize,
@@ -145,8 +146,8 @@ impl MeshReport {
         self.unbalanced_edges == 0
     }
 
-    /// Whether the file's surface was closed, faced outward, was there once as it came and was read whole, which is what
-    /// `--strict` requires.
+    /// Whether the file's surface was closed, faced outward, was there once as it came and was read whole, which is
+    /// what `--strict` requires.
     pub fn is_sound(&self) -> bool {
         self.warnings().is_empty()
     }

@@ -1,11 +1,11 @@
 //! Long thin triangles cut into shorter pieces, so that trees over them have compact clusters.
 //!
-//! A cylinder of thousands of sides is as long at every side, whatever the number of sides; a tree can only part
-//! its triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface
-//! stays the same; only its pieces change.
+//! A cylinder of thousands of sides is as long at every side, whatever the number of sides. A tree can only part its
+//! triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface stays
+//! the same; only its pieces change.
 
-use super::Mesh;
-use super::vector::{along, distance, subtract};
+use crate::mesh::triangle_mesh::Mesh;
+use crate::mesh::vector::{along, distance, subtract};
 
 /// A triangle is a sliver if its longest side is more than this times its height.
 const ASPECT: f64 = 16.0;
@@ -80,5 +80,6 @@ fn longest(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
 
 fn is_thin(corners: &[[f64; 3]; 3]) -> bool {
     let longest = longest(corners);
-    longest * longest > ASPECT * super::vector::norm(super::doubled_normal(*corners))
+    longest * longest
+        > ASPECT * crate::mesh::vector::norm(crate::mesh::triangle_mesh::doubled_normal(*corners))
 }

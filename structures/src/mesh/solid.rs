@@ -1,14 +1,15 @@
 //! The solid that a mesh bounds: depth, inside and nearest surface point, in a frame where lengths are about one.
 
-use super::distance::Surface;
-use super::error::MeshErrorKind;
-use super::triangle_tree::TriangleTree;
-use super::vector::{along, scale, subtract};
-use super::{Mesh, slivers, winding};
+use crate::mesh::distance::Surface;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::triangle_mesh::Mesh;
+use crate::mesh::triangle_tree::TriangleTree;
+use crate::mesh::vector::{along, scale, subtract};
+use crate::mesh::{slivers, winding};
 
 /// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
 ///
-/// The origin is the middle of the bounding box, so that an offset costs no digits; the unit is a power of two, so that it
+/// The origin is the middle of the bounding box, so that an offset costs no digits. The unit is a power of two: it
 /// costs none either, and doubling every length of a file changes no bit of what is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

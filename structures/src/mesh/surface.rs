@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::triangle_tree::centroid;
-use super::vector::{add, norm, scale, subtract};
-use super::{Solid, doubled_normal};
+use crate::mesh::solid::Solid;
+use crate::mesh::triangle_mesh::doubled_normal;
+use crate::mesh::triangle_tree::centroid;
+use crate::mesh::vector::{add, norm, scale, subtract};
 
 /// A point that stands for a small piece of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +24,13 @@ impl Solid {
         self.tree().triangles().len()
     }
 
-    /// Samples of one triangle, none of whose points is farther than `spacing` from a sample, in the solid's coordinates.
+    /// Samples of one triangle, none of whose points is farther than `spacing` from a sample, in the solid's
+    /// coordinates.
     ///
-    /// The triangle is halved at its longest side until its pieces are small enough, which suits needles too. A piece about
-    /// `point` for which `skip(point, reach)` says true, `reach` being no less than the distance of any of its points, is left
-    /// out whole: a bound over many samples at the price of one.
+    /// The triangle is halved at its longest side until its pieces are small enough, which suits needles too.
+    ///
+    /// A piece about `point` is left out whole if `skip(point, reach)` says true: a bound over many samples at the
+    /// price of one. `reach` is no less than the distance of any of its points.
     pub fn samples_of(
         &self,
         triangle: usize,
@@ -135,8 +138,10 @@ fn turned_to_longest([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     }
 }
 
-/// Cuts the surface within `reach` of `point` into pieces no larger than `radius` about their middle and calls `visit` with
-/// the middle and area of each; whole clusters of triangles count as one piece where they are small enough.
+/// Cuts the surface within `reach` of `point` into pieces no larger than `radius` about their middle.
+///
+/// Calls `visit` with the middle and area of each. Whole clusters of triangles count as one piece where they are small
+/// enough.
 pub(crate) fn surface_pieces(
     solid: &Solid,
     point: [f64; 3],
@@ -173,7 +178,7 @@ pub(crate) fn surface_pieces(
                 }
                 let [a, b, c] = turned_to_longest(corners);
                 let halved = scale(add(a, b), 0.5);
-                // Doubles are no finer, whatever was asked for.
+                // Doubles are no finer, whatever was requested.
                 if halved == a || halved == b {
                     visit(middle, area);
                     continue;

@@ -1,7 +1,7 @@
 //! Triangles in a binary tree of clusters, with what sums over far clusters need of each.
 
-use super::vector::{add, distance, norm, scale};
-use super::{Mesh, doubled_normal};
+use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
+use crate::mesh::vector::{add, distance, norm, scale};
 
 /// Triangles in a leaf.
 const LEAF: usize = 8;

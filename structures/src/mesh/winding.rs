@@ -1,14 +1,15 @@
-//! The generalised winding number (Jacobson, Kavan and Sorkine-Hornung, ACM Transactions on Graphics 32:4, 2013, article 33).
+//! The generalised winding number (Jacobson, Kavan and Sorkine-Hornung, ACM Transactions on Graphics 32:4, 2013,
+//! article 33).
 //!
 //! w(x) = (1 / 4 pi) sum of the signed solid angles of all triangles seen from x: a whole number for a closed mesh,
-//! harmonic off the surface for any other. Far clusters of triangles count as dipoles (Barill, Dickson, Schmidt, Levin and
-//! Jacobson, ACM Transactions on Graphics 37:4, 2018, article 43, first order); where that leaves the sign in doubt, the
-//! exact sum decides.
+//! harmonic off the surface for any other. Far clusters of triangles count as dipoles (Barill, Dickson, Schmidt, Levin
+//! and Jacobson, ACM Transactions on Graphics 37:4, 2018, article 43, first order); where that leaves the sign in
+//! doubt, the exact sum decides.
 
 use std::f64::consts::PI;
 
-use super::triangle_tree::TriangleTree;
-use super::vector::{cross, dot, norm, subtract};
+use crate::mesh::triangle_tree::TriangleTree;
+use crate::mesh::vector::{cross, dot, norm, subtract};
 
 /// Signed solid angle of a triangle seen from `point`, in steradians: above zero from behind, that is from inside (van
 /// Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).
@@ -32,8 +33,8 @@ fn is_on(corners: [[f64; 3]; 3], point: [f64; 3]) -> bool {
     dot(a, cross(b, c)).abs() <= rounding && below <= rounding
 }
 
-/// Rounds of the inside test: a cluster counts as a dipole beyond this many times its radius, and the sum decides when it is
-/// farther than this from one half. A dipole's error falls with the square of the first number.
+/// Rounds of the inside test: a cluster counts as a dipole beyond this many times its radius, and the sum decides when
+/// it is farther than this from one half. A dipole's error falls with the square of the first number.
 const ROUNDS: [(f64, f64); 2] = [(3.0, 0.1), (10.0, 0.01)];
 
 /// The winding number at `point`, every triangle summed.

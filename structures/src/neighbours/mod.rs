@@ -5,8 +5,8 @@
 //! - [`Bins`] is the counting sort below the first: items by the number of their bin, in any number of dimensions.
 //! - [`cell`] says which cell a point lies in and which cells touch it.
 //!
-//! All of them visit points in one fixed order: cells by rising x, then y, then z, and the points of a cell in the order in
-//! which they were given. Sums over neighbours therefore have the same bits in every run.
+//! All of them visit points in one fixed order: cells by rising x, then y, then z, and the points of a cell in the
+//! order in which they were given. Sums over neighbours therefore have the same bits in every run.
 
 mod bins;
 pub mod cell;

@@ -50,7 +50,8 @@ impl<T> SpatialHash<T> {
         self.of_cells(cell::around(self.cell(point, 0.0)))
     }
 
-    /// The items of all cells that a cube of half edge `reach` about a point touches: all that lie within reach, among others.
+    /// The items of all cells that a cube of half edge `reach` about a point touches: all that lie within reach, among
+    /// others.
     pub fn touching(&self, point: [f64; 3], reach: f64) -> impl Iterator<Item = &T> {
         self.of_cells(cell::between(
             self.cell(point, -reach),

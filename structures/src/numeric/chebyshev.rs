@@ -1,6 +1,7 @@
 //! Interpolation at Chebyshev nodes, as polynomials in powers of x.
 //!
-//! [`monomials`] serves one function at up to about 20 nodes; [`to_monomials`] serves many functions at the same few nodes.
+//! [`monomials`] serves one function at up to about 20 nodes; [`to_monomials`] serves many functions at the same few
+//! nodes.
 
 use std::f64::consts::PI;
 
@@ -11,9 +12,9 @@ pub fn nodes(count: usize) -> impl ExactSizeIterator<Item = f64> {
 
 /// Coefficients, lowest power first, of the polynomial through (nodes, values), by Newton's divided differences.
 ///
-/// At Chebyshev nodes of [-1, 1] the polynomial follows a smooth function to about 1e-14 of its largest value for up to 21
-/// nodes, where building it from Lagrange polynomials loses half of the digits. Takes time proportional to the square of the
-/// number of nodes.
+/// At Chebyshev nodes of [-1, 1] the polynomial follows a smooth function to about 1e-14 of its largest value for up to
+/// 21 nodes, where building it from Lagrange polynomials loses half of the digits. Takes time proportional to the
+/// square of the number of nodes.
 ///
 /// # Panics
 /// If there are fewer nodes than values.

@@ -1,8 +1,8 @@
 //! Double-exponential quadrature on the unit interval (Takahasi & Mori, Publ. RIMS 9 (1974) 721).
 //!
-//! x = (1 + tanh(pi/2 sinh t)) / 2 makes the integrand vanish doubly exponentially at both ends of the line of t, so that the
-//! trapezoidal rule there converges fast however steep the integrand is at 0 and 1. The bump function needs it: it has an
-//! essential singularity at 1 and a cusp at 0.
+//! x = (1 + tanh(pi/2 sinh t)) / 2 makes the integrand vanish doubly exponentially at both ends of the line of t. The
+//! trapezoidal rule there converges fast however steep the integrand is at 0 and 1. The bump function needs it: it has
+//! an essential singularity at 1 and a cusp at 0.
 
 use std::f64::consts::PI;
 

@@ -5,8 +5,8 @@
 
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
 
-/// An atom record: record name, atom name (4 columns), alternate location, residue, chain, number, insertion, x, occupancy,
-/// element (2 columns).
+/// An atom record: record name, atom name (4 columns), alternate location, residue, chain, number, insertion, x,
+/// occupancy, element (2 columns).
 #[derive(Clone)]
 pub struct Line {
     pub record: &'static str,

@@ -271,7 +271,8 @@ impl Buffers {
     }
 }
 
-/// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach 2^30.
+/// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach
+/// 2^30.
 fn units<T: Real>(engine: &CpuEngine<T>) -> Vec<f64> {
     let fields = engine.rank();
     let mut sums = vec![0.0; fields];

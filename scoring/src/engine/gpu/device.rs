@@ -13,8 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Why the correlation cannot run on a graphics processor.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum GpuError {
-    /// No adapter, or none by the name asked for.
-    #[error("no graphics processor{}: the system's Vulkan, Metal or Direct3D 12 driver shows {}", of(.wanted), listed(.found))]
+    /// No adapter, or none of the requested name.
+    #[error("no graphics processor{}: the system's Vulkan, Metal or Direct3D 12 driver shows {}", of(.wanted), joined(.found))]
     NoAdapter {
         /// What [`ADAPTER_VARIABLE`] says.
         wanted: Option<String>,
@@ -45,7 +45,7 @@ fn of(wanted: &Option<String>) -> String {
         .map_or_else(String::new, |name| format!(" named like \"{name}\""))
 }
 
-fn listed(found: &[String]) -> String {
+fn joined(found: &[String]) -> String {
     if found.is_empty() {
         "none".into()
     } else {
@@ -64,8 +64,9 @@ pub struct GpuDevice {
 }
 
 impl GpuDevice {
-    /// Opens the adapter that `wanted` names (part of its name, in any case), else the first of the best kind: a card of its own before one within the
-    /// processor, and a program that plays one last.
+    /// Opens the adapter that `wanted` names (part of its name, in any case), else the first of the best kind.
+    ///
+    /// A discrete card comes before one within the processor, and software rendering last.
     ///
     /// # Errors
     /// [`GpuError`] where none is there or it cannot be opened.
@@ -96,14 +97,14 @@ impl GpuDevice {
             message: error.to_string(),
         })?;
         let failure = Arc::new(Mutex::new(None));
-        let told = Arc::clone(&failure);
+        let noted = Arc::clone(&failure);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            note(&told, error.to_string());
+            note(&noted, error.to_string());
         }));
-        let told = Arc::clone(&failure);
+        let noted = Arc::clone(&failure);
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&told, message);
+                note(&noted, message);
             }
         });
         Ok(Self {
@@ -142,7 +143,7 @@ impl GpuDevice {
         }
     }
 
-    /// The first error that has not been told of.
+    /// The first error that has not been noted of.
     pub(super) fn check(&self) -> Result<(), GpuError> {
         let failure = self
             .failure

@@ -1,7 +1,8 @@
 //! The complex FFT of a few lines at once in a workgroup's memory, written out as WGSL for one length.
 //!
-//! Stockham's self-sorting form with radices 4, 2, 3, 5 and 7 (Govindaraju et al., *High performance discrete Fourier transforms on
-//! graphics processors*, SC 2008, algorithm of section 3): every stage reads one array and writes the other, so that no pass reorders.
+//! Stockham's self-sorting form with radices 4, 2, 3, 5 and 7: every stage reads one array and writes the other, so
+//! that no pass reorders. Source: Govindaraju et al., *High performance discrete Fourier transforms on graphics
+//! processors*, SC 2008, section 3.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -48,8 +49,8 @@ pub(super) fn twiddles(length: usize, direction: Direction) -> Vec<[f32; 2]> {
         .collect()
 }
 
-/// WGSL of `transform(lane)` over `lines` lines of `length` (radices as given) and of `result(index)`, which reads what it left; callers fill `ping`
-/// and pass a barrier before. Nothing is scaled. `twiddle` is the table of [`twiddles`].
+/// WGSL of `transform(lane)` over `lines` lines of `length` (radices as given) and of `result(index)`, which reads what
+/// it left; callers fill `ping` and pass a barrier before. Nothing is scaled. `twiddle` is the table of [`twiddles`].
 pub(super) fn source(
     length: usize,
     radices: &[usize],

@@ -1,9 +1,11 @@
-//! The engine on a graphics processor: the plan, the spectra and the answers of [`CpuEngine`], many rotations in flight.
+//! The engine on a graphics processor: the plan, the spectra and the answers of [`CpuEngine`], many rotations in
+//! flight.
 //!
-//! All runs through wgpu (Vulkan, Metal, Direct3D 12), in single precision. A batch of turned ligands goes through the stages that the engine on
-//! the CPU has, one dispatch each: spreading, the three pruned forward transforms, the product with the inverse along x (four half-turns from one
-//! transform), the inverses along y and z, and the peaks, so that only these come back. Knots are spread in whole numbers, whose sum does not depend
-//! on the order in which a card takes them: one card gives the same bits each time.
+//! All runs through wgpu (Vulkan, Metal, Direct3D 12), in single precision. A batch of turned ligands goes through the
+//! stages of the engine on the CPU, one dispatch each. They are: spreading, the three pruned forward transforms, the
+//! product with the inverse along x (four half-turns from one transform), the inverses along y and z, and the peaks.
+//! Only the peaks come back. Knots are spread in whole numbers, whose sum does not depend on the order of the
+//! additions: one card gives the same bits each time.
 
 mod buffers;
 mod device;
@@ -67,8 +69,10 @@ struct Image {
 const AHEAD: usize = 2;
 
 impl GpuEngine {
-    /// Takes an engine to the card, to find up to `peaks` (at least 1) voxels a rotation that are more than `reach` voxels apart on some axis, with
-    /// at most `memory` bytes of the card for what is in flight.
+    /// Takes an engine to the card.
+    ///
+    /// It finds up to `peaks` (at least 1) voxels a rotation, each more than `reach` voxels from the others on some
+    /// axis. Rotations in flight take at most `memory` bytes of the card.
     ///
     /// # Errors
     /// [`GpuError`] where the grid does not fit the card or the driver fails.
@@ -99,7 +103,9 @@ impl GpuEngine {
         self.batch.images
     }
 
-    /// The best voxels of every wanted image of every turn, in the order of the turns; `done` is told of images as they are finished.
+    /// The best voxels of every wanted image of every turn, in the order of the turns.
+    ///
+    /// `done` is called with the number of images as they are finished.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the driver fails.
@@ -146,7 +152,7 @@ impl GpuEngine {
         let mut peaks = Vec::with_capacity(records.len());
         for (records, image) in records.chunks_exact(self.sizes.peaks).zip(&all) {
             let before = peaks.len();
-            // A grid may hold fewer voxels than were asked for: 0 stands for none, else voxel + 1.
+            // A grid may hold fewer voxels than requested: 0 stands for none, else voxel + 1.
             let found = records.iter().filter_map(|&[place, bits]| {
                 place.checked_sub(1).map(|voxel| GridPeak {
                     turn: image.turn,
@@ -166,7 +172,8 @@ impl GpuEngine {
         Ok(peaks)
     }
 
-    /// G over all translations at one rotation followed by a half-turn, (nx, ny, nz) row-major: for checks, one at a time.
+    /// G over all translations at one rotation followed by a half-turn, (nx, ny, nz) row-major: for checks, one at a
+    /// time.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the driver fails.
@@ -194,8 +201,10 @@ impl GpuEngine {
         self.read(&results)
     }
 
-    /// Seconds of each stage, by name, of as full a batch as goes through together, as a share of it for each of its images: the least of a few, each
-    /// submitted and waited for by itself, so that together they take longer than a whole batch.
+    /// Seconds of each stage by name, of a full batch, divided by its images.
+    ///
+    /// Each is the least of a few measurements. Stages are submitted and awaited one by one, so that together they take
+    /// longer than a whole batch.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the driver fails.
@@ -304,10 +313,10 @@ impl GpuEngine {
 
     /// What a buffer holds once everything submitted is done.
     fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
-        let (told, mapped) = std::sync::mpsc::channel();
+        let (sender, mapped) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
             // The receiver lives until it has heard.
-            let _ = told.send(result);
+            let _ = sender.send(result);
         });
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         self.gpu.check()?;

@@ -1,5 +1,6 @@
 //! What no plan can be made of.
 
+use crate::effect::{Effect, Label, Term};
 use crate::kernel::KernelError;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
@@ -22,6 +23,14 @@ pub enum PlanError {
         value: f64,
         /// Its range.
         bound: &'static str,
+    },
+    /// A term's labels or class matrix do not fit the knots.
+    #[error("the term {effect} {fault}")]
+    Term {
+        /// The term.
+        effect: Effect,
+        /// What does not fit.
+        fault: &'static str,
     },
     /// A body's weights are so large or small that scores would leave the range of single precision.
     #[error(
@@ -46,6 +55,46 @@ pub(in crate::engine) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Resul
     Ok(())
 }
 
+/// Refuses terms whose labels or class matrix do not fit the knots.
+pub(super) fn check_terms(
+    terms: &[Term],
+    receptor: &Knots,
+    ligand: &Knots,
+) -> Result<(), PlanError> {
+    for term in terms {
+        let refuse = |fault| {
+            Err(PlanError::Term {
+                effect: term.effect,
+                fault,
+            })
+        };
+        if term.receptor.len() != receptor.len() || term.ligand.len() != ligand.len() {
+            return refuse("does not have one label a knot");
+        }
+        let classes = term.matrix.first().map_or(0, Vec::len);
+        if term.matrix.iter().any(|row| row.len() != classes) {
+            return refuse("has a class matrix with rows of different lengths");
+        }
+        let beyond = |labels: &[Label], classes: usize| {
+            let mut taking_part = labels.iter().filter(|label| label.value != 0.0);
+            taking_part.any(|label| label.class >= classes)
+        };
+        if beyond(&term.receptor, term.matrix.len()) || beyond(&term.ligand, classes) {
+            return refuse("has a label of a class that its matrix lacks");
+        }
+        let values = term
+            .receptor
+            .iter()
+            .chain(&term.ligand)
+            .map(|label| label.value);
+        let numbers = values.chain(term.matrix.iter().flatten().copied());
+        if numbers.into_iter().any(|number| !number.is_finite()) {
+            return refuse("has a label or a matrix entry that is not finite");
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a tolerance that no plan can be made for.
 pub(super) fn check_tolerance(value: f64) -> Result<(), PlanError> {
     if (1e-8..=0.1).contains(&value) {
@@ -58,7 +107,7 @@ pub(super) fn check_tolerance(value: f64) -> Result<(), PlanError> {
     })
 }
 
-/// A spacing that was asked for, if it is one.
+/// The requested spacing, if it is usable.
 pub(super) fn checked_spacing(chosen: Option<f64>) -> Result<Option<f64>, PlanError> {
     match chosen {
         Some(value) if !(value.is_finite() && value > 0.0) => Err(PlanError::Option {

@@ -30,7 +30,8 @@ pub(super) struct Extents {
 const MAX_POINTS: f64 = u32::MAX as f64;
 /// Most points along an axis: transforms of that length are planned without delay.
 const MAX_ALONG: f64 = 1e6;
-/// Most pairs (y, z) of points, half of which become columns of modes: these are made before anyone can ask how much memory a plan takes, and are 400 MB by then.
+/// Most pairs (y, z) of points, half of which become columns of modes: these are made before anyone can ask how much
+/// memory a plan takes, and are 400 MB by then.
 const MAX_ROWS: f64 = (1u32 << 25) as f64;
 
 impl Extents {
@@ -49,23 +50,24 @@ impl Extents {
         }
     }
 
-    /// Points per axis of a grid that holds the receptor, the ligand turned however, and the kernel's reach between them; `width` is
-    /// that of the spreading window.
+    /// Points per axis of a grid that holds the receptor, the ligand turned however, and the kernel's reach between
+    /// them; `width` is that of the spreading window.
     ///
     /// # Errors
     /// [`PlanError::TooLarge`] where the points cannot be numbered, or the columns of modes held.
     pub fn grid(&self, reach: f64, width: usize, spacing: f64) -> Result<[usize; 3], PlanError> {
         let counts = self.receptor_extent.map(|extent| {
             let length = 2.0 * (extent + self.ligand_radius + reach);
-            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the box, which
-            // a kernel shorter than that window would make too small.
+            // The larger body's spread block, its window and the cells lost to rounding up included, must fit into the
+            // box, which a kernel shorter than that window would make too small.
             let block = 2.0 * extent.max(self.ligand_radius) + (width as f64 + 6.0) * spacing;
             (length.max(block) / spacing).ceil().max(4.0)
         });
-        let asked: f64 = counts.iter().product();
-        // Good sizes are sought for such alone as can be: that would not end for absurd ones. Written so that NaN is refused with the rest.
-        if !counts.iter().all(|count| (0.0..MAX_ALONG).contains(count)) || asked > MAX_POINTS {
-            return Err(PlanError::TooLarge(asked));
+        let points: f64 = counts.iter().product();
+        // Good sizes are sought for such alone as can be: that would not end for absurd ones. Written so that NaN is
+        // refused with the rest.
+        if !counts.iter().all(|count| (0.0..MAX_ALONG).contains(count)) || points > MAX_POINTS {
+            return Err(PlanError::TooLarge(points));
         }
         let size = counts.map(|count| fast_size(count as usize));
         let [nx, ny, nz] = size.map(|n| n as f64);
@@ -105,10 +107,12 @@ pub(super) fn oversampling(tolerance: f64, band: Option<Band>) -> f64 {
     }
 }
 
-/// Width of the spreading window in fine cells; `dynamic_range` is by how much the largest |G| exceeds the best score more than usual.
+/// Width of the spreading window in fine cells; `dynamic_range` is by how much the largest |G| exceeds the best score
+/// more than usual.
 pub(super) fn window_width(tolerance: f64, dynamic_range: f64, oversampling: f64) -> usize {
-    // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best score.
-    // The modes that matter there are the low ones, which the window serves better: a tenth is enough for docking.
+    // Errors of the transform are relative to the largest |G|, that of overlapping centres, some fifty times the best
+    // score. The modes that matter there are the low ones, which the window serves better: a tenth is enough for
+    // docking.
     let usual = if tolerance >= 1e-2 { 0.1 } else { 0.01 };
     let share = usual / dynamic_range;
     SpreadingKernel::<f64>::width_for(share * tolerance, oversampling * 1.2).min(MAX_WIDTH)
@@ -134,7 +138,8 @@ impl Widest {
     }
 }
 
-/// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest sum of radii.
+/// Distance in Å from which neither the ranking kernel nor that of an effect rises above the tolerance, for the widest
+/// sum of radii.
 pub(super) fn longest_reach(
     kernel: &RankingKernel,
     effects: &[ActiveTerm],
@@ -152,8 +157,9 @@ pub(super) fn longest_reach(
     )
 }
 
-/// By how much the bound on what dropped modes take may exceed the tolerance. It has them in phase for a pair at its worst, while whole sums were off by at most a tenth of it
-/// (1 to 160 balls, `cut_modes_stay_within_the_tolerance` in tests/fast_path.rs).
+/// By how much the bound on what dropped modes take may exceed the tolerance. It has them in phase for a pair at its
+/// worst, while whole sums were off by at most a tenth of it (1 to 160 balls, `cut_modes_stay_within_the_tolerance` in
+/// tests/fast_path.rs).
 const SLACK: f64 = 6.0;
 
 /// Grid spacing that keeps all modes of the ranking kernel that count; `dynamic_range` as for [`window_width`].
@@ -163,19 +169,21 @@ pub(super) fn ranking_spacing(
     tolerance: f64,
     dynamic_range: f64,
 ) -> f64 {
-    // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any tolerance.
+    // With a cusp at its middle (alpha below 1) the kernel rewards so little that what the window leaks counts at any
+    // tolerance.
     let cut = if tolerance >= 1e-2 && kernel.options().alpha >= 1.0 {
         kernel.stop()
     } else {
-        // Beyond the usual penalty there is none: with it, lambda = 1,000 misses 1e-3 by a twentieth (tests/hard_cases/kernel.rs).
+        // Beyond the usual penalty there is none: with it, lambda = 1,000 misses 1e-3 by a twentieth
+        // (tests/hard_cases/kernel.rs).
         let slack = if dynamic_range > 1.0 { 1.0 } else { SLACK };
         kernel.band_end(widest.sum, slack * tolerance * widest.peak_score)
     };
     0.5 / cut
 }
 
-/// The product kernel for the smallest and largest radii of receptor and ligand, a spacing that keeps the modes that count, and the
-/// distance beyond which a pair stays below the tolerance.
+/// The product kernel for the smallest and largest radii of receptor and ligand, a spacing that keeps the modes that
+/// count, and the distance beyond which a pair stays below the tolerance.
 pub(super) fn product_kernel(
     options: EngineOptions,
     band: Band,
@@ -191,7 +199,8 @@ pub(super) fn product_kernel(
         Band::LowPass => 0.5 * options.kernel.resolution,
         Band::Whole => {
             let (peak_score, _) = peak_score_and_reach(&kernel.pair_table(r_high, s_high), 0.0);
-            // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2 to 1e-4).
+            // The bound has all modes of a pair in phase: the errors of whole sums were a hundredth of it (tests, 1e-2
+            // to 1e-4).
             let allowed = 10.0 * options.tolerance * peak_score;
             let cut = (1..100)
                 .map(|i| 0.01 * f64::from(i) * finest)
@@ -213,8 +222,9 @@ pub(super) fn product_kernel(
 mod tests {
     use super::*;
 
-    /// Two atoms at (0, 0, 0) and (0, 120000, 60000) against two near each other: a grid of a few points along x had nearly 1e9 columns of modes, and the process was killed
-    /// for lack of memory before anyone asked how much there is. Voxels beyond 2^32 were numbered wrongly.
+    /// Two atoms at (0, 0, 0) and (0, 120000, 60000) against two near each other: a grid of a few points along x had
+    /// nearly 1e9 columns of modes. The process was killed for lack of memory before the memory was checked. Voxels
+    /// beyond 2^32 were numbered wrongly.
     #[test]
     fn grids_that_cannot_be_numbered_or_held_are_refused_before_anything_is_made() {
         let grid = |extent: [f64; 3], spacing: f64| {
@@ -231,7 +241,7 @@ mod tests {
         assert!(refused([0.0, 6e4, 3e4], 2.0));
         // Rather few points, but all of them columns.
         assert!(refused([0.0, 1e4, 1e4], 2.0));
-        // Just short of 2^32 points as asked for, and beyond with sizes that transforms like.
+        // Just short of 2^32 points as requested, and beyond with sizes that suit the transforms.
         let half = 0.5 * 1625.0 - 18.0;
         assert!(refused([half; 3], 1.0));
         assert!(

@@ -1,12 +1,15 @@
-//! The plan of a correlation: box, grid, modes, lifted modes and spreading window, chosen from the knots and a tolerance.
+//! The plan of a correlation: box, grid, modes, lifted modes and spreading window, chosen from the knots and a
+//! tolerance.
 //!
 //! # Conventions
 //!
-//! Receptor and ligand are recentred on the middles of their bounding boxes. A voxel (ix, iy, iz) of the grid stands for a
-//! position t of the ligand's centre relative to the receptor's: `Plan` and the engine share the map between the two.
+//! Receptor and ligand are recentred on the middles of their bounding boxes. A voxel (ix, iy, iz) of the grid stands
+//! for a position t of the ligand's centre relative to the receptor's: `Plan` and the engine share the map between the
+//! two.
 //!
-//! A plan correlates one of two pair kernels ([`PairKernel`]): the lifted cone that ranks poses, or the product kernel of rasterised
-//! bumps, for comparison with grid engines. All that follows a plan takes its kernel from [`Plan::coupling`] alone.
+//! A plan correlates one of two pair kernels ([`PairKernel`]): the lifted cone that ranks poses, or the product kernel
+//! of rasterised bumps, for comparison with grid engines. All that follows a plan takes its kernel from
+//! [`Plan::coupling`] alone.
 
 mod error;
 mod grid;
@@ -21,7 +24,7 @@ use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::quantity::Quantity;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
-use error::{check_tolerance, checked_spacing};
+use error::{check_terms, check_tolerance, checked_spacing};
 use grid::{
     Extents, Widest, longest_reach, modes_at, oversampling, product_kernel, ranking_spacing,
     window_width,
@@ -110,7 +113,7 @@ impl Plan {
         self.spacing
     }
 
-    /// Fine grid of the nonequispaced transforms, points per axis.
+    /// Fine grid of the NUFFT, points per axis.
     pub fn fine(&self) -> [usize; 3] {
         self.fine
     }
@@ -145,6 +148,13 @@ impl Plan {
         self.ligand_radius
     }
 
+    /// Whether a ligand lies within the room that the plan gives it.
+    pub(crate) fn holds_ligand(&self, ligand: &Knots) -> bool {
+        let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center).norm();
+        let room = self.ligand_radius * (1.0 + 1e-9) + 1e-9 * self.spacing;
+        ligand.centers.iter().all(|x| distance(x) <= room)
+    }
+
     /// Distance in Å beyond which two knots do not interact.
     pub fn reach(&self) -> f64 {
         match self.pair {
@@ -167,7 +177,8 @@ impl Plan {
         Self::with_effects(receptor, ligand, options, options.tolerance, Vec::new())
     }
 
-    /// Plans the correlation of shape and further terms, with the kernel of a tolerance as [`Plan::with_kernel_of`] does.
+    /// Plans the correlation of shape and further terms, with the kernel of a tolerance as [`Plan::with_kernel_of`]
+    /// does.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -181,8 +192,8 @@ impl Plan {
         Self::build(receptor, ligand, options, kernel_tolerance, None, terms)
     }
 
-    /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a coarser run:
-    /// the kernel's window is part of its definition.
+    /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a
+    /// coarser run: the kernel's window is part of its definition.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -197,8 +208,8 @@ impl Plan {
 
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
     ///
-    /// Under [`Band::LowPass`] the modes below the stop frequency are all there is. Under [`Band::Whole`] the grid cuts the kernel
-    /// sharply at 1 / (2 spacing), by default where less than the tolerance lies beyond.
+    /// Under [`Band::LowPass`] the modes below the stop frequency are all there is. Under [`Band::Whole`] the grid cuts
+    /// the kernel sharply at 1 / (2 spacing), by default where less than the tolerance lies beyond.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -227,11 +238,13 @@ impl Plan {
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
         check_bodies(receptor, ligand)?;
+        check_terms(&terms, receptor, ligand)?;
         check_tolerance(options.tolerance)?;
         check_tolerance(kernel_tolerance)?;
         let tolerance = options.tolerance;
         let radii = Radii::of(receptor, ligand);
-        // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors, by lambda.
+        // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors,
+        // by lambda.
         let dynamic_range = (options.kernel.lambda.abs() / 20.0).max(1.0);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
         let reach_factor = 1.15 + 0.75 * (1e-2 * dynamic_range / kernel_tolerance).log10().max(0.0);
@@ -284,8 +297,8 @@ impl Plan {
         })
     }
 
-    /// The same correlation on a grid of another spacing in Å, which is all that depends on it. The tables of a product kernel end with the grid's frequencies: it
-    /// serves coarser spacings alone.
+    /// The same correlation on a grid of another spacing in Å, which is all that depends on it. The tables of a product
+    /// kernel end with the grid's frequencies: it serves coarser spacings alone.
     ///
     /// # Errors
     /// [`PlanError`] on a spacing that gives no grid.
@@ -315,7 +328,8 @@ impl Plan {
         })
     }
 
-    /// Number of functions in which the ligand meets the receptor: those of the lifted axis, and one for each class of a further term.
+    /// Number of functions in which the ligand meets the receptor: those of the lifted axis, and one for each class of
+    /// a further term.
     pub fn functions(&self) -> usize {
         let classes = self.effects.iter().map(|ActiveTerm { term, .. }| {
             let mut seen: Vec<usize> = term
@@ -331,8 +345,8 @@ impl Plan {
         self.basis.sizes(&self.axis).1 + classes.sum::<usize>()
     }
 
-    /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays, and the
-    /// transforms shrink with the modes.
+    /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays,
+    /// and the transforms shrink with the modes.
     pub fn truncated(&self, most: usize) -> Self {
         Self {
             modes: Arc::new(ball(&self.modes, most)),
@@ -340,8 +354,8 @@ impl Plan {
         }
     }
 
-    /// Radial spectrum that couples receptor function a with ligand function b of [`Plan::basis`] in the folded kernel, on all modes
-    /// kept; `None` where it is zero.
+    /// Radial spectrum that couples receptor function a with ligand function b of [`Plan::basis`] in a quantity, on all
+    /// modes kept; `None` where it is zero.
     pub fn coupling(&self, fold: Quantity, (a, b): (usize, usize)) -> Option<Table<1>> {
         let w_max = self.modes.cut;
         match &self.pair {

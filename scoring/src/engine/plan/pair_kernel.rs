@@ -7,6 +7,7 @@ use crate::kernel::ProductKernel;
 pub enum PairKernel {
     /// The lifted cone at r + s + rho, low-passed and windowed: `Plan::kernel`.
     Lifted,
-    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they are.
+    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they
+    /// are.
     Product(Box<ProductKernel>),
 }

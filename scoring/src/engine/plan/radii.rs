@@ -36,8 +36,8 @@ impl Radii {
         (r_low + s_low, r_high + s_high)
     }
 
-    /// The lifted axis, how radii meet it, and the largest relative error of that, `tolerance` at most. A product kernel, whose frequencies end at
-    /// `cut` per Å, has no use for the axis: that is the mean alone then.
+    /// The lifted axis, how radii meet it, and the largest relative error of that, `tolerance` at most. A product
+    /// kernel, whose frequencies end at `cut` per Å, has no use for the axis: that is the mean alone then.
     pub fn meet(
         self,
         kernel: &RankingKernel,

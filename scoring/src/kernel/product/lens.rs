@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 /// Volume in Å^3 that two balls of radii a and b share at distance d of their centres.
 ///
-/// Inside the other while d <= |a - b|; else the two caps, pi (a + b - d)^2 (d^2 + 2 d (a + b) - 3 (a - b)^2) / (12 d)
-/// (Weisstein, "Sphere-Sphere Intersection", MathWorld).
+/// The smaller ball while d <= |a - b|; else the two caps,
+/// pi (a + b - d)^2 (d^2 + 2 d (a + b) - 3 (a - b)^2) / (12 d).
+/// Source: Weisstein, "Sphere-Sphere Intersection", MathWorld.
 pub fn lens_volume(a: f64, b: f64, distance: f64) -> f64 {
     if distance >= a + b {
         return 0.0;
@@ -23,7 +24,7 @@ mod tests {
 
     #[test]
     fn a_ball_inside_a_half_covered_one_and_none() {
-        // Two unit balls a radius apart share 5 pi / 12.
+        // Two unit balls at a distance of 1 share 5 pi / 12.
         assert!((lens_volume(1.0, 1.0, 1.0) - 5.0 * PI / 12.0).abs() < 1e-15);
         assert_eq!(lens_volume(2.0, 1.0, 1.0), 4.0 / 3.0 * PI);
         assert_eq!(lens_volume(2.0, 1.0, 3.0), 0.0);

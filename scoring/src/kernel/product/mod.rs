@@ -1,29 +1,32 @@
 //! The product kernel: what a rasterised bump function correlates with another one.
 //!
-//! Grid engines (Kavraki's, Lysenko's, ZDock's way, and B&I's own comparison in their Fig. 8) write every ball as a bump psi_r(x - x_i)
-//! onto a grid and correlate the two grids. Two balls a distance d apart then score their bumps' overlap
+//! Grid engines (Kavraki's, Lysenko's, ZDock's way, and B&I's own comparison in their Fig. 8) write every ball as a
+//! bump psi_r(x - x_i) onto a grid and correlate the two grids. Two balls at distance d then score their bumps' overlap
 //!
-//! (psi_a * psi_b)(d) = integral of psi(|x| / a) psi(|x - d| / b) dx, in Å^3, with the transform a^3 b^3 psi^(a w) psi^(b w),
+//! (psi_a * psi_b)(d) = integral of psi(|x| / a) psi(|x - d| / b) dx, in Å^3, with the transform a^3 b^3 psi^(a w)
+//! psi^(b w),
 //!
-//! and not the lifted cone psi(d / (a + b)): two functions of the same two balls, which must not be compared with each other.
-//! Only the product kernel has the volume of two spheres' lens as its limit for alpha -> infinity.
+//! and not the lifted cone psi(d / (a + b)): two functions of the same two balls, which must not be compared with each
+//! other. Only the product kernel has the volume of two spheres' lens as its limit for alpha -> infinity.
 //!
 //! # The double skin
 //!
-//! B&I's affinity function (eq. 51) is F_S = i (f_{S+B0} - lambda f_S) on each body, with f_S = sum_i c_i psi_{r_i}(x - x_i) and the grown
-//! solid the same with radii r_i + r0. Its product with the other body's, i * i = -1 kept as their text needs it (see
-//! [`crate::affinity`]), is for each pair of knots
+//! B&I's affinity function (eq. 51) is F_S = i (f_{S+B0} - lambda f_S) on each body, with f_S = sum_i c_i psi_{r_i}(x -
+//! x_i) and the grown solid the same with radii r_i + r0. Its product with the other body's, i * i = -1 kept as their
+//! text needs it (see [`crate::affinity`]), is for each pair of knots
 //!
 //! -lambda^2 (psi_r * psi_s) + lambda [(psi_{r+r0} * psi_s) + (psi_r * psi_{s+r0})] - (psi_{r+r0} * psi_{s+r0}).
 //!
-//! The slices are therefore: 0, both solids as they are; 1, the *mean* of growing either one; 2, both grown. With them the score is
-//! -lambda^2 g_0 + 2 lambda g_1 - g_2, the same weights as those of the lifted kernel, for which growing either body is the same.
+//! The slices are therefore: 0, both solids as they are; 1, the *mean* of growing either one; 2, both grown. With them
+//! the score is -lambda^2 g_0 + 2 lambda g_1 - g_2, the same weights as those of the lifted kernel, for which growing
+//! either body is the same.
 //!
 //! # Two bands
 //!
-//! [`Band::Whole`] is the kernel as it stands, exactly 0 beyond r + s + 2 r0. [`Band::LowPass`] multiplies its transform by the ranking
-//! kernel's low-pass W(|w|); it is then exactly band-limited, and rings in space (nothing is windowed here, since a window over pairs
-//! is no product of two bodies' transforms and so not open to a rasteriser). The trim along the lifted axis has no meaning here.
+//! [`Band::Whole`] is the kernel as it stands, exactly 0 beyond r + s + 2 r0. [`Band::LowPass`] multiplies its
+//! transform by the ranking kernel's low-pass W(|w|): it is then exactly band-limited, and rings in space. It is not
+//! windowed, since a window over pairs is no product of two bodies' transforms, and so beyond a rasteriser. The trim
+//! along the lifted axis has no meaning here.
 
 mod lens;
 mod pairs;
@@ -51,7 +54,8 @@ pub enum Band {
     /// All of them.
     #[default]
     Whole,
-    /// Those that the ranking kernel's smooth low-pass leaves: `KernelOptions::pass_length` and `KernelOptions::resolution`.
+    /// Those that the ranking kernel's smooth low-pass leaves: `KernelOptions::pass_length` and
+    /// `KernelOptions::resolution`.
     LowPass,
 }
 
@@ -66,8 +70,8 @@ pub enum Body {
     DoubleSkin,
 }
 
-/// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by the offset have
-/// none: they are taken along the lifted axis, which the product kernel lacks.
+/// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by
+/// the offset have none: they are taken along the lifted axis, which the product kernel lacks.
 pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
     use Body::{DoubleSkin, Grown, Solid};
     match fold {
@@ -94,8 +98,8 @@ pub struct ProductKernel {
 }
 
 impl ProductKernel {
-    /// The kernel for balls of radius up to `largest` (Å, not yet grown) and frequencies up to `w_max` (1/Å); beyond it the transform
-    /// counts as 0.
+    /// The kernel for balls of radius up to `largest` (Å, not yet grown) and frequencies up to `w_max` (1/Å); beyond it
+    /// the transform counts as 0.
     ///
     /// # Errors
     /// [`KernelError`] on options that define no kernel.
@@ -210,7 +214,8 @@ impl ProductKernel {
         }
     }
 
-    /// Transform of a fold's pair kernel for radii r and s at frequency w, low-pass included: what couples the two bodies' modes.
+    /// Transform of a fold's pair kernel for radii r and s at frequency w, low-pass included: what couples the two
+    /// bodies' modes.
     pub fn coupling(&self, fold: Quantity, r: f64, s: f64, w: f64) -> f64 {
         let products: f64 = factors(fold)
             .iter()
@@ -219,11 +224,12 @@ impl ProductKernel {
         products * self.low_pass(w)
     }
 
-    /// (psi_a * psi_b)(d) in Å^3 over all frequencies, by quadrature in space; the lens volume of two spheres at alpha = infinity.
+    /// (psi_a * psi_b)(d) in Å^3 over all frequencies, by quadrature in space; the lens volume of two spheres at alpha
+    /// = infinity.
     ///
-    /// In the bipolar coordinates u = |x|, v = |x - d| it is (2 pi / d) * integral over u of u psi_a(u) [Psi_b(|d - u|) - Psi_b(d + u)], Psi
-    /// the tail integral of v psi_b(v). The integrand is even about 0 and vanishes with all derivatives at u = a, so that the trapezoidal
-    /// rule converges faster than any power.
+    /// In the bipolar coordinates u = |x|, v = |x - d| it is (2 pi / d) times the integral over u of u psi_a(u)
+    /// [Psi_b(|d - u|) - Psi_b(d + u)]. Psi is the tail integral of v psi_b(v). The integrand is even about 0 and
+    /// vanishes with all derivatives at u = a, so that the trapezoidal rule converges faster than any power.
     pub fn overlap(&self, distance: f64, a: f64, b: f64) -> f64 {
         let (a, b) = (a.min(b), a.max(b));
         if distance >= a + b {
@@ -252,7 +258,8 @@ impl ProductKernel {
         2.0 * PI * step * sum
     }
 
-    /// Slices 0, 1, 2 and the score kernel of one pair of radii at one distance, by their definition (slow; tables come from this).
+    /// Slices 0, 1, 2 and the score kernel of one pair of radii at one distance, by their definition (slow; tables come
+    /// from this).
     pub fn value(&self, distance: f64, r: f64, s: f64) -> [f64; 4] {
         match self.band {
             Band::Whole => {

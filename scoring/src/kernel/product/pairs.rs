@@ -1,4 +1,5 @@
-//! One pair of radii of the product kernel: its reach, its table over distance, and what its modes hold beyond a frequency.
+//! One pair of radii of the product kernel: its reach, its table over distance, and what its modes hold beyond a
+//! frequency.
 
 use super::{Band, ProductKernel};
 use crate::kernel::radial_transform::sinc;
@@ -74,8 +75,8 @@ impl ProductKernel {
         self.band == Band::LowPass || self.bump.alpha().is_finite()
     }
 
-    /// Integral over |w| > f of 4 pi w^2 |transform of the score kernel| up to [`Self::w_max`]: the most that dropping those modes can
-    /// move one pair.
+    /// Integral over |w| > f of 4 pi w^2 |transform of the score kernel| up to [`Self::w_max`]: the most that dropping
+    /// those modes can move one pair.
     pub fn leak_beyond(&self, r: f64, s: f64, frequency: f64) -> f64 {
         let step = 0.125 / (r + s + 2.0 * self.options.offset);
         (0..)

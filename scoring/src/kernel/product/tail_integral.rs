@@ -3,7 +3,8 @@
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::double_exponential::{self, Node};
 
-/// Integral from v to 1 of u psi(u) du by double-exponential quadrature, which takes in the bump's end however steep it is.
+/// Integral from v to 1 of u psi(u) du by double-exponential quadrature, which takes in the bump's end however steep it
+/// is.
 pub(super) struct TailIntegral {
     bump: Bump,
     /// Nodes of the unit interval and their weights.
@@ -42,8 +43,8 @@ impl TailIntegral {
 mod tests {
     use super::*;
 
-    /// Against the trapezoidal rule, which an integrand that vanishes with all derivatives at its end needs few points for once its
-    /// start is put right: u psi(u) is odd about 0 there, so that all is measured from v = 0.
+    /// Against the trapezoidal rule. The integrand vanishes with all derivatives at its end and is odd about 0, so that
+    /// few points from v = 0 on suffice.
     #[test]
     fn whole_tail_is_the_plane_integral_of_the_bump() {
         for alpha in [2.0, 4.0, 30.0] {

@@ -19,8 +19,8 @@ fn kernel(alpha: f64, band: Band) -> ProductKernel {
     ProductKernel::new(options(alpha), band, 1.9, 3.0).unwrap()
 }
 
-/// The limit alpha -> infinity is the lens volume, approached like 1 / alpha: the bump's edge is about radius / alpha wide. Distances
-/// cover coincidence, one ball inside the other, crossing, near touch and beyond.
+/// The limit alpha -> infinity is the lens volume, approached like 1 / alpha: the bump's edge is about radius / alpha
+/// wide. Distances cover coincidence, one ball inside the other, crossing, near touch and beyond.
 #[test]
 fn tends_to_the_lens_volume() {
     let (a, b) = (1.5, 1.9);
@@ -42,7 +42,8 @@ fn tends_to_the_lens_volume() {
     assert_eq!(sharp.overlap(0.3, a, b), 4.0 / 3.0 * PI * 1.5f64.powi(3));
 }
 
-/// Overlap in space and product of transforms are the same function: the quadrature in u against the inverse radial transform.
+/// Overlap in space and product of transforms are the same function: the quadrature in u against the inverse radial
+/// transform.
 #[test]
 fn space_and_frequency_agree() {
     let kernel = ProductKernel::new(options(2.0), Band::Whole, 1.9, 12.0).unwrap();

@@ -5,12 +5,38 @@
 //! writes the table beside this file, and the table's first lines name its sources. The radial function k is 1 up to 5 Å and falls
 //! to 0 at 7 Å with all derivatives continuous.
 
-use super::{Effect, Label, RadialFunction, Term};
+use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
 pub use crate::terms::potential_table::PotentialError;
 use crate::terms::potential_table::{built_in, end, table_lines};
 use knotdock_structures::Knots;
 use serde::{Deserialize, Serialize};
+
+/// Definition of the effect.
+pub(super) const EFFECT: EffectDefinition = EffectDefinition {
+    id: "contact",
+    of_meshes: "meshes have no atom types",
+    components: 3.0,
+    lacks: |inputs| {
+        let too_few = inputs.sides().find(|(_, labels)| {
+            labels.typed == 0 || (labels.typed as f64) < TYPED_SHARE * labels.atoms as f64
+        });
+        too_few.map(|(side, labels)| {
+            format!(
+                "only {} of the {side}'s {} atoms are of known contact types",
+                labels.typed, labels.atoms
+            )
+        })
+    },
+    reason: |_| "both sides are proteins of known atom types".to_owned(),
+    term: |[receptor, ligand], inputs, weight| {
+        let potential = inputs.contact_potential.cloned().unwrap_or_default();
+        Some(term(receptor, ligand, weight, &potential))
+    },
+};
+
+/// Least share of heavy atoms with contact types at which the potential applies to a molecule.
+const TYPED_SHARE: f64 = 0.5;
 
 /// Names of the types, in the order of their numbers.
 pub const TYPES: [&str; 18] = [

@@ -1,4 +1,4 @@
-//! A term's radial function behind the filter of the ranking kernel, in both domains.
+//! Radial functions of terms after the filter of the ranking kernel, in both domains.
 
 use super::RadialFunction;
 use crate::kernel::radial_filter::RadialFilter;
@@ -6,8 +6,10 @@ use crate::kernel::radial_transform::sinc;
 use crate::kernel::table::Table;
 use std::f64::consts::PI;
 
-/// Steps of the transform's quadrature over the function's support: k is smooth and even and vanishes with all derivatives at its
-/// support's end, so the trapezoidal rule converges faster than any power (tested against four times as many).
+/// Steps of the transform's quadrature over the function's support.
+///
+/// k is smooth and even and vanishes with all derivatives at the end of its support. So the trapezoidal rule converges faster than any
+/// power (tested against four times as many steps).
 const STEPS: usize = 400;
 
 /// A filtered radial function.

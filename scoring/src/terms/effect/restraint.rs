@@ -1,64 +1,86 @@
-//! Restraint: what contacts cost of atoms that should have none, and earn of atoms that should.
+//! Effect `restraint`: contacts of excluded atoms cost, and contacts of active atoms earn.
 //!
-//! A blocked atom pays for every atom of the other side within about 6 Å, an attracted one earns by each, whatever both are: k is that of
-//! [`super::contact`], 1 up to 5 Å and falling C-infinity to 0 at 7 Å. Of two marked atoms each has its own. Nothing comes of a contact of
-//! free atoms, so a pose that marked atoms have no part in scores as it would without the effect.
+//! Every atom of the other side within about 6 Å counts, whatever its type: k is that of [`super::contact`], 1 up to 5 Å and 0 from
+//! 7 Å on. The scores of two atoms with roles add up. Contacts of free atoms score nothing, so a pose without contacts of other atoms
+//! scores as without the effect.
 
-use super::{Effect, Label, Term, contact};
+use super::{Effect, EffectDefinition, Label, Term, contact};
 use knotdock_structures::Knots;
 
-/// What is wanted of an atom's contacts; as a number its class.
+/// Definition of the effect.
+pub(super) const EFFECT: EffectDefinition = EffectDefinition {
+    id: "restraint",
+    of_meshes: "meshes have no residues",
+    components: 1.0,
+    lacks: |inputs| {
+        let mut roles = inputs.roles.into_iter().flatten();
+        let all_free = roles.all(|role| *role == ResidueRole::Free);
+        all_free.then(|| {
+            "no residue is blocked or active, and no antibody is kept to its CDRs".to_owned()
+        })
+    },
+    reason: |inputs| inputs.roles_reason.to_owned(),
+    term: |[receptor, ligand], inputs, weight| {
+        let weights = Weights {
+            excluded: weight,
+            active: inputs.active_weight,
+        };
+        Some(term(receptor, ligand, inputs.roles, weights))
+    },
+};
+
+/// Role of an atom in contacts; as a number, its class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResidueRole {
-    /// Nothing.
+    /// Its contacts do not count.
     #[default]
     Free,
-    /// That there be none.
+    /// It should have no contact.
     Excluded,
-    /// That there be some.
+    /// It should be in contact.
     Active,
 }
 
 impl ResidueRole {
-    /// All marks, in the order of their classes.
+    /// All roles, in the order of their classes.
     const ALL: [Self; 3] = [Self::Free, Self::Excluded, Self::Active];
 }
 
-/// What a contact of a marked atom is worth.
+/// Scores of the contacts of atoms with a role.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// What one of a blocked atom costs: score.
-    pub blocked: f64,
-    /// What one of an attracted atom earns: score.
-    pub attracted: f64,
+    /// Cost of a contact of an excluded atom: score.
+    pub excluded: f64,
+    /// Score of a contact of an active atom.
+    pub active: f64,
 }
 
-/// The term for two sets of knots with a mark each; knots without one are free.
+/// Term of two sets of knots with the roles of their knots; knots without one are free.
 pub fn term(
     receptor: &Knots,
     ligand: &Knots,
-    marks: [&[ResidueRole]; 2],
+    roles: [&[ResidueRole]; 2],
     weights: Weights,
 ) -> Term {
-    let labels = |knots: &Knots, marks: &[ResidueRole]| {
+    let labels = |knots: &Knots, roles: &[ResidueRole]| {
         (0..knots.len())
             .map(|index| Label {
-                class: marks.get(index).copied().unwrap_or_default() as usize,
+                class: roles.get(index).copied().unwrap_or_default() as usize,
                 value: knots.weights.get(index).copied().unwrap_or(0.0),
             })
             .collect()
     };
-    let worth = |mark: ResidueRole| match mark {
+    let score = |role: ResidueRole| match role {
         ResidueRole::Free => 0.0,
-        ResidueRole::Excluded => -weights.blocked,
-        ResidueRole::Active => weights.attracted,
+        ResidueRole::Excluded => -weights.excluded,
+        ResidueRole::Active => weights.active,
     };
     let row = |own: ResidueRole| {
         ResidueRole::ALL
-            .map(|other| worth(own) + worth(other))
+            .map(|other| score(own) + score(other))
             .to_vec()
     };
-    let [of_receptor, of_ligand] = marks;
+    let [of_receptor, of_ligand] = roles;
     Term {
         effect: Effect::Restraint,
         radial: contact::RADIAL,
@@ -72,16 +94,16 @@ pub fn term(
 mod tests {
     use super::*;
 
-    /// Every class has its worth as the head says, and the table is the same from either side.
+    /// Each class has its score, and the matrix is symmetric.
     #[test]
-    fn marked_atoms_pay_and_earn_and_free_ones_do_not() {
+    fn excluded_atoms_cost_and_active_ones_earn_and_free_ones_do_not() {
         let knots = Knots::new(vec![[0.0; 3], [9.0, 0.0, 0.0]], vec![1.7; 2]).unwrap();
         let weights = Weights {
-            blocked: 1.5,
-            attracted: 4.0,
+            excluded: 1.5,
+            active: 4.0,
         };
-        let marks = [ResidueRole::Active, ResidueRole::Excluded];
-        let term = term(&knots, &knots, [&marks, &[]], weights);
+        let roles = [ResidueRole::Active, ResidueRole::Excluded];
+        let term = term(&knots, &knots, [&roles, &[]], weights);
         let classes = |labels: &[Label]| labels.iter().map(|l| l.class).collect::<Vec<_>>();
         assert_eq!(classes(&term.receptor), [2, 1]);
         assert_eq!(classes(&term.ligand), [0, 0]);

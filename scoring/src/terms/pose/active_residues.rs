@@ -19,6 +19,16 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 2000.0,
     time_share: UNRELAXED,
+    reads: "active residues",
+    count: |inputs| {
+        [0, 1].map(|side| {
+            inputs
+                .active_residues
+                .iter()
+                .map(|set| set[side].len())
+                .sum()
+        })
+    },
     applies: |inputs| !inputs.active_residues.is_empty(),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

@@ -16,6 +16,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score per RT",
     default_weight: 1.0,
     time_share: UNRELAXED,
+    reads: "atoms with kinds",
+    count: |inputs| inputs.atoms_with_kinds(),
     applies: |inputs| inputs.has_atom_kinds(),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

@@ -1,4 +1,4 @@
-//! Two bodies of typed atoms, and sums over the pairs that come near each other at a pose.
+//! Two bodies of typed atoms, and sums over their pairs within a reach.
 
 use super::CELL_EDGE;
 use crate::exact::center;
@@ -7,7 +7,7 @@ use knotdock_structures::Knots;
 use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::Vector3;
 
-/// The atoms that have a type, each body's relative to its own middle.
+/// Typed atoms of two bodies, each relative to the centre of its body.
 pub(super) struct Bodies {
     /// By the type of the atom.
     receptor: CellList<usize>,
@@ -17,7 +17,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Takes of both sets of knots the atoms whose type is below `kinds`; `types` reads the types that are meant, one a knot or none at all.
+    /// Takes the knots whose type is below `kinds`. `types` returns the type of each knot, or nothing for a set without types.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -38,9 +38,9 @@ impl Bodies {
         }
     }
 
-    /// Sum at a pose of the ligand of `worth(receptor type, ligand type, distance in Å)` over the pairs nearer than `reach`.
+    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than `reach` (Å).
     #[inline]
-    pub fn sum(&self, pose: &Pose, reach: f64, worth: impl Fn(usize, usize, f64) -> f64) -> f64 {
+    pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
         let mut total = 0.0;
@@ -49,7 +49,7 @@ impl Bodies {
             let position = matrix * atom + place;
             self.receptor
                 .visit_within(position.into(), reach, |&other, square| {
-                    sum += worth(other, kind, square.sqrt());
+                    sum += value(other, kind, square.sqrt());
                 });
             total += sum;
         }
@@ -57,7 +57,7 @@ impl Bodies {
     }
 }
 
-/// The typed atoms of a set of knots relative to its middle, which comes with them.
+/// Typed atoms of a set of knots relative to its centre, with the centre.
 fn typed(
     knots: &Knots,
     types: &[Option<u8>],
@@ -80,7 +80,7 @@ mod tests {
     const KINDS: usize = 5;
     const REACH: f64 = 6.5;
 
-    /// Atoms strewn over a cube, some without a type and some of one that is not asked for.
+    /// Atoms at random in a cube, some without a type and some of a type above the last.
     fn cloud(count: usize, size: f64, seed: u64, at: f64) -> Knots {
         let mut numbers = Numbers(seed);
         let mut next = || numbers.next();
@@ -96,8 +96,8 @@ mod tests {
             .unwrap()
     }
 
-    /// Of both types, not symmetric, and of the distance.
-    fn worth(a: usize, b: usize, distance: f64) -> f64 {
+    /// A function of both types, not symmetric, and of the distance.
+    fn value(a: usize, b: usize, distance: f64) -> f64 {
         (a as f64 - 2.0 * b as f64 + 0.5) * (7.0 - distance)
     }
 
@@ -112,7 +112,7 @@ mod tests {
                 let distance = (Vector3::from(pose.apply(*y)) - Vector3::from(*x)).norm();
                 let (a, b) = (usize::from(a), usize::from(b));
                 if a < KINDS && b < KINDS && distance < REACH {
-                    sum += worth(a, b, distance);
+                    sum += value(a, b, distance);
                 }
             }
         }
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn cells_give_the_double_sum() {
-        // The last one's atoms lie far apart, with next to nothing within reach.
+        // The atoms of the last body lie far from each other, with almost nothing within reach.
         for (count, size, at) in [(400, 30.0, 0.0), (300, 50.0, 1e6), (60, 200.0, -3.0)] {
             let mut met = 0;
             let (a, b) = (cloud(count, size, 1, at), cloud(80, 18.0, 2, 5.0));
@@ -133,7 +133,7 @@ mod tests {
                     [at + 0.9 * angle - 18.0, at - 5.0, at + 0.3 * angle],
                 );
                 let expected = direct(&a, &b, &pose);
-                let got = bodies.sum(&pose, REACH, worth);
+                let got = bodies.sum(&pose, REACH, value);
                 met += usize::from(expected != 0.0);
                 // File coordinates of 1e6 Å hold 1e-10 Å.
                 assert!(
@@ -149,6 +149,6 @@ mod tests {
     fn knots_without_types_sum_to_nothing() {
         let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
         let bodies = Bodies::new(&bare, &bare, |knots| &knots.atom_kinds, KINDS);
-        assert_eq!(bodies.sum(&Pose::identity(), REACH, worth), 0.0);
+        assert_eq!(bodies.sum(&Pose::identity(), REACH, value), 0.0);
     }
 }

@@ -16,6 +16,12 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score per RT",
     default_weight: 2.0,
     time_share: UNRELAXED,
+    reads: "atoms with contact types",
+    count: |inputs| {
+        inputs
+            .bodies
+            .map(|knots| knots.contact_types.iter().flatten().count())
+    },
     applies: |inputs| inputs.has_contact_types(),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

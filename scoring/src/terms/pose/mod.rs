@@ -87,6 +87,10 @@ pub struct TermDefinition {
     pub default_weight: f64,
     /// Time to score a pose by this and all cheaper terms, as a share of the time with every term (cost model).
     pub time_share: f64,
+    /// What it reads of each side, in the plural.
+    pub reads: &'static str,
+    /// How many of these receptor and ligand have.
+    pub count: fn(&TermInputs) -> [usize; 2],
     /// Whether the inputs hold what it reads.
     pub applies: fn(&TermInputs) -> bool,
     /// Prepares it with a weight; called only if it applies.
@@ -128,6 +132,12 @@ impl TermInputs<'_> {
         self.bodies
             .iter()
             .all(|knots| !knots.contact_types.is_empty())
+    }
+
+    /// Numbers of atoms with a kind of receptor and ligand.
+    fn atoms_with_kinds(&self) -> [usize; 2] {
+        self.bodies
+            .map(|knots| knots.atom_kinds.iter().flatten().count())
     }
 
     /// Whether both bodies carry atom kinds.
@@ -178,7 +188,7 @@ mod tests {
         let segment = [Conformers {
             origin: [0.0; 3],
             axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            courses: vec![vec![[1.0, 0.0, 0.0]]],
+            traces: vec![vec![[1.0, 0.0, 0.0]]],
         }];
         let nothing = TermInputs {
             bodies: [&bare, &bare],
@@ -199,6 +209,10 @@ mod tests {
         let one = [1.0; POSE_TERMS.len()];
         assert!(Rescorer::new(&nothing, &one).is_none());
         assert!(Rescorer::new(&all, &none).is_none());
+        for term in POSE_TERMS {
+            assert_eq!((term.count)(&nothing), [0, 0], "{}", term.id);
+            assert_ne!((term.count)(&all), [0, 0], "{}", term.id);
+        }
         let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0]);
         let mut workspace = Workspace::default();
         let together = Rescorer::new(&all, &one)

@@ -16,6 +16,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 2.0,
     time_share: UNRELAXED,
+    reads: "atoms near termini and gaps",
+    count: |inputs| inputs.termini.map(<[_]>::len),
     applies: |inputs| inputs.termini.iter().any(|side| !side.is_empty()),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

@@ -21,6 +21,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score",
     default_weight: 3.0,
     time_share: UNRELAXED,
+    reads: "unresolved segments",
+    count: |inputs| inputs.unresolved.map(<[_]>::len),
     applies: |inputs| inputs.unresolved.iter().any(|side| !side.is_empty()),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
@@ -131,7 +133,7 @@ fn clashes(body: &Body, segments: &[Occupancy], pose: &Pose, inverse: &Pose) -> 
 
 impl Occupancy {
     fn new(segment: &Conformers) -> Self {
-        let alphas = || segment.courses.iter().flatten();
+        let alphas = || segment.traces.iter().flatten();
         let end = |pick: fn(f64, f64) -> f64, start: f64| {
             alphas().fold([start; 3], |end, alpha| {
                 std::array::from_fn(|axis| pick(end[axis], alpha[axis]))
@@ -148,18 +150,18 @@ impl Occupancy {
         let from_center = |alpha: &[f64; 3]| (Vector3::from(*alpha) - Vector3::from(center)).norm();
         let mut occupancy = Self {
             frame: Conformers {
-                courses: Vec::new(),
+                traces: Vec::new(),
                 ..*segment
             },
             low,
             counts,
             passing: vec![0; counts.iter().product()],
-            share: 1.0 / segment.courses.len() as f64,
+            share: 1.0 / segment.traces.len() as f64,
             center: segment.in_file(center),
             // An occupied cell reaches up to half its diagonal farther than its centre.
             radius: alphas().map(from_center).fold(0.0, f64::max) + REACH + 1.0,
         };
-        occupancy.fill(&segment.courses);
+        occupancy.fill(&segment.traces);
         occupancy
     }
 
@@ -222,11 +224,11 @@ mod tests {
 
     const TURNED: [[f64; 3]; 3] = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
 
-    fn segment(courses: Vec<Vec<[f64; 3]>>) -> Conformers {
+    fn segment(traces: Vec<Vec<[f64; 3]>>) -> Conformers {
         Conformers {
             origin: [10.0, 20.0, 30.0],
             axes: TURNED,
-            courses,
+            traces,
         }
     }
 
@@ -250,7 +252,7 @@ mod tests {
         let passing = |y: f64| -> f64 {
             let passed =
                 |conformer: &Vec<[f64; 3]>| conformer.iter().any(|a| (a[0] - y).abs() < 5.0);
-            one.courses
+            one.traces
                 .iter()
                 .filter(|conformer| passed(conformer))
                 .count() as f64
@@ -290,7 +292,7 @@ mod tests {
                     < reach * reach
             };
             let passing = segment
-                .courses
+                .traces
                 .iter()
                 .filter(|conformer| conformer.iter().any(near));
             passing.count() as f64 / 9.0

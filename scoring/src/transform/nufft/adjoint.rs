@@ -1,6 +1,7 @@
 //! Modes to values at points: the passes of `forward` backwards, each transposed.
 
 use super::super::Real;
+use super::super::spreading::MAX_WIDTH;
 use super::{FIRST_GROUP, GROUP, Plan, SortedPoints, Workspace, place};
 use num_complex::Complex;
 
@@ -45,7 +46,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 ($($lanes:literal)*) => {
                     match self.window.width.next_multiple_of(2) {
                         $($lanes => self.interpolate::<$lanes, { 2 * $lanes }>(points, range, slots, *row, footprint, ring, values),)*
-                        _ => {}
+                        _ => unreachable!("a plan's windows are 2 to {MAX_WIDTH} points wide"),
                     }
                 };
             }

@@ -13,11 +13,11 @@ pub enum PlanError {
     },
     /// The tolerance is no number between the precision's least and 1.
     #[error(
-        "tolerance {asked} is out of reach: it must be at least {least} and below 1 in this precision"
+        "tolerance {requested} is out of reach: it must be at least {least} and below 1 in this precision"
     )]
     Tolerance {
-        /// What was asked for.
-        asked: f64,
+        /// The requested value.
+        requested: f64,
         /// What this precision or the widest window can do.
         least: f64,
     },
@@ -30,10 +30,10 @@ pub enum PlanError {
         modes: Vec<usize>,
     },
     /// An oversampling that is not above 1, or not finite.
-    #[error("oversampling {asked} must be above 1 and at most 4")]
+    #[error("oversampling {requested} must be above 1 and at most 4")]
     Oversampling {
-        /// What was asked for.
-        asked: f64,
+        /// The requested value.
+        requested: f64,
     },
 }
 

@@ -17,23 +17,23 @@ impl<T: Real, const D: usize> Plan<T, D> {
     ///
     /// [`TransformError`] when a coordinate is not finite or there are more than 2^32 - 1 points.
     pub fn locate(&self, points: &[[f64; D]]) -> Result<SortedPoints<D>, TransformError> {
-        let mut located = SortedPoints::new(self.grid);
-        self.locate_into(points, &mut located)?;
-        Ok(located)
+        let mut sorted = SortedPoints::new(self.grid);
+        self.locate_into(points, &mut sorted)?;
+        Ok(sorted)
     }
 
     /// As [`Self::locate`], into memory that is there: nothing is allocated for no more points than were there before.
     ///
     /// # Errors
     ///
-    /// As [`Self::locate`]; after one, `located` must not be used until points have been set.
+    /// As [`Self::locate`]; after one, `sorted` must not be used until points have been set.
     pub fn locate_into(
         &self,
         points: &[[f64; D]],
-        located: &mut SortedPoints<D>,
+        sorted: &mut SortedPoints<D>,
     ) -> Result<(), TransformError> {
-        located.grid = self.grid;
-        pulp::Arch::new().dispatch(Sort { located, points })
+        sorted.grid = self.grid;
+        pulp::Arch::new().dispatch(Sort { sorted, points })
     }
 
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.

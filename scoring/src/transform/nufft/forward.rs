@@ -178,7 +178,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     }
 }
 
-/// Copies a row, its padding folded around the period, into a line; returns whether all of it is zero.
+/// Copies a row, its padding wrapped around the period, into a line; returns whether all of it is zero.
 #[inline(always)]
 fn gather<T: Real, const PARTS: usize>(values: &[T], line: &mut [Complex<T>]) -> bool {
     let length = line.len();

@@ -11,8 +11,9 @@ use std::sync::Arc;
 const OVERSAMPLING: [f64; 4] = [1.125, 1.25, 1.5, 2.0];
 /// Planes of the fine grid whose points are spread together.
 const SLAB: usize = 8;
-/// Share of the tolerance that the root mean square of the error may take. Points on the grid itself (on faces of the box, say)
-/// bring the errors of all axes and of all aliases into step: measured 2.8 times the mean square's root in three dimensions.
+/// Share of the tolerance that the root mean square of the error may take. Points on the grid itself (on faces of the
+/// box, say) bring the errors of all axes and of all aliases into step: measured 2.8 times the mean square's root in
+/// three dimensions.
 const ALIASING_SHARE: f64 = 0.33;
 /// Most points of a fine grid.
 const LARGEST_GRID: usize = u32::MAX as usize;
@@ -34,8 +35,8 @@ pub struct Plan<T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Plan<T, D> {
-    /// Plans for `modes` an axis (any positive numbers) and a relative `tolerance`: 1e-12 to below 1 in f64, 1e-5 in f32.
-    /// Grid and window are chosen for the least time at about `points` points; any number may be transformed.
+    /// Plans for `modes` an axis (any positive numbers) and a relative `tolerance`: 1e-12 to below 1 in f64, 1e-5 in
+    /// f32. Grid and window are chosen for the least time at about `points` points; any number may be transformed.
     ///
     /// # Errors
     ///
@@ -56,7 +57,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     ) -> Result<Self, PlanError> {
         if !(oversampling > 1.0 && oversampling <= 4.0) {
             return Err(PlanError::Oversampling {
-                asked: oversampling,
+                requested: oversampling,
             });
         }
         Self::cheapest(modes, tolerance, 0, &[oversampling])
@@ -80,7 +81,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         // A tolerance of 1e-5 may arrive as the nearest f32.
         if !(tolerance >= 0.999 * least && tolerance < 1.0) {
             return Err(PlanError::Tolerance {
-                asked: tolerance,
+                requested: tolerance,
                 least,
             });
         }
@@ -151,7 +152,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         }
         let Some((_, fine, width, quality)) = choice else {
             return Err(PlanError::Tolerance {
-                asked: tolerance,
+                requested: tolerance,
                 least,
             });
         };
@@ -201,7 +202,8 @@ impl<T: Real, const D: usize> Plan<T, D> {
     }
 }
 
-/// Time of a transform in units of about a nanosecond, from the operations counted: multiply-adds of spreading and points of one-dimensional transforms.
+/// Time of a transform in units of about a nanosecond, from the operations counted: multiply-adds of spreading and
+/// points of one-dimensional transforms.
 fn cost(modes: &[usize], fine: &[usize], width: usize, points: usize) -> f64 {
     let lanes = width.next_multiple_of(2) as f64;
     let outer: f64 = fine[1..]

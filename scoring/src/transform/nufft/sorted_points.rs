@@ -1,4 +1,4 @@
-//! Points folded into the period and put in the order in which the fine grid is walked.
+//! Points wrapped into the period and sorted in the order in which the fine grid is walked.
 
 use super::TransformError;
 
@@ -51,7 +51,8 @@ impl<const D: usize> SortedPoints<D> {
         self.order.is_empty()
     }
 
-    /// Counting sort by slab, then by bin in the order of the grid's memory. Stable, so that results do not depend on chance.
+    /// Counting sort by slab, then by bin in the order of the grid's memory. Stable, so that results do not depend on
+    /// chance.
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // an axis indexes the point, the grid and the bins alike
     pub(super) fn set(&mut self, points: &[[f64; D]]) -> Result<(), TransformError> {

@@ -1,6 +1,7 @@
 //! Points onto the rows of the fine grid: the adjoint of `interpolate`.
 
 use super::super::Real;
+use super::super::spreading::MAX_WIDTH;
 use super::{Plan, SortedPoints, Workspace};
 use num_complex::Complex;
 
@@ -149,7 +150,7 @@ macro_rules! spread_by_width {
                 $($lanes => plan.spread::<Self, $lanes, $parts, { $parts * $lanes }>(
                     points, range, weights, slots, *row, footprint, ring,
                 ),)*
-                _ => {}
+                _ => unreachable!("a plan's windows are 2 to {MAX_WIDTH} points wide"),
             }
         }
     };

@@ -1,7 +1,7 @@
 //! The executions as tasks that are compiled once for each vector instruction set.
 //!
-//! Types with `#[inline(always)]` methods, not closures: the code of a closure that could be called again sits behind a shim
-//! of its own, which the compiler left out of line and thus without vector instructions.
+//! Types with `#[inline(always)]` methods, not closures: the code of a closure that could be called again sits behind a
+//! shim of its own, which the compiler left out of line and thus without vector instructions.
 
 use super::super::Real;
 use super::{Plan, SortedPoints, TransformError, Workspace};
@@ -10,7 +10,7 @@ use pulp::{Simd, WithSimd};
 
 /// Folding and sorting points.
 pub(super) struct Sort<'a, const D: usize> {
-    pub(super) located: &'a mut SortedPoints<D>,
+    pub(super) sorted: &'a mut SortedPoints<D>,
     pub(super) points: &'a [[f64; D]],
 }
 
@@ -19,7 +19,7 @@ impl<const D: usize> WithSimd for Sort<'_, D> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.located.set(self.points)
+        self.sorted.set(self.points)
     }
 }
 

@@ -10,7 +10,8 @@ use std::f64::consts::PI;
 pub(super) struct Window<T> {
     pub(super) width: usize,
     shape: f64,
-    /// [power, highest first][point]: polynomial in 2 f - 1, f in [0, 1), of the value at the window's point-th grid point.
+    /// [power, highest first][point]: polynomial in 2 f - 1, f in [0, 1), of the value at the window's point-th grid
+    /// point.
     coefficients: Vec<[T; MAX_WIDTH]>,
 }
 
@@ -96,7 +97,8 @@ pub(super) fn best(width: usize, axes: &[(usize, usize)]) -> Quality {
         .iter()
         .flatten()
         .fold(0.0, |band: f64, &(frequency, _)| band.max(frequency));
-    // Beatty, Nishimura, Pauly, IEEE Trans. Med. Imaging 24 (2005) 799, eq. 5 has about this shape, for the largest error.
+    // Beatty, Nishimura, Pauly, IEEE Trans. Med. Imaging 24 (2005) 799, eq. 5 has about this shape, for the largest
+    // error.
     let scale = PI * w * (1.0 - band);
     let (mut low, mut high) = (0.5 * scale, 1.1 * scale);
     const SECTION: f64 = 0.618_033_988_749_894_9;
@@ -133,8 +135,8 @@ pub(super) fn best(width: usize, axes: &[(usize, usize)]) -> Quality {
     }
 }
 
-/// Frequencies of an axis's modes, cycles per cell, and their shares: all of few, else some, denser towards the last, where
-/// aliases are strongest.
+/// Frequencies of an axis's modes, cycles per cell, and their shares: all of few, else some, denser towards the last,
+/// where aliases are strongest.
 fn samples(modes: usize, fine: usize) -> Vec<(f64, f64)> {
     let half = modes / 2;
     if half <= 24 {

@@ -10,7 +10,8 @@ use num_complex::Complex;
 pub struct Workspace<T, const D: usize> {
     pub(super) grid: Grid<D>,
     pub(super) modes: [usize; D],
-    /// Fine planes in use, [slot][axis D-1]...[axis 2][axis 1], re and im interleaved, axis 1 padded by the lanes of a window.
+    /// Fine planes in use, [slot][axis D-1]...[axis 2][axis 1], re and im interleaved, axis 1 padded by the lanes of a
+    /// window.
     pub(super) ring: Vec<T>,
     /// Whether `ring` holds anything but zeros between two executions.
     pub(super) used: bool,

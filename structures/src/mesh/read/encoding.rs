@@ -10,7 +10,7 @@ fn is_control(byte: u8) -> bool {
     matches!(byte, 0..=8 | 14..=31 | 127)
 }
 
-/// UTF-16 made UTF-8, which is told from it by a mark at the start or by a zero in every other byte; other bytes as they are.
+/// UTF-16 made UTF-8. It is detected by a mark at the start or by a zero in every other byte; other bytes as they are.
 pub fn unified(bytes: &[u8]) -> Cow<'_, [u8]> {
     let (is_little, body) = match bytes {
         [0xff, 0xfe, 0, 0, ..] => return Cow::Borrowed(bytes),
@@ -44,8 +44,8 @@ pub fn unified(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(text.into_bytes())
 }
 
-/// A file's text, without the byte order mark that some begin with, and with blanks for the few control characters that get into one;
-/// none for bytes that are no text.
+/// A file's text, without the byte order mark that some begin with, and with blanks for the few control characters that
+/// get into one; none for bytes that are no text.
 ///
 /// Bytes that are no UTF-8 stand only in names and comments of real files, so they are replaced and not refused.
 pub fn text_of(bytes: &[u8]) -> Option<Cow<'_, str>> {

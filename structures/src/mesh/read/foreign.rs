@@ -1,8 +1,8 @@
 //! Files of other kinds under a mesh's name, or under none: what they are, and what to give in their place.
 
-use super::super::error::MeshErrorKind;
-use super::encoding::text_of;
-use super::words::lines;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::encoding::text_of;
+use crate::mesh::read::words::lines;
 
 const CONVERT: &str = "export the surface as STL, OBJ, PLY or OFF from a program that opens it";
 const UNPACK: &str = "unpack it, and give the STL, OBJ, PLY or OFF file that is in it";
@@ -78,7 +78,7 @@ const TEXTS: [(&str, &str, &str); 24] = [
     ("-----begin", "a key or a certificate", NO_MESH),
 ];
 
-/// Elements that XML documents are told by, in small letters.
+/// Elements that XML documents are detected from, in small letters.
 const ELEMENTS: [(&str, &str, &str); 10] = [
     ("<html", "an HTML page", DOWNLOAD),
     ("<collada", "a COLLADA scene (.dae)", CONVERT),
@@ -166,7 +166,7 @@ fn zip(bytes: &[u8]) -> (&'static str, &'static str) {
     }
 }
 
-/// Binary files that are told by more than their first bytes.
+/// Binary files that are detected from more than their first bytes.
 fn binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let length_at = |place: usize| {
         let bytes = bytes.get(place..place + 4)?.try_into().ok()?;
@@ -185,7 +185,7 @@ fn binary(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     None
 }
 
-/// Exchange formats of CAD programs that are told by their lines.
+/// Exchange formats of CAD programs that are detected from their lines.
 fn exchange(text: &str) -> Option<(&'static str, &'static str)> {
     // IGES numbers its lines from the 73rd column, after the letter of a section.
     let is_iges = |line: &str| {
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kinds_are_told_by_what_files_begin_with() {
+    fn kinds_are_detected_from_what_files_begin_with() {
         let iges = format!("{:72}S      1\n{:72}G      1\n", "", "1H,,1H;,");
         for (bytes, expected) in [
             (&b"\x1f\x8b\x08\0"[..], "gzip"),

@@ -1,52 +1,42 @@
 //! From a file to a mesh: STL (text and binary), OBJ, PLY (text and binary) and OFF.
 //!
-//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each: the crates for STL take a binary
-//! file whose header begins with `solid` for text, keep only the first solid and 24 bits of a number, and neither they nor
-//! those for OBJ say on which line a file breaks.
+//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each, because their crates fall
+//! short:
+//!
+//! - those for STL take a binary file whose header begins with `solid` for text, and keep only the first solid and 24
+//!   bits of a number;
+//! - neither they nor those for OBJ say on which line a file breaks.
 //!
 //! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
 
-mod encoding;
-mod foreign;
-mod obj;
-mod off;
-mod ply;
-mod soup;
-mod stl;
-mod words;
+pub(super) mod encoding;
+pub(super) mod foreign;
+pub(super) mod format;
+pub(super) mod obj;
+pub(super) mod off;
+pub(super) mod ply;
+pub(super) mod soup;
+pub(super) mod stl;
+pub(super) mod words;
 
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use serde::Serialize;
-
-use super::error::{MeshError, MeshErrorKind};
-use super::report::{Altered, MeshReport};
-use super::{Mesh, repeats, topology, weld};
-use encoding::{text_of, unified};
-use soup::{At, Soup};
-
-/// File format of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MeshFormat {
-    /// Stereolithography, text or binary.
-    Stl,
-    /// Wavefront OBJ.
-    Obj,
-    /// Stanford polygon format, text or binary.
-    Ply,
-    /// Object file format of Geomview.
-    Off,
-}
+use crate::mesh::error::{MeshError, MeshErrorKind};
+use crate::mesh::read::encoding::{text_of, unified};
+use crate::mesh::read::format::MeshFormat;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::repair::{repeats, topology, weld};
+use crate::mesh::report::{Altered, MeshReport};
+use crate::mesh::triangle_mesh::Mesh;
 
 /// Largest file that is read, in bytes: 40 million triangles of binary STL.
 const LARGEST_FILE: u64 = 2 << 30;
 
 /// Reads a mesh, welds its vertices, turns its triangles to face outward and reports what was found.
 ///
-/// The format is told by the first bytes, else by the name's ending. Numbers keep all the digits of the file.
+/// The format is detected from the first bytes, else from the name's ending. Numbers keep all the digits of the file.
 ///
 /// # Errors
 /// [`MeshError`] when the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a
@@ -89,7 +79,7 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     Ok(bytes)
 }
 
-/// As [`read`], of a file's bytes; the path's ending tells the format where they leave it open.
+/// As [`read`], of a file's bytes; the path's ending decides the format where they leave it open.
 ///
 /// # Errors
 /// As [`read`].

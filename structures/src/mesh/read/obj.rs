@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::super::error::MeshErrorKind;
-use super::soup::{At, Soup};
-use super::words::{lines, real, shortened};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::read::words::{lines, real, shortened};
 
 /// Keywords other than `v` that a line of an OBJ file may begin with.
 const KEYWORDS: [&str; 14] = [
@@ -24,7 +24,8 @@ pub fn begins(text: &str) -> bool {
     false
 }
 
-/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines counted.
+/// Text with lines joined to the next that end with a backslash, but for comments; a mark in its place keeps lines
+/// counted.
 fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains('\\') {
         return Cow::Borrowed(text);
@@ -36,8 +37,8 @@ fn joined(text: &str) -> Cow<'_, str> {
             false => line.trim_end_matches(['\r', '\n']).strip_suffix('\\'),
         };
         match continued {
-            Some(begun) if line.ends_with('\n') => {
-                joined.push_str(begun);
+            Some(started) if line.ends_with('\n') => {
+                joined.push_str(started);
                 joined.push_str(" \u{b}");
             }
             _ => joined.push_str(line),

@@ -1,11 +1,12 @@
-//! OFF of Geomview: an optional keyword, three counts, vertices, faces; `COFF`, `NOFF` and `STOFF` carry more a vertex, which
-//! is skipped. `4OFF`, `nOFF` and binary ones are not read.
+//! OFF of Geomview: an optional keyword, three counts, vertices, faces; `COFF`, `NOFF` and `STOFF` carry more a vertex,
+//! which is skipped. `4OFF`, `nOFF` and binary ones are not read.
 //!
-//! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be wrapped, or be one.
+//! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be
+//! wrapped, or be one.
 
-use super::super::error::MeshErrorKind;
-use super::soup::{At, Soup};
-use super::words::{Line, Records, by_line_or_stream, lines};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, Soup};
+use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines};
 
 /// The keyword that a file begins with, and the letters before its `OFF`.
 fn keyword(text: &str) -> Option<(&str, &str)> {
@@ -65,8 +66,8 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
     by_line_or_stream(&lines, by_line, &attempts, body)
 }
 
-/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without transparency,
-/// places in a picture. None where the file is not read.
+/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without
+/// transparency, places in a picture. None where the file is not read.
 fn numbers_after(prefix: &str) -> Option<Vec<usize>> {
     let left = prefix.strip_prefix("ST").unwrap_or(prefix);
     let is_known = left.chars().all(|c| "CN".contains(c));

@@ -1,8 +1,8 @@
 //! What a file lists: vertices and faces, and what of it was left out.
 
-use super::super::error::MeshErrorKind;
-use super::super::faces::Faces;
-use super::super::rounding::Digits;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::repair::faces::Faces;
+use crate::mesh::repair::rounding::Digits;
 
 /// Largest magnitude of a coordinate: squares and cubes of lengths stay finite.
 const LARGEST_COORDINATE: f64 = 1e70;
@@ -119,7 +119,8 @@ pub fn is_finite(position: [f64; 3]) -> bool {
 }
 
 impl Soup {
-    /// Adds a vertex. One that no distance can be computed from must not be used by a face; see [`settle`](Self::settle).
+    /// Adds a vertex. One that no distance can be computed from must not be used by a face; see
+    /// [`settle`](Self::settle).
     pub fn push_vertex(
         &mut self,
         position: [f64; 3],

@@ -1,7 +1,7 @@
 //! Lines of words of a text format, with their numbers, and numbers of words.
 
-use super::super::error::MeshErrorKind;
-use super::super::rounding::Digits;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::repair::rounding::Digits;
 
 /// A line that has words: its 1-based number, and its text up to a comment.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,8 @@ pub fn shortened(word: &str) -> String {
     word.chars().take(40).collect()
 }
 
-/// The lines of a text that are not blank, ended by LF, CR LF, or the lone CR of old systems; what follows `#` is a comment where the format has them.
+/// The lines of a text that are not blank, ended by LF, CR LF, or the lone CR of old systems; what follows `#` is a
+/// comment where the format has them.
 pub fn lines(text: &str, comments: bool) -> impl Iterator<Item = Line<'_>> + Clone {
     let end = if text.contains('\n') { '\n' } else { '\r' };
     text.split(end)
@@ -162,8 +163,8 @@ impl<'a, L: Iterator<Item = Line<'a>>> Iterator for Records<'a, L> {
     }
 }
 
-/// Reads records a line each, and if that fails or leaves lines over as a stream of words, by each of `attempts` in turn, until one
-/// takes every word there is.
+/// Reads records a line each, and if that fails or leaves lines over as a stream of words, by each of `attempts` in
+/// turn, until one takes every word there is.
 pub fn by_line_or_stream<'a, L, A, T>(
     lines: &L,
     by_line: A,

@@ -5,9 +5,10 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use super::WriteError;
-use crate::molecule::report::show_chain;
-use crate::molecule::{Format, Molecule};
+use crate::molecule::model::format::Format;
+use crate::molecule::model::molecule::Molecule;
+use crate::molecule::model::wording::show_chain;
+use crate::molecule::write::error::WriteError;
 
 /// One of the molecules of a complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,7 +23,7 @@ pub enum Partner {
 
 impl Partner {
     /// The molecule by its place in a complex, counted from 0.
-    pub(super) fn at(place: usize) -> Self {
+    pub(crate) fn at(place: usize) -> Self {
         match place {
             0 => Self::Receptor,
             1 => Self::Ligand,
@@ -79,7 +80,7 @@ impl ChainMap {
     }
 
     /// Gives every chain a unique name in the given format.
-    pub(super) fn assign(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
+    pub(crate) fn assign(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
         let mut chains: Vec<ChainName> = Vec::new();
         for (place, molecule) in molecules.iter().enumerate() {
             let partner = Partner::at(place);
@@ -121,7 +122,7 @@ impl ChainMap {
     }
 
     /// The map as lines for people.
-    pub(super) fn remarks(&self) -> Vec<String> {
+    pub(crate) fn remarks(&self) -> Vec<String> {
         self.chains
             .iter()
             .map(|chain| {

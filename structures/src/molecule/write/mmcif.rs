@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use super::{Row, WriteError, plain, rounded};
+use crate::molecule::write::error::WriteError;
+use crate::molecule::write::row::{Row, plain, rounded};
 
 const COLUMNS: [&str; 20] = [
     "group_PDB",
@@ -29,7 +30,7 @@ const COLUMNS: [&str; 20] = [
 ];
 
 /// Writes rows and remarks.
-pub(super) fn write<W: Write>(
+pub(crate) fn write<W: Write>(
     writer: &mut W,
     rows: &[Row<'_>],
     remarks: &[String],

@@ -2,13 +2,14 @@
 
 use std::io::Write;
 
-use super::{Row, WriteError, name, rounded};
+use crate::molecule::write::error::WriteError;
+use crate::molecule::write::row::{Row, name, rounded};
 
 /// Number of the free remarks: not one that the wwPDB reserves.
 const REMARK: &str = "REMARK  99 ";
 
 /// Whether the fixed columns can hold all of it.
-pub(super) fn check(rows: &[Row<'_>]) -> Result<(), WriteError> {
+pub(crate) fn check(rows: &[Row<'_>]) -> Result<(), WriteError> {
     if rows.len() > 99_999 {
         return Err(WriteError::DoesNotFit {
             what: format!("{} atoms, more than 99,999", rows.len()),
@@ -64,7 +65,7 @@ fn fits(value: f64, width: i32, per_unit: f64) -> bool {
 }
 
 /// Writes rows that [`check`] has passed.
-pub(super) fn write<W: Write>(
+pub(crate) fn write<W: Write>(
     writer: &mut W,
     rows: &[Row<'_>],
     remarks: &[String],
@@ -128,7 +129,7 @@ fn name_columns(name: &str, element: &str) -> String {
 /// A remark as lines that fit beside its number, broken between words where there are any, in printable ASCII.
 fn wrapped(text: &str) -> Vec<String> {
     let width = 80 - REMARK.len();
-    let plain = super::plain(text);
+    let plain = crate::molecule::write::row::plain(text);
     let mut lines = vec![String::new()];
     for word in plain.split_ascii_whitespace() {
         let mut rest = word;

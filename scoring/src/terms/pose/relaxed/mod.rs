@@ -1,7 +1,7 @@
 //! Pose term `relaxed`: energy of atom pairs with a penalty on overlap, after a small rigid move that lowers it.
 //!
 //! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy that penalises
-//! overlap says little about a pose as it stands, and more about one half an Ångström beside it. [`Relaxation`] finds that pose by
+//! overlap says little about a pose as it stands. It says more about one half an Ångström beside it. [`Relaxation`] finds that pose by
 //! steepest descent, as rigid-body minimisation does before poses are ranked by force fields (Li, Chen & Weng, Proteins 53 (2003)
 //! 693-707).
 
@@ -30,6 +30,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     unit: "score per RT",
     default_weight: 3.0,
     time_share: 1.0,
+    reads: "atoms with kinds",
+    count: |inputs| inputs.atoms_with_kinds(),
     applies: |inputs| inputs.has_atom_kinds(),
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;

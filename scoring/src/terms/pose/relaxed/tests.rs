@@ -1,11 +1,11 @@
-//! Energies against the definition, slopes against differences, and where poses come to rest.
+//! Energies against the definition, slopes against differences, and the ends of descents.
 
 use super::descent::FARTHEST;
 use super::*;
 use crate::terms::pose::AtomPairs;
 use crate::test_support::Numbers;
 
-/// Atoms of all kinds on a jittered lattice within a ball, each at least 2.4 Å from the next.
+/// Atoms of all kinds on a jittered lattice within a ball, at least 2.4 Å from each other.
 fn body(radius: f64, seed: u64, at: [f64; 3]) -> Knots {
     let mut numbers = Numbers(seed);
     let mut centers = Vec::new();
@@ -71,7 +71,7 @@ fn the_energy_is_that_of_atom_pairs_and_overlaps() {
     assert!(touching > 30, "{touching}");
 }
 
-/// The descent goes by the gradient of its energy, over shift and turn.
+/// The slope is the gradient of the energy, by shift and by rotation.
 #[test]
 fn the_slope_is_that_of_the_energy() {
     let (_, _, relaxation) = bodies(0.0);
@@ -98,7 +98,7 @@ fn the_slope_is_that_of_the_energy() {
     }
 }
 
-/// Before anything moves, the list holds every pair that counts.
+/// Before any move the list contains every pair within reach.
 #[test]
 fn the_listed_pairs_add_up_to_the_energy() {
     let (_, _, relaxation) = bodies(0.0);
@@ -117,7 +117,7 @@ fn the_listed_pairs_add_up_to_the_energy() {
     assert!(touching > 30, "{touching}");
 }
 
-/// A relaxed pose has the energy told, never more than before, and the interface within its bounds; most gain.
+/// A relaxed pose has the returned energy, which is never more than before, and its interface lies within the bounds. Most poses gain.
 #[test]
 fn poses_come_to_rest_nearby_and_lower() {
     let (_, ligand, relaxation) = bodies(0.0);
@@ -141,7 +141,7 @@ fn poses_come_to_rest_nearby_and_lower() {
     assert!(gained > 30, "{gained}");
 }
 
-/// Out of reach there is nothing to gain and nothing moves.
+/// Out of reach the energy is 0 and the pose stays.
 #[test]
 fn what_does_not_touch_stays() {
     let (_, _, relaxation) = bodies(0.0);
@@ -150,7 +150,7 @@ fn what_does_not_touch_stays() {
     assert_eq!(relaxed, Relaxed { pose, energy: 0.0 });
 }
 
-/// Coordinates of 1e6 Å cost nothing but their own digits, a workspace keeps nothing from one pose to the next, and hydrogens take no part.
+/// Coordinates of 1e6 Å cost only their own digits, a workspace carries nothing over, and hydrogens do not count.
 #[test]
 fn neither_offsets_nor_earlier_poses_nor_hydrogens_matter() {
     let at = f64::from(1 << 20);
@@ -182,7 +182,7 @@ fn neither_offsets_nor_earlier_poses_nor_hydrogens_matter() {
     }
 }
 
-/// Two atoms of no kind that overlap by a little part until they touch.
+/// Two atoms without a kind that overlap slightly move until they are in contact.
 #[test]
 fn an_overlap_gives_way() {
     let ball = |x: f64| Knots::new(vec![[x, 0.0, 0.0]], vec![1.8]).unwrap();
@@ -192,9 +192,9 @@ fn an_overlap_gives_way() {
     assert_eq!(pair.energy(&pose(3.5)), 0.0);
     let relaxed = pair.relax(&pose(2.5), &mut Workspace::default());
     assert!(relaxed.energy < 1e-3, "{relaxed:?}");
-    // The last step may go past the place where they touch, beyond which nothing pulls.
+    // The last step may go past contact, where no force acts.
     assert!((3.45..4.1).contains(&relaxed.pose.translation.x));
-    // From nearer there is no way out within 2 Å.
+    // A deeper overlap is not resolved within 2 Å.
     let relaxed = pair.relax(&pose(1.0), &mut Workspace::default());
     assert!((relaxed.pose.translation.x - 3.0).abs() < 0.05);
 }

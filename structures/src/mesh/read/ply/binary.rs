@@ -5,9 +5,9 @@ use ply_rs_bw::ply::{
     DefaultElement, ElementDef, Header, Property, PropertyAccess, PropertyAccessResult,
 };
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::At;
-use super::{LISTS, Listed, Role, whole};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::elements::{FaceLists, LISTS, Role, whole};
+use crate::mesh::read::soup::At;
 
 /// A vertex; a coordinate that the file does not have stays NaN and is refused as missing.
 struct Vertex([f64; 3]);
@@ -73,7 +73,7 @@ fn number(property: &Property) -> Option<f64> {
 }
 
 /// Reads what follows the header.
-pub fn read(header: &Header, payload: &[u8]) -> Result<Listed, MeshErrorKind> {
+pub fn read(header: &Header, payload: &[u8]) -> Result<FaceLists, MeshErrorKind> {
     let found = elements(header, payload);
     let is_whole = matches!(&found, Ok((_, rest)) if rest.is_empty());
     let blanks = [&b"\r\n"[..], b"\n", b"\r"];
@@ -81,36 +81,39 @@ pub fn read(header: &Header, payload: &[u8]) -> Result<Listed, MeshErrorKind> {
     // Some writers put a blank line before the data, which then fit the length better without it.
     if !is_whole
         && let Some(data) = blank
-        && let Ok((listed, [])) = elements(header, data)
+        && let Ok((faces, [])) = elements(header, data)
     {
-        return Ok(listed);
+        return Ok(faces);
     }
-    found.map(|(listed, _)| listed)
+    found.map(|(faces, _)| faces)
 }
 
 /// All elements, and what follows them.
-fn elements<'a>(header: &Header, payload: &'a [u8]) -> Result<(Listed, &'a [u8]), MeshErrorKind> {
+fn elements<'a>(
+    header: &Header,
+    payload: &'a [u8],
+) -> Result<(FaceLists, &'a [u8]), MeshErrorKind> {
     let mut reader = Reader::new(payload);
-    let mut listed = Listed::default();
+    let mut faces = FaceLists::default();
     for (name, element) in &header.elements {
         match Role::of(name, element)? {
             Role::Vertex => {
                 for Vertex(position) in all(&mut reader, element, header)? {
-                    listed.soup.push_vertex(position, None)?;
+                    faces.soup.push_vertex(position, None)?;
                 }
             }
             role @ (Role::Face | Role::Strip) => {
-                let faces: Vec<Face> = all(&mut reader, element, header)?;
-                let numbered = faces.into_iter().zip(1..);
+                let found: Vec<Face> = all(&mut reader, element, header)?;
+                let numbered = found.into_iter().zip(1..);
                 let lists = numbered.map(|(Face(list), number)| (role, At::Face(number), list));
-                listed.lists.extend(lists);
+                faces.lists.extend(lists);
             }
             Role::Other => {
                 all::<DefaultElement>(&mut reader, element, header)?;
             }
         }
     }
-    Ok((listed, reader.into_inner()))
+    Ok((faces, reader.into_inner()))
 }
 
 fn all<E: PropertyAccess>(

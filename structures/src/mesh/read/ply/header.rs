@@ -3,9 +3,9 @@
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, Header};
 
-use super::super::super::error::MeshErrorKind;
-use super::super::words::shortened;
-use super::binary::broken;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::binary::broken;
+use crate::mesh::read::words::shortened;
 
 /// Whether a file begins as a PLY file does.
 pub fn begins(bytes: &[u8]) -> bool {
@@ -15,8 +15,8 @@ pub fn begins(bytes: &[u8]) -> bool {
 
 /// Reads the header; returns it with the bytes behind it and the number of its lines.
 ///
-/// Comments and blank lines are made empty comments, which keeps the numbers of lines: the crate takes no blank lines, and no
-/// text but UTF-8.
+/// Comments and blank lines are made empty comments, which keeps the numbers of lines: the crate takes no blank lines,
+/// and no text but UTF-8.
 pub fn read(bytes: &[u8]) -> Result<(Header, &[u8], usize), MeshErrorKind> {
     let lead = bytes.len() - bytes.trim_ascii_start().len();
     let start = bytes.get(lead..).unwrap_or_default();

@@ -2,13 +2,13 @@
 
 use ply_rs_bw::ply::{Header, PropertyType, ScalarType};
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::At;
-use super::super::words::{Line, Records, by_line_or_stream, lines, real};
-use super::{LISTS, Listed, Role, whole};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::ply::elements::{FaceLists, LISTS, Role, whole};
+use crate::mesh::read::soup::At;
+use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines, real};
 
 /// Reads what follows the header, which has `before` lines.
-pub fn read(header: &Header, payload: &[u8], before: usize) -> Result<Listed, MeshErrorKind> {
+pub fn read(header: &Header, payload: &[u8], before: usize) -> Result<FaceLists, MeshErrorKind> {
     let text = String::from_utf8_lossy(payload);
     let lines = lines(&text, false).map(|line| Line {
         number: line.number + before,
@@ -20,8 +20,8 @@ pub fn read(header: &Header, payload: &[u8], before: usize) -> Result<Listed, Me
 fn elements<'a, L: Iterator<Item = Line<'a>>>(
     header: &Header,
     words: &mut Records<'a, L>,
-) -> Result<Listed, MeshErrorKind> {
-    let mut listed = Listed::default();
+) -> Result<FaceLists, MeshErrorKind> {
+    let mut faces = FaceLists::default();
     for (name, element) in &header.elements {
         let role = Role::of(name, element)?;
         for index in 0..element.count {
@@ -47,7 +47,7 @@ fn elements<'a, L: Iterator<Item = Line<'a>>>(
                         if let (Role::Vertex, Some(axis)) = (role, axis) {
                             position[axis] = coordinate(first, kind)
                                 .ok_or_else(|| words.line().misplaced(first, "a coordinate"))?;
-                            listed.soup.digits.note(first);
+                            faces.soup.digits.note(first);
                         }
                     }
                     PropertyType::List(..) => {
@@ -74,14 +74,14 @@ fn elements<'a, L: Iterator<Item = Line<'a>>>(
             }
             match role {
                 Role::Vertex => {
-                    listed.soup.push_vertex(position, Some(number))?;
+                    faces.soup.push_vertex(position, Some(number))?;
                 }
-                Role::Face | Role::Strip => listed.lists.push((role, At::Line(number), indices)),
+                Role::Face | Role::Strip => faces.lists.push((role, At::Line(number), indices)),
                 Role::Other => {}
             }
         }
     }
-    Ok(listed)
+    Ok(faces)
 }
 
 /// A coordinate as its type holds it.

@@ -1,10 +1,10 @@
 //! Binary STL: an 80-byte header, a little-endian count and 50 bytes a triangle.
 //!
-//! The count may be wrong: programs that write to a pipe leave it at zero or at a number that no file reaches. The records that
-//! are there are read then, with a note.
+//! The count may be wrong: programs that write to a pipe leave it at zero or at a number that no file reaches. The
+//! records that are there are read then, with a note.
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::{At, LeftOut, Soup, is_finite};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, LeftOut, Soup, is_finite};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
@@ -117,7 +117,8 @@ fn push(soup: &mut Soup, corners: Corners, number: usize) -> Result<(), MeshErro
     Ok(())
 }
 
-/// Whether a record that the header does not count may be a triangle of the mesh: bytes that are none give numbers of any size.
+/// Whether a record that the header does not count may be a triangle of the mesh: bytes that are none give numbers of
+/// any size.
 fn is_near(soup: &Soup, corners: &Corners) -> bool {
     if soup.positions.is_empty() {
         return true;

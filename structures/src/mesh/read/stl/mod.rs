@@ -3,12 +3,12 @@
 mod binary;
 mod text;
 
-use super::super::error::MeshErrorKind;
-use super::encoding::text_of;
-use super::soup::Soup;
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::encoding::text_of;
+use crate::mesh::read::soup::Soup;
 
-pub use binary::has_records;
-pub use text::begins;
+pub use crate::mesh::read::stl::binary::has_records;
+pub use crate::mesh::read::stl::text::begins;
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, MeshErrorKind> {

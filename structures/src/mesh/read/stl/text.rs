@@ -1,8 +1,8 @@
 //! Text STL: `solid`, facets with their vertices, `endsolid`. Lines may be wrapped, or be one.
 
-use super::super::super::error::MeshErrorKind;
-use super::super::soup::{At, LeftOut, Soup, is_finite};
-use super::super::words::{Line, lines, shortened};
+use crate::mesh::error::MeshErrorKind;
+use crate::mesh::read::soup::{At, LeftOut, Soup, is_finite};
+use crate::mesh::read::words::{Line, lines, shortened};
 
 /// Words that begin something inside a facet.
 const WORDS: [&str; 7] = [
@@ -111,7 +111,7 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
                     corners.push((position, line.number));
                     words.skip_to(&WORDS);
                 }
-                ("endfacet", Some(begun)) => {
+                ("endfacet", Some(started)) => {
                     match corners.iter().find(|(corner, _)| !is_finite(*corner)) {
                         Some(&(_, number)) => {
                             let at = At::Line(number);
@@ -122,7 +122,7 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
                             for &(corner, number) in &corners {
                                 vertices.push(soup.push_vertex(corner, Some(number))?);
                             }
-                            soup.push_face(&vertices, At::Line(begun.number));
+                            soup.push_face(&vertices, At::Line(started.number));
                         }
                     }
                     facet = None;
@@ -144,7 +144,7 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
     }
 }
 
-/// What a text is that is no STL, as far as its first line tells.
+/// What a text is that is no STL, judged from its first line.
 fn not_stl(text: &str) -> MeshErrorKind {
     match lines(text, false).next() {
         Some(line) => line.fault(format!(

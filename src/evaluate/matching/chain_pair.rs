@@ -1,0 +1,109 @@
+//! Which residues of a chain of the user's molecule are which of a chain of the native's: every chain with every chain.
+//!
+//! Sequences alone do not say which of several copies a chain is; that is for [`placements`](crate::evaluate::matching::placements).
+
+use std::collections::HashMap;
+
+use crate::evaluate::matching::alignment::{Alignment, align};
+use crate::evaluate::residues::Residues;
+use crate::evaluate::residues::residue::{Number, Residue};
+
+/// Residues of one of the user's chains matched with those of one of the native's.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::evaluate) struct ChainPair {
+    /// Index of the user's segment.
+    pub user: usize,
+    /// Index of the native's segment.
+    pub native: usize,
+    /// Equal residues: (index of the user's, index of the native's).
+    pub pairs: Vec<(usize, usize)>,
+    /// Aligned places, equal or not.
+    pub aligned: usize,
+    /// Number of residues that were there to align, of the user's and of the native's.
+    pub lengths: (usize, usize),
+}
+
+/// Chains are one another's when at least this share of the shorter is equal.
+const MIN_IDENTITY: f64 = 0.5;
+/// Chains are copies of one another when this share of the shorter is equal: room for a few mutations and unlike ends.
+const IDENTICAL: f64 = 0.9;
+
+impl ChainPair {
+    /// Whether the sequences allow that the two are the same chain.
+    pub fn is_alike(&self) -> bool {
+        self.shares(MIN_IDENTITY)
+    }
+
+    /// Whether the two are copies of one chain.
+    pub fn is_identical(&self) -> bool {
+        self.shares(IDENTICAL)
+    }
+
+    fn shares(&self, least: f64) -> bool {
+        let (ours, theirs) = self.lengths;
+        !self.pairs.is_empty() && self.pairs.len() as f64 >= least * ours.min(theirs) as f64
+    }
+
+    fn of(
+        (user, ours): (usize, &[usize]),
+        (native, theirs): (usize, &[usize]),
+        found: &Alignment,
+    ) -> Self {
+        let pairs = found.pairs.iter().map(|&(i, j)| (ours[i], theirs[j]));
+        Self {
+            user,
+            native,
+            pairs: pairs.collect(),
+            aligned: found.aligned,
+            lengths: (ours.len(), theirs.len()),
+        }
+    }
+}
+
+/// Aligns some residues of one segment of the user's with some of the native's, each given with the segment's index.
+pub(in crate::evaluate) fn align_members(
+    user: &Residues,
+    native: &Residues,
+    ours: (usize, &[usize]),
+    theirs: (usize, &[usize]),
+) -> ChainPair {
+    let found = align(&members(user, ours.1), &members(native, theirs.1));
+    ChainPair::of(ours, theirs, &found)
+}
+
+/// Every segment of the user's molecule aligned with every one of the native's, rows by the user's.
+///
+/// Copies are aligned once: chains of the same residues and numbers have the same alignment.
+pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
+    let (our_kinds, their_kinds) = (kinds(user), kinds(native));
+    let mut known: HashMap<(&Kind, &Kind), Alignment> = HashMap::new();
+    let mut all = Vec::with_capacity(our_kinds.len() * their_kinds.len());
+    for (u, our_kind) in our_kinds.iter().enumerate() {
+        for (n, their_kind) in their_kinds.iter().enumerate() {
+            let (ours, theirs) = (&user.segments[u].members, &native.segments[n].members);
+            let found = known
+                .entry((our_kind, their_kind))
+                .or_insert_with(|| align(&members(user, ours), &members(native, theirs)));
+            all.push(ChainPair::of((u, ours), (n, theirs), found));
+        }
+    }
+    all
+}
+
+/// What the alignment of a chain depends on.
+type Kind<'a> = Vec<(&'a str, Number)>;
+
+fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
+    let kind = |&member: &usize| {
+        let residue = &residues.residues[member];
+        (residue.kind.as_str(), residue.number)
+    };
+    let segments = residues.segments.iter();
+    segments
+        .map(|segment| segment.members.iter().map(kind).collect())
+        .collect()
+}
+
+fn members<'a>(residues: &'a Residues, members: &[usize]) -> Vec<&'a Residue> {
+    members.iter().map(|&i| &residues.residues[i]).collect()
+}

@@ -1,0 +1,233 @@
+//! United-atom radii: heavy atoms that stand for their hydrogens too.
+//!
+//! One table, from five sources:
+//!
+//! - Proteins: ProtOr, Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: radii by element, number of
+//!   bonds and hydrogens, from the packing of small-molecule crystals. A protein has seven distinct ones, 1.42 to 1.88
+//!   Å.
+//! - Nucleic acids: the same classes with phosphorus 1.80 Å, as in NucProt, Voss & Gerstein, J. Mol. Biol. 346 (2005)
+//!   477-492.
+//! - Halogens and selenium: Bondi, J. Phys. Chem. 68 (1964) 441-451.
+//! - Metals and the rest: half the equilibrium distance x_I of UFF, Rappé, Casewit, Colwell, Goddard & Skiff,
+//!   J. Am. Chem. Soc. 114 (1992) 10024-10035, Table I, rounded to 0.1 Å, so that metals add few distinct radii.
+//! - Atoms of ligands and unlisted residues, whose hydrogens are not known: the class of their element in the middle
+//!   (C3H1 for carbon) or most common in sugars and phosphate esters (O2H1 for oxygen).
+//!
+//! Where hydrogens are kept, all radii are all-atom ones: Bondi's of the element (the paper above, Table I), and 1.10 Å
+//! for hydrogen, Rowland & Taylor, J. Phys. Chem. 100 (1996) 7384-7391; metals and the rest as above.
+//!
+//! Few distinct radii matter: each is a class of the lifted axis and costs time.
+
+use crate::molecule::chemistry::residues::{
+    AtomType, amino_acid_type, backbone_type, nucleotide_type,
+};
+use crate::molecule::model::groups::GroupKind;
+
+impl AtomType {
+    /// Radius, in Å.
+    const fn radius(self) -> f64 {
+        match self {
+            Self::C3H0 => 1.61,
+            Self::C3H1 => 1.76,
+            Self::C4 => 1.88,
+            Self::N => 1.64,
+            Self::O1H0 => 1.42,
+            Self::O2H1 => 1.46,
+            Self::S => 1.77,
+            Self::Se => 1.90,
+            Self::P => 1.80,
+        }
+    }
+}
+
+/// Halogens: Bondi's radii, in Å.
+const HALOGENS: [(&str, f64); 4] = [("F", 1.47), ("Cl", 1.75), ("Br", 1.85), ("I", 1.98)];
+
+/// All-atom radii of the elements of proteins and nucleic acids, in Å: Bondi's, and Rowland and Taylor's for hydrogen.
+const ALL_ATOM: [(&str, f64); 9] = [
+    ("H", 1.10),
+    ("D", 1.10),
+    ("T", 1.10),
+    ("C", 1.70),
+    ("N", 1.55),
+    ("O", 1.52),
+    ("P", 1.80),
+    ("S", 1.80),
+    ("Se", 1.90),
+];
+
+/// Metals and the rest: UFF's equilibrium distances x_I, in Å; the radius is half of that, rounded to 0.1 Å.
+const UFF_DISTANCES: [(&str, f64); 63] = [
+    ("Li", 2.451),
+    ("Be", 2.745),
+    ("B", 4.083),
+    ("Na", 2.983),
+    ("Mg", 3.021),
+    ("Al", 4.499),
+    ("Si", 4.295),
+    ("K", 3.812),
+    ("Ca", 3.399),
+    ("Ti", 3.175),
+    ("V", 3.144),
+    ("Cr", 3.023),
+    ("Mn", 2.961),
+    ("Fe", 2.912),
+    ("Co", 2.872),
+    ("Ni", 2.834),
+    ("Cu", 3.495),
+    ("Zn", 2.763),
+    ("Ga", 4.383),
+    ("Ge", 4.280),
+    ("As", 4.230),
+    ("Rb", 4.114),
+    ("Sr", 3.641),
+    ("Y", 3.345),
+    ("Zr", 3.124),
+    ("Mo", 3.052),
+    ("Ru", 2.963),
+    ("Rh", 2.929),
+    ("Pd", 2.899),
+    ("Ag", 3.148),
+    ("Cd", 2.848),
+    ("In", 4.463),
+    ("Sn", 4.392),
+    ("Sb", 4.420),
+    ("Te", 4.470),
+    ("Xe", 4.404),
+    ("Cs", 4.517),
+    ("Ba", 3.703),
+    ("La", 3.522),
+    ("Ce", 3.556),
+    ("Pr", 3.606),
+    ("Nd", 3.575),
+    ("Sm", 3.520),
+    ("Eu", 3.493),
+    ("Gd", 3.368),
+    ("Tb", 3.451),
+    ("Dy", 3.428),
+    ("Ho", 3.409),
+    ("Er", 3.391),
+    ("Yb", 3.355),
+    ("Lu", 3.640),
+    ("Ta", 3.170),
+    ("W", 3.069),
+    ("Re", 2.954),
+    ("Os", 3.120),
+    ("Ir", 2.840),
+    ("Pt", 2.754),
+    ("Au", 3.293),
+    ("Hg", 2.705),
+    ("Tl", 4.347),
+    ("Pb", 4.297),
+    ("Bi", 4.370),
+    ("U", 3.395),
+];
+
+/// Radius of the elements not listed, in Å: in the middle of UFF's metals.
+const OTHER: f64 = 1.7;
+
+/// United-atom radius of a heavy atom, in Å.
+///
+/// `kind` is the residue's: those named like nucleotides are not all of them such, and modified residues have an amino
+/// acid's backbone.
+pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: GroupKind) -> f64 {
+    amino_acid_type(residue_name, atom_name)
+        .or_else(|| match kind {
+            GroupKind::Nucleotide => nucleotide_type(residue_name, atom_name),
+            GroupKind::AminoAcid | GroupKind::ModifiedResidue => backbone_type(atom_name),
+            _ => None,
+        })
+        // A name in the tables is not enough where the element says otherwise.
+        .filter(|atom_type| element_of(*atom_type) == element)
+        .or_else(|| class_of_element(element))
+        .map_or_else(|| of_element(element), AtomType::radius)
+}
+
+/// Radius of an atom beside whose kind hydrogens stand as atoms of their own, in Å.
+pub(crate) fn all_atom_radius(element: &str) -> f64 {
+    let known = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
+    known.map_or_else(|| of_element(element), |(_, radius)| *radius)
+}
+
+const fn element_of(kind: AtomType) -> &'static str {
+    match kind {
+        AtomType::C3H0 | AtomType::C3H1 | AtomType::C4 => "C",
+        AtomType::N => "N",
+        AtomType::O1H0 | AtomType::O2H1 => "O",
+        AtomType::S => "S",
+        AtomType::Se => "Se",
+        AtomType::P => "P",
+    }
+}
+
+fn class_of_element(element: &str) -> Option<AtomType> {
+    match element {
+        "C" => Some(AtomType::C3H1),
+        "N" => Some(AtomType::N),
+        "O" => Some(AtomType::O2H1),
+        "S" => Some(AtomType::S),
+        "Se" => Some(AtomType::Se),
+        "P" => Some(AtomType::P),
+        _ => None,
+    }
+}
+
+fn of_element(element: &str) -> f64 {
+    let find = |table: &[(&str, f64)]| {
+        table
+            .iter()
+            .find(|(symbol, _)| *symbol == element)
+            .map(|(_, value)| *value)
+    };
+    find(&HALOGENS)
+        .or_else(|| find(&UFF_DISTANCES).map(|distance| (distance * 5.0).round() / 10.0))
+        .unwrap_or(OTHER)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_protein_has_seven_radii() {
+        // ProtOr's values for one atom of each class (Tsai et al. 1999).
+        let examples = [
+            ("ALA", "C", "C", 1.61),
+            ("PHE", "CZ", "C", 1.76),
+            ("ALA", "CB", "C", 1.88),
+            ("LYS", "NZ", "N", 1.64),
+            ("ALA", "O", "O", 1.42),
+            ("SER", "OG", "O", 1.46),
+            ("CYS", "SG", "S", 1.77),
+        ];
+        for (residue, atom, element, expected) in examples {
+            assert_eq!(
+                radius(residue, atom, element, GroupKind::AminoAcid),
+                expected,
+                "{residue} {atom}"
+            );
+        }
+    }
+
+    #[test]
+    fn modified_residues_keep_the_backbone_and_ligands_go_by_element() {
+        let modified = GroupKind::ModifiedResidue;
+        assert_eq!(radius("SEP", "CA", "C", modified), 1.88);
+        assert_eq!(radius("SEP", "P", "P", modified), 1.80);
+        // Calcium named CA in a residue that has no backbone.
+        assert_eq!(radius("CA", "CA", "Ca", GroupKind::Metal), 1.7);
+        assert_eq!(radius("HEM", "FE", "Fe", GroupKind::Cofactor), 1.5);
+        assert_eq!(radius("HEM", "CHA", "C", GroupKind::Cofactor), 1.76);
+        assert_eq!(radius("U1", "U", "U", GroupKind::Metal), 1.7);
+        // A thyroid hormone, whose name is a nucleotide's.
+        assert_eq!(radius("T3", "C5", "C", GroupKind::Nucleotide), 1.61);
+        assert_eq!(radius("T3", "C5", "C", GroupKind::Cofactor), 1.76);
+    }
+
+    #[test]
+    fn every_radius_is_of_an_atoms_size() {
+        for (symbol, _) in HALOGENS.iter().chain(&UFF_DISTANCES) {
+            assert!((1.2..=2.3).contains(&of_element(symbol)), "{symbol}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Peptide chains as sequences: runs of amino acids, their letters and their numbers.
+
+use std::ops::Range;
+
+use crate::molecule::chemistry::residues::parent;
+use crate::molecule::model::groups::{Residue, residue_runs};
+use crate::molecule::model::molecule::Molecule;
+
+/// A run of amino acids that stand in one chain of a file, one after another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PeptideChain<'a> {
+    /// The author's name of the chain; may be empty.
+    pub name: &'a str,
+    /// Its residues in file order; none may be missing between two that follow each other here.
+    pub residues: Vec<PeptideResidue>,
+}
+
+/// An amino acid of a chain.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PeptideResidue {
+    /// The author's number with the insertion code, e.g. `52A`.
+    pub number: String,
+    /// One letter, X of an amino acid outside the twenty.
+    pub letter: char,
+    /// The indices of its atoms in the molecule.
+    pub atoms: Range<usize>,
+}
+
+impl PeptideChain<'_> {
+    /// The letters of all residues.
+    pub fn sequence(&self) -> String {
+        self.residues.iter().map(|residue| residue.letter).collect()
+    }
+}
+
+impl Molecule {
+    /// The peptide chains in file order, modified amino acids included.
+    ///
+    /// A chain ends where its name changes or another kind of residue stands between; where numbers begin again under
+    /// one name, it goes on.
+    pub fn peptide_chains(&self) -> Vec<PeptideChain<'_>> {
+        let runs = residue_runs(&self.atoms);
+        runs.chunk_by(|a, b| a.key.0 == b.key.0 && a.is_peptide() == b.is_peptide())
+            .filter(|run| run.first().is_some_and(Residue::is_peptide))
+            .map(|run| PeptideChain {
+                name: run.first().map_or("", |residue| residue.key.0),
+                residues: run.iter().map(peptide_residue).collect(),
+            })
+            .collect()
+    }
+}
+
+fn peptide_residue(residue: &Residue<'_>) -> PeptideResidue {
+    let (_, number, insertion, _) = residue.key;
+    // The atoms of a run stand together.
+    let start = residue.atoms.first().copied().unwrap_or(0);
+    PeptideResidue {
+        number: match insertion {
+            Some(insertion) => format!("{number}{insertion}"),
+            None => number.to_string(),
+        },
+        letter: one_letter(residue.known_as),
+        atoms: start..start + residue.atoms.len(),
+    }
+}
+
+/// One letter of an amino acid by its residue name, X of one outside the twenty.
+pub fn one_letter(residue_name: &str) -> char {
+    match parent(residue_name) {
+        "ALA" => 'A',
+        "ARG" => 'R',
+        "ASN" => 'N',
+        "ASP" => 'D',
+        "CYS" | "SEC" => 'C',
+        "GLN" => 'Q',
+        "GLU" => 'E',
+        "GLY" => 'G',
+        "HIS" => 'H',
+        "ILE" => 'I',
+        "LEU" => 'L',
+        "LYS" => 'K',
+        "MET" | "MSE" => 'M',
+        "PHE" => 'F',
+        "PRO" => 'P',
+        "SER" => 'S',
+        "THR" => 'T',
+        "TRP" => 'W',
+        "TYR" => 'Y',
+        "VAL" => 'V',
+        _ => 'X',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::molecule::model::atom::Atom;
+    use crate::molecule::model::format::Format;
+
+    #[test]
+    fn chains_are_runs_of_amino_acids_under_one_name() {
+        let residue = |chain: &str, name: &str, number: i64, insertion: Option<char>| Atom {
+            name: "CA".to_owned(),
+            residue_name: name.to_owned(),
+            chain: chain.to_owned(),
+            residue_number: number,
+            insertion_code: insertion,
+            alternate_location: None,
+            element: "C".to_owned(),
+            position: [0.0; 3],
+            occupancy: 1.0,
+            b_factor: 0.0,
+            hetero: false,
+            radius: 1.9,
+            line: 1,
+        };
+        let atoms = vec![
+            residue("H", "GLY", 52, None),
+            residue("H", "HIE", 52, Some('A')),
+            residue("H", "MSE", 1, None),
+            residue("L", "ALA", 1, None),
+            residue("L", "HEM", 2, None),
+            residue("L", "SER", 3, None),
+        ];
+        let molecule = Molecule::new(atoms, Format::Pdb);
+        let chains = molecule.peptide_chains();
+        let shown: Vec<(&str, String)> = chains.iter().map(|c| (c.name, c.sequence())).collect();
+        let expected = [("H", "GHM"), ("L", "A"), ("L", "S")];
+        assert_eq!(
+            shown,
+            expected.map(|(name, letters)| (name, letters.to_owned()))
+        );
+        let second = &chains[0].residues[1];
+        assert_eq!(
+            (second.number.as_str(), second.atoms.clone()),
+            ("52A", 1..2)
+        );
+        assert_eq!(chains[2].residues[0].atoms, 5..6);
+    }
+}

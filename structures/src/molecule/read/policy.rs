@@ -1,0 +1,288 @@
+//! Policies of reading: what becomes of waters, HETATM records, hydrogens, alternate locations and models.
+//!
+//! Each is written and read as on the command line, in `run.json` too.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// How to read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReadOptions {
+    /// What becomes of waters.
+    pub waters: Waters,
+    /// What becomes of the other groups in HETATM records.
+    pub hetatm: Hetatm,
+    /// What becomes of hydrogens.
+    pub hydrogens: Hydrogens,
+    /// Which alternate location is kept.
+    pub altloc: AlternateLocation,
+    /// Which model is read, or all of them as one molecule. A file of one model has it read.
+    pub model: ModelChoice,
+    /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is
+    /// read as it stands.
+    pub assembly: Option<String>,
+    /// Residues of a predicted model with a pLDDT (0 to 100) below this are left out; of other files nothing is.
+    pub min_plddt: Option<f64>,
+    /// Residues of these names are left out, whatever they are.
+    pub drop_residue: Vec<String>,
+    /// Whether the B column is pLDDT wherever it can be, as the user says who gives a least one and no file is known as
+    /// a prediction.
+    #[serde(skip)]
+    pub trust_plddt: bool,
+    /// Residue names to keep though they are dropped as water or as a buffer or cryo additive.
+    #[serde(skip)]
+    pub keep: Vec<String>,
+}
+
+/// Which of a file's models are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "WrittenModel", into = "WrittenModel")]
+pub enum ModelChoice {
+    /// One: 1 is the first in the file, whatever number it carries.
+    Number(usize),
+    /// All of them, as parts of one molecule.
+    All,
+}
+
+/// A choice of models as in `run.json`: a number, or `all`.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum WrittenModel {
+    Number(usize),
+    Word(String),
+}
+
+impl Default for ModelChoice {
+    fn default() -> Self {
+        Self::Number(1)
+    }
+}
+
+impl ModelChoice {
+    /// Whether a model is read, by its number.
+    pub(crate) fn takes(self, number: usize) -> bool {
+        match self {
+            Self::Number(wanted) => number == wanted,
+            Self::All => true,
+        }
+    }
+}
+
+impl FromStr for ModelChoice {
+    type Err = PolicyError;
+
+    fn from_str(text: &str) -> Result<Self, PolicyError> {
+        match (text, text.parse()) {
+            ("all", _) => Ok(Self::All),
+            (_, Ok(number)) if number > 0 => Ok(Self::Number(number)),
+            _ => Err(PolicyError {
+                text: text.to_owned(),
+                choices: "a whole number above zero and all",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for ModelChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::All => f.write_str("all"),
+        }
+    }
+}
+
+impl From<ModelChoice> for WrittenModel {
+    fn from(choice: ModelChoice) -> Self {
+        match choice {
+            ModelChoice::Number(number) => Self::Number(number),
+            ModelChoice::All => Self::Word(choice.to_string()),
+        }
+    }
+}
+
+impl TryFrom<WrittenModel> for ModelChoice {
+    type Error = PolicyError;
+
+    fn try_from(written: WrittenModel) -> Result<Self, PolicyError> {
+        match written {
+            WrittenModel::Number(number) => number.to_string().parse(),
+            WrittenModel::Word(word) => word.parse(),
+        }
+    }
+}
+
+/// What becomes of waters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Waters {
+    /// They are dropped.
+    #[default]
+    Drop,
+    /// They are kept, whatever the policy on HETATM records.
+    Keep,
+}
+
+/// What becomes of HETATM records that are no water.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Hetatm {
+    /// Listed buffer and cryo additives are dropped (whatever their record), all else is kept.
+    #[default]
+    NoAdditives,
+    /// All are kept.
+    Keep,
+    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their
+    /// record.
+    Drop,
+}
+
+/// What becomes of hydrogens.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Hydrogens {
+    /// They are dropped: united-atom radii stand for them.
+    #[default]
+    Drop,
+    /// They are kept, and all radii of a molecule that has some are all-atom radii.
+    Keep,
+}
+
+/// Which alternate location of a residue is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum AlternateLocation {
+    /// The one of the highest summed occupancy, the alphabetically first of equals.
+    #[default]
+    Occupancy,
+    /// The one of this name, in residues that offer it; in others as by occupancy.
+    Named(char),
+}
+
+/// A policy that is none.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("'{text}' is none of {choices}")]
+pub struct PolicyError {
+    /// What was given.
+    text: String,
+    /// What there is to choose from.
+    choices: &'static str,
+}
+
+/// Reads and writes a policy as one of a few words.
+macro_rules! words {
+    ($policy:ty, $choices:literal, $($value:path = $word:literal),+) => {
+        impl FromStr for $policy {
+            type Err = PolicyError;
+
+            fn from_str(text: &str) -> Result<Self, PolicyError> {
+                match text {
+                    $($word => Ok($value),)+
+                    _ => Err(PolicyError { text: text.to_owned(), choices: $choices }),
+                }
+            }
+        }
+
+        impl fmt::Display for $policy {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self {
+                    $($value => $word,)+
+                })
+            }
+        }
+    };
+}
+
+words!(
+    Waters,
+    "drop and keep",
+    Waters::Drop = "drop",
+    Waters::Keep = "keep"
+);
+words!(
+    Hetatm,
+    "no-additives, keep and drop",
+    Hetatm::NoAdditives = "no-additives",
+    Hetatm::Keep = "keep",
+    Hetatm::Drop = "drop"
+);
+words!(
+    Hydrogens,
+    "drop and keep",
+    Hydrogens::Drop = "drop",
+    Hydrogens::Keep = "keep"
+);
+
+impl FromStr for AlternateLocation {
+    type Err = PolicyError;
+
+    fn from_str(text: &str) -> Result<Self, PolicyError> {
+        let mut characters = text.chars();
+        match (text, characters.next(), characters.next()) {
+            ("occupancy", ..) => Ok(Self::Occupancy),
+            (_, Some(name), None) if name.is_ascii_graphic() => Ok(Self::Named(name)),
+            _ => Err(PolicyError {
+                text: text.to_owned(),
+                choices: "occupancy and a single character, such as A",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for AlternateLocation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Occupancy => f.write_str("occupancy"),
+            Self::Named(name) => write!(f, "{name}"),
+        }
+    }
+}
+
+/// Policies go into records as they stand on the command line.
+macro_rules! as_text {
+    ($($policy:ty),+) => {$(
+        impl From<$policy> for String {
+            fn from(policy: $policy) -> Self {
+                policy.to_string()
+            }
+        }
+
+        impl TryFrom<String> for $policy {
+            type Error = PolicyError;
+
+            fn try_from(text: String) -> Result<Self, PolicyError> {
+                text.parse()
+            }
+        }
+    )+};
+}
+
+as_text!(Waters, Hetatm, Hydrogens, AlternateLocation);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_as_they_are_written() {
+        for text in ["no-additives", "keep", "drop"] {
+            assert_eq!(text.parse::<Hetatm>().unwrap().to_string(), text);
+        }
+        for text in ["keep", "drop"] {
+            assert_eq!(text.parse::<Waters>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<Hydrogens>().unwrap().to_string(), text);
+        }
+        for text in ["occupancy", "A", "2"] {
+            assert_eq!(text.parse::<AlternateLocation>().unwrap().to_string(), text);
+        }
+        assert!("Keep".parse::<Waters>().is_err());
+        assert!("no-additives".parse::<Hydrogens>().is_err());
+        for text in ["", "AB", " ", "\u{e9}"] {
+            let error = text.parse::<AlternateLocation>().unwrap_err();
+            assert!(error.to_string().contains("occupancy"));
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Balls of one radius on a lattice: a solid as a smooth density, no finer than whoever looks at it can tell.
+//!
+//! Cells of k x k x k nodes tile the grid, evenly about its middle. Every cell with nodes inside the solid gives one
+//! ball, at the mean of these nodes, so that a cell which the surface cuts has its ball where its share of the solid
+//! is. With weights fitted to the nodes ([`super::weights`]) the summed bumps then count volume: about one inside and
+//! zero outside, however the lattice lies.
+//!
+//! The balls are no cover and no packing: for these take [`super::decomposition`]. They are what a correlation of known
+//! resolution needs: cells narrower than half the finest wavelength it keeps are to it as good as the nodes themselves,
+//! at 1 / k^3 of their number.
+
+use crate::sampling::ball_tree::Ball;
+use crate::sampling::grid::DepthField;
+
+/// The balls, in rising order of their cells; `per_cell` is k, at least one, and `radius` in the solid's unit.
+pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
+    let k = per_cell.max(1);
+    let n = field.grid.per_axis();
+    // Cells overhang the grid alike at both ends, so that a solid and its mirror image give mirror images.
+    let cells = n.div_ceil(k);
+    let overhang = (cells * k - n) / 2;
+    let mut sums = vec![([0.0f64; 3], 0usize); cells * cells * cells];
+    for node in field.inside() {
+        let [x, y, z] = field
+            .grid
+            .numbers(node)
+            .map(|number| (number + overhang) / k);
+        let (sum, count) = &mut sums[(z * cells + y) * cells + x];
+        let place = field.grid.node(node);
+        for axis in 0..3 {
+            sum[axis] += place[axis];
+        }
+        *count += 1;
+    }
+    sums.into_iter()
+        .filter(|(_, count)| *count > 0)
+        .map(|(sum, count)| Ball {
+            center: sum.map(|value| value / count as f64),
+            radius,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::Bump;
+    use crate::sampling::grid::Grid;
+    use crate::sampling::weights;
+    use crate::test_support::cuboid;
+
+    /// Cells of one node are the nodes; larger ones keep their number of nodes and first moments: no volume is lost or
+    /// moved.
+    #[test]
+    fn every_inside_node_is_in_one_cell() {
+        let solid = cuboid([0.5, 0.4, 0.23]);
+        let field = DepthField::new(&solid, Grid::new(&solid, 20));
+        let inside = field.inside();
+        let single = lattice(&field, 1, 0.1);
+        assert_eq!(single.len(), inside.len());
+        for (ball, &node) in single.iter().zip(&inside) {
+            assert_eq!(ball.center, field.grid.node(node));
+        }
+        for k in [2, 3, 7, 40] {
+            let balls = lattice(&field, k, 0.1);
+            assert!(balls.len() * k * k * k >= inside.len() && balls.len() < inside.len());
+            // Inside a convex solid means stay inside it.
+            assert!(balls.iter().all(|ball| solid.is_inside(ball.center)));
+        }
+    }
+
+    /// With fitted weights the sum of the bumps is one in the depths to a quarter (cells show) and its integral the
+    /// volume to a tenth.
+    #[test]
+    fn fitted_weights_count_volume() {
+        let solid = cuboid([0.5, 0.45, 0.4]);
+        let field = DepthField::new(&solid, Grid::new(&solid, 40));
+        let volume = solid.mesh().volume();
+        let bump = Bump::new(2.0).unwrap();
+        for k in [2, 3] {
+            let cell = k as f64 * field.grid.spacing();
+            let balls = lattice(&field, k, 1.3 * cell);
+            let fitted = weights::fit(&field, &balls, bump, volume);
+            let (with_fitted, with_unit) = (fitted.volume_fitted, fitted.volume_unit);
+            assert!((with_fitted - 1.0).abs() < 0.1, "{with_fitted}");
+            assert!(with_unit > 2.0, "{with_unit}");
+            for (index, &depth) in field.depth.iter().enumerate() {
+                if depth < 3.0 * cell {
+                    continue;
+                }
+                let place = field.grid.node(index);
+                let sum: f64 = balls
+                    .iter()
+                    .zip(&fitted.weights)
+                    .map(|(ball, weight)| {
+                        let d = crate::mesh::vector::distance(ball.center, place);
+                        weight * bump.value(d / ball.radius)
+                    })
+                    .sum();
+                assert!((sum - 1.0).abs() < 0.25, "{sum} at depth {depth}");
+            }
+        }
+    }
+}

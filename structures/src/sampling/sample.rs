@@ -1,0 +1,168 @@
+//! A solid sampled by a method of one's choice: the sets of balls, and the time of each step.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::knots::{Knots, KnotsError};
+use crate::mesh::{Frame, Solid};
+use crate::sampling::ball_tree::Ball;
+use crate::sampling::cover::Covering;
+use crate::sampling::decomposition::{DecompositionOptions, decompose_in_order};
+use crate::sampling::error::SampleError;
+use crate::sampling::grid::{DepthField, Grid};
+use crate::sampling::skeletal_density::{Priority, priorities};
+use crate::sampling::{octree, packing, voxels};
+
+/// How balls are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Behandish and Ilieş, Algorithm 1: see [`super::decomposition`].
+    BehandishIlies(DecompositionOptions),
+    /// Weller and Zachmann, distance-greedy packing: see [`super::packing`].
+    WellerZachmann,
+    /// Balls about octree cells: see [`super::octree`].
+    Octree,
+    /// A ball a node: see [`super::voxels`].
+    Voxels,
+}
+
+/// Which set of balls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SetName {
+    /// Inside the solid.
+    A1,
+    /// Covering the solid: A1 grown by eps.
+    A2,
+    /// Between the two, and the fewest.
+    A3,
+    /// The one set of Weller and Zachmann's packing.
+    Wz,
+    /// The one set of the octree.
+    Octree,
+    /// The one set of the voxels.
+    Voxels,
+}
+
+/// A set of balls.
+#[derive(Clone, Debug)]
+pub struct BallSet {
+    /// Which.
+    pub name: SetName,
+    /// The balls, in the solid's unit.
+    pub balls: Vec<Ball>,
+    /// Wall time from the solid to this set, in seconds.
+    pub seconds: f64,
+}
+
+/// A step of sampling.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Step {
+    /// What was done.
+    pub name: &'static str,
+    /// Wall time, in seconds.
+    pub seconds: f64,
+}
+
+impl Step {
+    /// A step that began at `start` and ends now.
+    pub fn since(name: &'static str, start: Instant) -> Self {
+        let seconds = start.elapsed().as_secs_f64();
+        Self { name, seconds }
+    }
+}
+
+/// A sampled solid.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// Depths on the grid.
+    pub field: DepthField,
+    /// Number of nodes strictly inside, |X|.
+    pub inside_nodes: usize,
+    /// The sets of balls: A1, A2 and A3, or the one of another method.
+    pub sets: Vec<BallSet>,
+    /// What Algorithm 1 added to cover the surface; none for other methods.
+    pub covering: Option<Covering>,
+    /// What took how long.
+    pub steps: Vec<Step>,
+}
+
+/// Samples a solid on a grid of `per_axis` nodes an axis.
+///
+/// # Errors
+/// [`SampleError::NothingInside`] when no ball can be placed.
+pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling, SampleError> {
+    let start = Instant::now();
+    let mut steps: Vec<Step> = Vec::new();
+    let mut step = |name| {
+        let gone: f64 = steps.iter().map(|step| step.seconds).sum();
+        let seconds = start.elapsed().as_secs_f64() - gone;
+        steps.push(Step { name, seconds });
+        gone + seconds
+    };
+    let field = DepthField::new(solid, Grid::new(solid, per_axis));
+    let nodes = field.inside();
+    step("distance and sign at the nodes");
+    let set = |name, balls, seconds| BallSet {
+        name,
+        balls,
+        seconds,
+    };
+    let mut covering = None;
+    let sets = match method {
+        Method::BehandishIlies(options) => {
+            let priorities = priorities(solid, &field, &nodes, options.priority);
+            step(match options.priority {
+                Priority::SkeletalDensity => "skeletal density",
+                Priority::Radius => "order by radius",
+            });
+            let found = decompose_in_order(solid, &field, &nodes, &priorities, options.mu)?;
+            let seconds = step("decomposition");
+            covering = Some(found.covering);
+            vec![
+                set(SetName::A1, found.a1, seconds),
+                set(SetName::A2, found.a2, seconds),
+                set(SetName::A3, found.a3, seconds),
+            ]
+        }
+        Method::WellerZachmann => {
+            let balls = packing::pack(&field);
+            vec![set(SetName::Wz, balls, step("packing"))]
+        }
+        Method::Octree => {
+            let balls = octree::octree(solid, &field);
+            vec![set(SetName::Octree, balls, step("octree"))]
+        }
+        Method::Voxels => {
+            let balls = voxels::voxels(&field);
+            vec![set(SetName::Voxels, balls, step("voxels"))]
+        }
+    };
+    if sets.iter().any(|set| set.balls.is_empty()) {
+        return Err(SampleError::NothingInside);
+    }
+    Ok(Sampling {
+        inside_nodes: nodes.len(),
+        field,
+        sets,
+        covering,
+        steps,
+    })
+}
+
+/// Balls as knots in the file's unit, of weight one or of the weights given.
+///
+/// # Errors
+/// [`KnotsError`] when there is no ball, the weights are fewer or more than the balls, or a radius underflows.
+pub fn knots(frame: Frame, balls: &[Ball], weights: Option<&[f64]>) -> Result<Knots, KnotsError> {
+    let centers = balls
+        .iter()
+        .map(|ball| frame.outward(ball.center))
+        .collect();
+    let radii = balls.iter().map(|ball| ball.radius * frame.unit).collect();
+    match weights {
+        None => Knots::new(centers, radii),
+        Some(weights) => Knots::with_weights(centers, radii, weights.to_vec()),
+    }
+}
