@@ -96,7 +96,7 @@ mod tests {
         assert!((ball(1.59e-3) - ball(1.5916e-3)).abs() < 1e-5);
     }
 
-    /// Reference: scripts/kernel_reference.py (mpmath, 40 digits).
+    /// Reference: scripts/reference/kernel_reference.py (mpmath, 40 digits).
     #[test]
     fn agrees_with_mpmath_to_1e_10() {
         for (alpha, q, value) in super::super::reference::RADIAL_TRANSFORM {

@@ -1,4 +1,4 @@
-//! Values of psi^ by mpmath: printed by scripts/kernel_reference.py.
+//! Values of psi^ by mpmath: printed by scripts/reference/kernel_reference.py.
 
 pub(crate) const RADIAL_TRANSFORM: [(f64, f64, f64); 15] = [
     (0.5, 0.0, 0.1464971858104328),

@@ -1,7 +1,7 @@
 //! Effect `contact`: a potential over pairs of atom types within about 6 Å.
 //!
 //! The 18 types are those of atomic contact energies (Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726), which
-//! contact potentials for docking use. `scripts/contact_potential.py` derives the potential from the complexes of a benchmark. It
+//! contact potentials for docking use. `scripts/potentials/contact_potential.py` derives the potential from the complexes of a benchmark. It
 //! writes the table beside this file, and the table's first lines name its sources. The radial function k is 1 up to 5 Å and falls
 //! to 0 at 7 Å with all derivatives continuous.
 

@@ -29,7 +29,7 @@ pub fn atom_kinds() -> &'static [&'static str] {
 
 /// Energies of pairs of atoms by their kinds ([`atom_kinds`]) and distance, in units of RT; lower is better.
 ///
-/// `scripts/atom_pair_potential.py` derives the built-in one from the insides of proteins. An energy is minus the logarithm of the
+/// `scripts/potentials/atom_pair_potential.py` derives the built-in one from the insides of proteins. An energy is minus the logarithm of the
 /// observed over the expected frequency of two kinds at a distance (Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916).
 ///
 /// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all atoms (the mole

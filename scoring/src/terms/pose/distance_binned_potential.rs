@@ -15,7 +15,7 @@ const TABLE: &str = include_str!("fine_contact_potential.csv");
 
 /// Energies of contacts by distance range and types, in units of RT; lower is better.
 ///
-/// `scripts/contact_potential.py --fine` derives the built-in one. In each range an energy is minus the logarithm of the contacts in
+/// `scripts/potentials/contact_potential.py --fine` derives the built-in one. In each range an energy is minus the logarithm of the contacts in
 /// known complexes over those in docked poses, less the mean. This is the reference state of DARS (Chuang, Kozakov, Brenke, Comeau &
 /// Vajda, Biophys. J. 95 (2008) 4217-4227).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
