@@ -89,7 +89,7 @@ fn too_little(scene: &Scene, options: &DockOptions, (needed, allowed): (u64, u64
         let plan = scene.engine_plan(&coarser).ok()?;
         let spacing = rounded_up(plan.spacing(), scene.angstrom);
         let (fixed, per_rotation) = needs(scene, &plan.with_spacing(spacing).ok()?, options);
-        (fixed + per_rotation <= allowed).then(|| KernelOptions {
+        (fixed + per_rotation <= allowed).then_some(KernelOptions {
             spacing: Some(spacing),
             ..coarser.kernel
         })

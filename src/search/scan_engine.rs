@@ -13,7 +13,6 @@ use serde::Serialize;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
 #[cfg(feature = "gpu")]
 use knotdock_scoring::peaks::NEIGHBOURS;
-#[cfg(feature = "gpu")]
 
 /// The graphics processor that correlated.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
