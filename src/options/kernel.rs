@@ -65,3 +65,14 @@ impl KernelOptions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The scoring crate's front door correlates by the kernel that `dock` uses.
+    #[test]
+    fn the_library_has_the_same_defaults() {
+        assert_eq!(KernelOptions::default().engine(), EngineOptions::default());
+    }
+}
