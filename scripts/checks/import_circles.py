@@ -20,7 +20,9 @@ USE = re.compile(r"^[ \t]*(pub(?:\([\w: ]+\))? )?use ([^;]+);", re.M)
 def without_tests(text):
     """Text less its comments and everything from `#[cfg(test)] mod` to the brace that closes it."""
     text = re.sub(r"//[^\n]*|\bpub\(in [\w:]+\)", "", text)
-    while match := re.search(r"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))? )?(?:mod \w+|use|fn \w+|impl)[^{;]*([{;])", text):
+    while match := re.search(
+        r"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))? )?(?:mod \w+|use|fn \w+|impl)[^{;]*([{;])", text
+    ):
         end = match.end()
         if match[1] == "{":
             depth = 1

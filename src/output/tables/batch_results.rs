@@ -18,9 +18,10 @@ use crate::output::tables::poses_reader::PoseTableError;
 pub const RESULTS: &str = "results.csv";
 
 /// What is copied of the first row of a pair's poses.csv, where it has the column.
-const BEST: [&str; 9] = [
+const BEST: [&str; 10] = [
     "score",
     "pose_score",
+    "search_score",
     "z_score",
     "cluster_size",
     "irmsd",
