@@ -225,7 +225,7 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
 }
 
 /// By Parseval the rms tail is the root mean square of the grid's error to rounding, once modes of the product do not
-/// alias: they do not, as the grid holds every mode of the set.
+/// alias. They do not alias here, as the grid holds every mode of the set.
 #[test]
 fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says() {
     let mut pair = Pair::clouds(1e-6, Quantity::Score, 31);
@@ -289,8 +289,8 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     }
 }
 
-/// dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in rho: all ligand
-/// radii grown and shrunk by h move every radius sum, which is what an offset does.
+/// The derivative dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in
+/// rho: all ligand radii grown and shrunk by h move every radius sum, which is what an offset does.
 #[test]
 fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let h = 1e-3;

@@ -173,7 +173,7 @@ def dock_and_measure(options, folder, files, name, seed):
     if run.exists():
         shutil.rmtree(run)
     command = [options.knotdock, "dock", str(files["receptor_unbound"]), str(rotated), "-o", str(run), "--quiet"]
-    # Every pose is listed with its cluster, so one run serves both rankings.
+    # Every pose is written with its cluster, so one run serves both rankings.
     for option, value in (("--no-cluster", []), ("--write-top", ["0"])):
         if option not in options.dock_options:
             command += [option, *value]

@@ -178,8 +178,8 @@ def compare_weights(options, decoys, own, computed):
     )
 
     def show(name, ranks, near_ranks):
-        told = f"{by_pair(near_ranks, log_rank).mean():.3f}  {against(near_ranks, near_native[own])}"
-        print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {told}")
+        near_summary = f"{by_pair(near_ranks, log_rank).mean():.3f}  {against(near_ranks, near_native[own])}"
+        print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {near_summary}")
 
     for weights in order:
         name = f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}  {weights[5]:7g}"

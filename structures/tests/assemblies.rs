@@ -144,12 +144,12 @@ fn every_atom_has_a_fate_with_the_copies() {
         assembly: Some("1".to_owned()),
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
-    let outside: Vec<_> = listed
+    let (molecule, entries) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
+    let outside: Vec<_> = entries
         .iter()
         .filter(|entry| entry.dropped.is_some())
         .collect();
-    assert_eq!(listed.len(), molecule.atoms.len() + 1);
+    assert_eq!(entries.len(), molecule.atoms.len() + 1);
     assert_eq!(
         (outside[0].dropped, outside[0].atom.chain.as_str()),
         (Some(DropKind::Assembly), "B")

@@ -202,8 +202,8 @@ fn every_atom_has_a_fate_with_the_reason() {
         hetatm: Hetatm::Drop,
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
-    let reasons: Vec<Option<DropKind>> = listed.iter().map(|entry| entry.dropped).collect();
+    let (molecule, entries) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
+    let reasons: Vec<Option<DropKind>> = entries.iter().map(|entry| entry.dropped).collect();
     let dropped = |kind| Some(kind);
     assert_eq!(
         reasons,
@@ -223,11 +223,11 @@ fn every_atom_has_a_fate_with_the_reason() {
         ]
     );
     assert!(
-        listed
+        entries
             .windows(2)
             .all(|pair| pair[0].atom.line < pair[1].atom.line)
     );
-    let kept: Vec<_> = listed
+    let kept: Vec<_> = entries
         .iter()
         .filter(|entry| entry.dropped.is_none())
         .map(|entry| &entry.atom)

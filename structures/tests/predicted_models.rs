@@ -1,4 +1,4 @@
-//! Predicted models: what tells them from measured structures, and the residues of which they are not sure.
+//! Predicted models: how they are detected, and their residues of low confidence.
 
 #![cfg(feature = "molecule")]
 
@@ -213,12 +213,12 @@ fn residues_below_the_limit_are_left_out_and_named() {
         (50.0, 7, ""),
         (93.0, 1, ""),
     ] {
-        let (molecule, listed) = read_with_fates(&spec, &options(least)).unwrap();
+        let (molecule, entries) = read_with_fates(&spec, &options(least)).unwrap();
         assert_eq!(molecule.atoms.len(), 4 * residues, "{least}");
         assert!(molecule.atoms.iter().all(|atom| atom.b_factor >= least));
         assert_eq!(molecule.report.confidence, Some(SURE_OF_TEN));
-        assert_eq!(listed.len(), 40);
-        let dropped = listed
+        assert_eq!(entries.len(), 40);
+        let dropped = entries
             .iter()
             .filter(|entry| entry.dropped == Some(DropKind::LowConfidence));
         assert_eq!(dropped.count(), 40 - 4 * residues);

@@ -35,7 +35,8 @@ fn gzip(text: &str) -> Vec<u8> {
     packed.finish().unwrap()
 }
 
-/// Alternate locations, an insertion code, a modified residue, hydrogens, water, an ion, an additive, a nucleotide, odd columns.
+/// Alternate locations, an insertion code, a modified residue, hydrogens, water, an ion, an additive, a nucleotide,
+/// odd columns.
 fn pdb() -> String {
     "\
 HEADER    SEED

@@ -1,4 +1,5 @@
-//! Each pair, its ligand turned and taken away, is put together again by `knotdock dock`: rank 1 is right to one grid step and 5 degrees.
+//! Each pair, its ligand turned and taken away, is put together again by `knotdock dock`: rank 1 is right to one grid
+//! step and 5 degrees.
 
 use super::parts::Pair;
 use super::run::{Place, dock, rank_one, scored_poses};
@@ -66,12 +67,12 @@ fn linked_halves_of_a_torus_close() {
 }
 
 #[test]
-fn a_broken_block_is_mended() {
+fn a_broken_block_is_put_together() {
     put_together(broken());
 }
 
-/// What fitted weights do to the summed bumps and to scores, as the table of docs/mesh_docking.md: fitted ones integrate to the volume within a
-/// tenth, and with either the first pose is right.
+/// What fitted weights do to the summed bumps and to scores, as the table of docs/mesh_docking.md: fitted ones
+/// integrate to the volume within a tenth, and with either the first pose is right.
 #[test]
 #[ignore = "six dockings for a table"]
 fn weights_and_scores() {

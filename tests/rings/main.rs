@@ -1,4 +1,5 @@
-//! Rings: known ones are found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
+//! Rings: known ones are found again, poses make rings to rounding, copies are written in their places, and what a
+//! ring cannot have is refused.
 
 mod cyclic;
 mod dihedral;
@@ -76,7 +77,7 @@ fn refused(folder: &Path, command: &str) -> String {
         .args(command.split(' '))
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{command}: {told}");
-    told
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{command}: {reported}");
+    reported
 }
