@@ -63,7 +63,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (4 * turns) as f64;
         let (card_ms, core_ms) = (of_rotation(on_card, TURNS), of_rotation(on_core, TURNS / 9));
         println!(
-            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
+            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; \
+             one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
             engine.rank(),
             gpu.name(),
             gpu.backend(),

@@ -86,7 +86,8 @@ fn table<const D: usize>(
     }
     let [sort, forward, adjoint] = times.map(|pair| pair.map(|seconds| 1e3 * median(seconds)));
     println!(
-        "{modes:?} modes, {count} points, {tolerance:.0e}: grid {:?}, width {}; sort {:.2} ({:.2}), forward {:.2} ({:.2}), adjoint {:.2} ({:.2}); error {:.1e}",
+        "{modes:?} modes, {count} points, {tolerance:.0e}: grid {:?}, width {}; sort {:.2} ({:.2}), \
+         forward {:.2} ({:.2}), adjoint {:.2} ({:.2}); error {:.1e}",
         case.plan.grid(),
         case.plan.width(),
         sort[0],

@@ -47,7 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             plan.modes().count
         );
         println!(
-            "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: product with inverse x and y {:.3}, \
+            "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: \
+             product with inverse x and y {:.3}, \
              inverse z {:.3}; a rotation in all {:.3}",
             1e3 * spread,
             1e3 * planes,

@@ -298,7 +298,8 @@ fn reading_options_are_recorded_and_followed() {
     fs::write(folder.path().join("models.pdb"), models).unwrap();
     run(
         folder.path(),
-        "dock receptor.pdb models.pdb --model 2 --waters keep --altloc A --rotations 20 --write-top 1 --native native.pdb -o run --quiet",
+        "dock receptor.pdb models.pdb --model 2 --waters keep --altloc A --rotations 20 --write-top 1 \
+         --native native.pdb -o run --quiet",
     );
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.path().join(name).join("run.json")).unwrap())

@@ -157,7 +157,8 @@ fn errors_name_what_was_not_read() {
     );
 
     let table = |records: &str| -> String {
-        let items = "group_PDB id label_atom_id label_comp_id label_asym_id label_seq_id Cartn_x Cartn_y Cartn_z type_symbol";
+        let items = "group_PDB id label_atom_id label_comp_id label_asym_id label_seq_id Cartn_x Cartn_y Cartn_z \
+            type_symbol";
         let head: String = items
             .split(' ')
             .map(|item| format!("_atom_site.{item}\n"))

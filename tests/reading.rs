@@ -44,7 +44,8 @@ fn json(folder: &Path, arguments: &str) -> Value {
 fn residues_left_out_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
-    let run = "dock receptor.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 1 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
@@ -76,7 +77,8 @@ fn residues_left_out_are_recorded_and_followed() {
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let matched = json(folder, "evaluate run --native native.pdb --json");
     assert_eq!(matched["match"], first["match"]);
-    let named = "evaluate run/poses.csv --receptor receptor.pdb --ligand model.pdb --min-plddt 50 --native native.pdb --json";
+    let named = "evaluate run/poses.csv --receptor receptor.pdb --ligand model.pdb --min-plddt 50 \
+        --native native.pdb --json";
     assert_eq!(json(folder, named), matched);
 }
 
@@ -244,7 +246,8 @@ fn all_models_are_recorded_and_followed() {
     );
     assert_eq!(reported["input"]["atoms"], 60);
 
-    let run = "dock receptor.pdb dimer.pdb1 --model all --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb dimer.pdb1 --model all --rotations 20 --write-top 1 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
@@ -319,7 +322,8 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
         "{warnings}"
     );
 
-    let run = "dock receptor.pdb low.pdb --min-plddt 50 --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb low.pdb --min-plddt 50 --rotations 20 --write-top 0 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
@@ -347,7 +351,8 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
 fn picked_residues_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
-    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --active-ligand A:2,3,4-6 --rotations 20 --write-top 1 -o run --quiet";
+    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --active-ligand A:2,3,4-6 --rotations 20 \
+        --write-top 1 -o run --quiet";
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();

@@ -316,7 +316,8 @@ fn a_closed_mesh_that_breaks_the_bounds_is_warned_of() {
     let place = Place::new();
     // A box whose top lies under its bottom at the far end.
     let crossed = "v 0 0 0\nv 4 0 2\nv 0 2 0\nv 4 2 2\nv 0 0 3\nv 4 0 0\nv 0 2 3\nv 4 2 0\n\
-                  f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+                  f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\n\
+                  f 2 4 8\nf 2 8 6\n";
     fs::write(place.path("crossed.obj"), crossed).unwrap();
     let object = place.sample(&["crossed.obj", "--grid", "2^12"]);
     assert!(

@@ -221,7 +221,8 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
     }
     assert!(
         lines.is_empty(),
-        "{} moves in tests/scoring_table/{name}, the first of them:\n{}\nIf they are meant: KNOTDOCK_BLESS=1 cargo test --test scoring_table",
+        "{} moves in tests/scoring_table/{name}, the first of them:\n{}\n\
+         If they are meant: KNOTDOCK_BLESS=1 cargo test --test scoring_table",
         lines.len(),
         lines
             .iter()

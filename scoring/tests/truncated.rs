@@ -206,7 +206,8 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
             let anywhere = Tail::of(modes, &selection, &over_rotations);
             let error = (value - full).abs();
             println!(
-                "order {order}, {:6} modes: {value:9.3}, error {error:.2e}, rms {:.2e}, bound {:.2e}, over rotations {:.2e}",
+                "order {order}, {:6} modes: {value:9.3}, error {error:.2e}, rms {:.2e}, bound {:.2e}, \
+                 over rotations {:.2e}",
                 few.modes(),
                 tail.rms,
                 tail.bound,

@@ -68,7 +68,8 @@ fn further_data_blocks_with_atoms_are_warned_of() {
 #[test]
 fn archive_names_stand_in_for_missing_author_names() {
     let file = "data_x\nloop_\n_ATOM_SITE.label_asym_id\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
-                _atom_site.label_seq_id\n_atom_site.cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\nQ CA GLY 5 1 2 3\n";
+                _atom_site.label_seq_id\n_atom_site.cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+                Q CA GLY 5 1 2 3\n";
     let molecule = read_text(file, "").unwrap();
     let atom = &molecule.atoms[0];
     assert_eq!((atom.chain.as_str(), atom.residue_number), ("Q", 5));

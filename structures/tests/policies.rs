@@ -177,8 +177,10 @@ fn models_of_mmcif_go_by_their_column() {
         .map(|(model, x)| format!("C CA GLY A 1 {x} 0 0 {model}\n"))
         .concat();
     let file = format!(
-        "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n\
-         _atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.pdbx_PDB_model_num\n{rows}"
+        "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
+         _atom_site.label_asym_id\n\
+         _atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+         _atom_site.pdbx_PDB_model_num\n{rows}"
     );
     for (model, expected) in [(1, [1.0, 3.0]), (2, [2.0, 4.0])] {
         let options = ReadOptions {

@@ -41,8 +41,10 @@ fn rising(residue: usize) -> f64 {
 /// The same atoms in mmCIF, after the items of `head`.
 fn mmcif(head: &str, b: impl Fn(usize, usize) -> f64) -> String {
     let mut text = format!(
-        "data_x\n{head}\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
-         _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+        "data_x\n{head}\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
+         _atom_site.label_comp_id\n\
+         _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n\
+         _atom_site.Cartn_z\n\
          _atom_site.occupancy\n_atom_site.B_iso_or_equiv\n"
     );
     for residue in 0..10 {
@@ -161,7 +163,8 @@ fn an_experiment_rules_a_prediction_out() {
 fn scores_that_a_model_names_go_before_its_values() {
     let metrics = |first: &str, second: &str| {
         format!(
-            "loop_\n_ma_qa_metric.id\n_ma_qa_metric.mode\n_ma_qa_metric.name\n_ma_qa_metric.type\n1 global {first}\n2 local {second}\n#"
+            "loop_\n_ma_qa_metric.id\n_ma_qa_metric.mode\n_ma_qa_metric.name\n_ma_qa_metric.type\n\
+             1 global {first}\n2 local {second}\n#"
         )
     };
     let named = metrics("'mean' pLDDT", "pLDDT pLDDT");

@@ -304,7 +304,8 @@ fn residues_of_blank_and_long_chain_names_are_picked() {
     let blank = two_chains().replace(" A ", "   ");
     let molecule = read_bytes("x.pdb", blank.as_bytes(), ":_:1-2").unwrap();
     assert_eq!(molecule.atoms.len(), 8);
-    let cif = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.type_symbol\n_atom_site.auth_asym_id\n\
+    let cif = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.type_symbol\n\
+        _atom_site.auth_asym_id\n\
         _atom_site.label_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
         CA ALA C AA A 5 0 0 0\nCA ALA C AA A 6 4 0 0\nCA ALA C 6 B 1 9 0 0\n";
     let of = |selection: &str| {

@@ -70,7 +70,8 @@ fn refined_rows_stand_for_what_lies_within_a_step() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 --no-cluster --diagnostics --write-top 0 -o run --quiet",
+        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 \
+         --no-cluster --diagnostics --write-top 0 -o run --quiet",
     );
     let run = folder.path().join("run");
     let record: Value = serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap();
@@ -169,7 +170,8 @@ fn double_precision_goes_where_single_cannot() {
         run(
             folder.path(),
             &format!(
-                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster --diagnostics {options} -o {name} --quiet"
+                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster --diagnostics {options} \
+                 -o {name} --quiet"
             ),
         );
         let record = fs::read(folder.path().join(name).join("run.json")).unwrap();

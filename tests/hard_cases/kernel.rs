@@ -240,7 +240,8 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
             println!("{lambda} {offset} {alpha}: {error:.2e} of {best:.3e}, {largest:.3e}");
             assert!(
                 error <= tolerance * scale + 1e-9 * slices,
-                "lambda {lambda}, r0 {offset}, alpha {alpha} at {tolerance:e}: {error:e}, best {best:e}, largest {largest:e}"
+                "lambda {lambda}, r0 {offset}, alpha {alpha} at {tolerance:e}: {error:e}, best {best:e}, \
+                 largest {largest:e}"
             );
         }
     }

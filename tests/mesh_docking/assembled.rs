@@ -42,7 +42,8 @@ fn put_together((pair, clearance): (Pair, f64)) {
     let pose = rank_one(&place.path("run/poses.csv"));
     let (distance, degrees) = error(&pair, &pose);
     println!(
-        "{}: clearance {clearance:.4}; rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and {degrees:.2} degrees; {} and {} balls, {:.1} s",
+        "{}: clearance {clearance:.4}; rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and \
+         {degrees:.2} degrees; {} and {} balls, {:.1} s",
         pair.name,
         distance / step,
         run["inputs"]["receptor"]["sampling"]["balls"],
@@ -77,7 +78,8 @@ fn a_broken_block_is_put_together() {
 #[ignore = "six dockings for a table"]
 fn weights_and_scores() {
     println!(
-        "| pair | weights | rms off one | integral / volume | score at rank 1 | best wrong cluster's share of it | off by, grid steps | degrees |"
+        "| pair | weights | rms off one | integral / volume | score at rank 1 | best wrong cluster's share of it | \
+         off by, grid steps | degrees |"
     );
     for (pair, _) in [peg(), torus(), broken()] {
         let place = Place::of(&pair);

@@ -201,7 +201,8 @@ fn residues_are_named_for_all_copies() {
     assert!(reported["run"]["options"]["restraints"]["active_ligand"].is_null());
     assert!(rows.iter().all(|row| row["active_residues"].is_empty()));
     let molecule = example("ligand_unbound");
-    let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
+    let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 \
+        --block-receptor B:20 -o run --force --json";
     let mut arguments = vec!["dock", &molecule, "--symmetry", "C3"];
     arguments.extend(options.split(' '));
     let output = succeed(folder.path(), arguments);
