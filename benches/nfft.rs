@@ -5,7 +5,7 @@
 //! Times are by the wall clock and the thread's own CPU time; the error is against the direct sum at 200 modes.
 //!
 //! With `--serve` it does one thing for each line on standard input and answers with one line, so that
-//! `scripts/reference/finufft_reference.py` can take turns with other programs run by run, on the same numbers:
+//! `scripts/reference/finufft_reference.py` can alternate it with other programs run by run, on the same numbers:
 //!
 //! - `plan FOLDER TOLERANCE N1 N2 N3 [N4]`: reads `points.bin` (f64, D to a point, in units of the period) and
 //!   `weights.bin` (f64, re and im) from the folder, and plans. It answers with grid, window width, and seconds of

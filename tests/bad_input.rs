@@ -359,7 +359,7 @@ fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
     assert!(kept("poses.csv").contains("dockq"));
 }
 
-/// A program that asks for an object and gets none must not read that all went well; a person who closes the pipe may.
+/// A program that requests an object and gets none must get an error code; a person who closes the pipe need not.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_object_that_cannot_be_written_is_a_failure() {

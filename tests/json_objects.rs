@@ -1,4 +1,4 @@
-//! The JSON object of each command, and who hears what on which stream.
+//! The JSON object of each command, and what goes to which stream.
 
 mod molecules;
 mod program;

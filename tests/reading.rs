@@ -136,7 +136,7 @@ fn an_assembly_is_recorded_and_followed() {
         first["inputs"]["ligand"]["report"]["assembly"],
         serde_json::json!({"id": "1", "chains": 2, "chains_in_file": 1, "on_axes": 0})
     );
-    // The receptor's file says nothing of assemblies, and is read as it stands.
+    // The receptor's file describes no assembly, and is read as it is.
     assert_eq!(
         first["inputs"]["receptor"]["report"]["assembly"],
         Value::Null
@@ -295,10 +295,10 @@ fn all_models_are_recorded_and_followed() {
     );
 }
 
-/// The user's word on pLDDT is taken where no file is known as a prediction, and a measured partner is left alone
-/// where one is.
+/// The option that B values are pLDDT is followed where no file is detected as a prediction. Where one is, a measured
+/// partner is left unchanged.
 #[test]
-fn the_users_word_on_plddt_is_taken_and_followed() {
+fn b_values_that_the_user_calls_plddt_are_read_as_such() {
     let folder = place();
     let folder = folder.path();
     // pLDDT 22, 27 ... 77: a mean of 49.5, from which nothing can be detected.

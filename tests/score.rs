@@ -32,7 +32,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// What every answer must satisfy; returns the rows.
+/// Checks what every object of the command must satisfy; returns the rows.
 fn check(reported: &Value) -> Vec<Value> {
     let (exact, scale) = (number(&reported["exact"]), number(&reported["scale"]));
     assert!(scale > 0.0);

@@ -404,9 +404,9 @@ fn what_every_row_must_satisfy() {
     }
 }
 
-/// The comparison itself must hear a move of a hundred-thousandth, a lost row, and a rank that changes.
+/// The comparison itself must detect a change of a hundred-thousandth, a lost row, and a rank that changes.
 #[test]
-fn moves_are_heard() {
+fn changes_are_detected() {
     let columns = ["case", "pose", "rank", "score"];
     let table = |rank: f64, score: f64| -> Table {
         let other = vec![Some(2.0), Some(-50.0)];

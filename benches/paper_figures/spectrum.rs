@@ -129,8 +129,8 @@ impl FrequencyBox {
         self.size.iter().map(|n| (n / 2) * (n / 2)).sum()
     }
 
-    /// About `count` places spread over the box, that of frequency zero the first of them. None lies where a grid of
-    /// the same size has its Nyquist frequencies, which it cannot tell from their conjugates.
+    /// About `count` places spread over the box; the first is that of frequency zero. None lies where a grid of
+    /// the same size has its Nyquist frequencies, which it cannot distinguish from their conjugates.
     pub fn sample(self, count: usize) -> Vec<usize> {
         let [a, b, c] = self.half();
         let zero = (a / 2 * b + b / 2) * c;

@@ -9,7 +9,7 @@ use knotdock_scoring::transform::truncation::Selection;
 use num_complex::Complex64;
 use std::hint::black_box;
 
-/// Share of the peak from which two bodies count as colliding. A truncated function has no exact zeros to tell by.
+/// Share of the peak from which two bodies count as colliding. A truncated function has no exact zeros.
 const CONTACT: f64 = 1e-3;
 /// Pairs of balls of which pairwise summation is timed; the time of all follows by their number.
 const PAIRS: usize = 4_000_000;

@@ -101,7 +101,7 @@ fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
     }
 }
 
-/// Searches for a spacing that fits into memory ask for grids alone.
+/// A search for a spacing that fits into memory plans grids alone; such a plan must equal a new one.
 #[test]
 fn a_plan_with_another_spacing_is_the_plan_made_for_it() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));

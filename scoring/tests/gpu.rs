@@ -70,7 +70,7 @@ fn greedy(grid: &[f32], size: [usize; 3], count: usize, reach: usize) -> Vec<(u3
     kept.into_iter().map(|v| (v as u32, grid[v])).collect()
 }
 
-/// Single precision costs the same small share whatever the tolerance asks of the plan: window widths, ranks and grids
+/// The error of single precision is the same small share at every tolerance of the plan: window widths, ranks and grids
 /// all change with it.
 #[test]
 fn the_grid_is_that_of_the_cpu_in_double_precision() {

@@ -291,7 +291,7 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
 }
 
 /// The derivative dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in
-/// rho: all ligand radii grown and shrunk by h move every radius sum, which is what an offset does.
+/// rho. All ligand radii grown and shrunk by h move every radius sum, as an offset does.
 #[test]
 fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let h = 1e-3;

@@ -298,7 +298,8 @@ def main():
                     counts["both keep nothing"] += 1
                     continue
             else:
-                differences = compare(rows, is_pdb, table, names, reported["input"]["report"]["altered"]["defaults_filled"])
+                filled = reported["input"]["report"]["altered"]["defaults_filled"]
+                differences = compare(rows, is_pdb, table, names, filled)
             atoms += len(rows)
             if not differences:
                 counts["the same"] += 1

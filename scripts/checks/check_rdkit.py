@@ -223,9 +223,8 @@ def check_pair(tally, knotdock, name, receptor, ligand, quaternion, translation,
     """One placed pair; `spoil` in Å moves RDKit's ligand away from ours."""
     unit = np.array(quaternion) / np.linalg.norm(quaternion)
     pose = ",".join(f"{x:.12f}" for x in [*unit, *translation])
-    reported = run(knotdock, "score", receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options)[
-        "geometry"
-    ]
+    scored = [receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options]
+    reported = run(knotdock, "score", *scored)["geometry"]
     placed = ligand.placed(rotation_of(unit), np.array(translation)) + spoil
     moved = with_positions(ligand.rdkit, placed)
     together = Chem.CombineMols(receptor.rdkit, moved)

@@ -8,7 +8,9 @@ DIR is a benchmark folder (scripts/docked_pairs.py); the unbound proteins of the
 the statistics.
 
 Kinds are the atoms of each amino acid by themselves, those alike by symmetry as one
-(structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of atoms whose residues are at least --separation places from each other in the file, in shells of 0.5 A about the table's distances, the first one down to 0.
+(structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of atoms whose residues are at least
+--separation places from each other in the file, in shells of 0.5 A about the table's distances, the first one down
+to 0.
 
 In each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT. n_ab counts the pairs
 found, m_ab = p_a p_b n those of a reference state in which kinds pair at random, c is a pseudocount. Both counts take

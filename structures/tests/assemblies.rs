@@ -157,7 +157,7 @@ fn every_atom_has_a_fate_with_the_copies() {
     );
 }
 
-/// Who docks an asymmetric unit should know that it is not the molecule; who picks chains has chosen.
+/// Docking an asymmetric unit gives a warning that it is not the assembly; a user who picks chains gets none.
 #[test]
 fn a_unit_that_is_no_assembly_is_warned_of() {
     let folder = tempfile::tempdir().unwrap();
@@ -266,7 +266,7 @@ fn what_cannot_be_built_says_why() {
         .replacen(IDENTITY.lines().last().unwrap(), "", 3)
         .replace("REMARK 350   BIOMT3", "REMARK 900");
     assert!(refused(&cut, "1").1.contains("due"));
-    // A file that says nothing of assemblies is read as it stands: the other of two molecules may have one.
+    // A file that describes no assembly is read as it is: the other of two molecules may have one.
     let plain = read_as(folder.path(), "x.pdb", &chains(), "", Some("1")).unwrap();
     assert_eq!((plain.atoms.len(), plain.report.assembly), (4, None));
 }

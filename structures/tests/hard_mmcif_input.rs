@@ -214,7 +214,7 @@ fn both_formats_give_the_same_atoms() {
     }
 }
 
-/// PyMOL writes each object as a data block: "the file has only A" was all that was said of a chain in the second one.
+/// PyMOL writes each object as a data block: for a chain in the second one the error said only "the file has only A".
 #[test]
 fn a_chain_of_a_block_that_was_not_read_is_answered_with_the_block() {
     let atom = |chain: &str| format!("ATOM 1 C CA . GLY {chain} 1 ? 1 2 3 1 9 1 {chain} 1\n");

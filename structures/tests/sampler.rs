@@ -242,7 +242,7 @@ fn grids_have_both_ends_and_the_middle() {
     assert_eq!(grid.node(0), [-0.5; 3]);
     assert_eq!(grid.node(124), [0.5; 3]);
     assert_eq!(grid.node(62), [0.0; 3]);
-    // Balls find the nodes that a look at each would.
+    // Balls find the same nodes as a test of each node.
     for (center, radius) in scattered(50, 0.6).zip(scattered(50, 0.5)) {
         let radius = radius[0].abs();
         let mut found = Vec::new();

@@ -199,9 +199,8 @@ fn a_sharp_ball_rings_near_its_edge_only() {
 /// tables are good to 1e-9 of the slices. For lambda = 1 and r0 = 1e-3 Å the slices cancel to r0^2 = 1e-6 of
 /// themselves, so the bound includes that part.
 ///
-/// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: the best score is a hundredth
-/// of the largest
-/// |G| there instead of a twentieth.
+/// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: there the best score is a
+/// hundredth of the largest |G| instead of a twentieth.
 #[test]
 fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));

@@ -1,5 +1,5 @@
 //! Hard cases of the knots themselves: coincident and duplicate ones, one against 100,000, radii of a ratio of 1e6,
-//! coordinates at 1e6 Å, denormal numbers, input that cannot be served.
+//! coordinates at 1e6 Å, denormal numbers, input that must be refused.
 
 use crate::scene::{
     Pair, RADII, cloud, engine_options, kernel_for, kernel_options, knots, some_rotation,
@@ -330,7 +330,7 @@ fn denormal_numbers_stay_finite() {
     }
 }
 
-/// Weights scale the score, bit for bit by powers of two, over the whole range that is served; beyond it they are
+/// Weights scale the score, bit for bit by powers of two, over the whole range that is accepted; beyond it they are
 /// refused. First, weights of 1e30 on both bodies gave a grid of infinities and NaN in f32, and weights of 1e-30 one
 /// of zeros.
 #[test]
@@ -415,7 +415,7 @@ fn knots_that_are_none_are_refused_everywhere() {
             assert!(ProductScorer::new(&product, a, b).is_err());
         }
     }
-    // A stray atom far away asks for a box that no machine holds.
+    // A stray atom far away needs a box that no machine holds.
     let stray = with(&|knots| knots.centers[3][0] = 1e12);
     assert!(matches!(
         Plan::new(&stray, &good, engine_options(1e-2)),

@@ -97,7 +97,12 @@ fn pairs(a: &Knots, b: &Knots) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     /// The pair sum: finite in score, slices, gradient; and the same when the bodies change places under the inverse
     /// pose.
@@ -141,7 +146,9 @@ proptest! {
     /// Whole grids in f32: finite everywhere, and on every voxel at the faces of the box, halfway between receptor
     /// and image, no more than the pair sum says.
     #[test]
-    fn grids_are_finite_and_nothing_scores_through_the_image(a in knots(), b in knots(), options in options(), place in pose()) {
+    fn grids_are_finite_and_nothing_scores_through_the_image(
+        a in knots(), b in knots(), options in options(), place in pose()
+    ) {
         let options = EngineOptions { tolerance: 1e-2, ..options };
         let pair = Pair::<f32>::new(&a, &b, options);
         let rotation = Pose::from_parts(place.0, [0.0; 3]).rotation;

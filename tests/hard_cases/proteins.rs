@@ -129,8 +129,8 @@ fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
 
 /// Modes of G by the uncompressed 4D direct transform: sum over eta of K C rhoA conj(rhoB), over the box's volume.
 ///
-/// Knots of one radius turn alike along eta, so their sum over x is taken once; at some modes that is held to the
-/// plain 4D sum.
+/// Knots of one radius have the same phase along eta, so their sum over x is taken once. At some modes that is
+/// compared with the plain 4D sum.
 fn direct<T: Real>(
     pair: &Pair<T>,
     a: &Knots,

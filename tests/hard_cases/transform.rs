@@ -54,8 +54,8 @@ const TRANSFORM: [(f64, f64, f64); 20] = [
     (1024.0, 200.0, -2.1724228726191892e-6),
 ];
 
-/// Below z = 1e-5, sin z - z cos z keeps no digit, and a series serves; at q = 1e6 the sine's argument itself is good
-/// to 1e-9 only.
+/// Below z = 1e-5, sin z - z cos z keeps no digit, and a series replaces it. At q = 1e6 the sine's argument itself is
+/// good to 1e-9 only.
 #[test]
 fn the_balls_transform_at_tiny_and_huge_frequencies() {
     let transform = RadialTransform::new(Bump::new(f64::INFINITY).unwrap(), 1.0);
@@ -75,9 +75,9 @@ fn the_balls_transform_at_tiny_and_huge_frequencies() {
     }
 }
 
-/// Bumps from a point to a ball. At alpha = 1/8 the bump is nearly a point: all of its transform comes from a cusp at
-/// 0. At alpha = 1,024 it is nearly a sharp ball, with an edge of a thousandth. Quadrature must take in both, up to q
-/// = 200.
+/// Bumps from a point to a ball. At alpha = 1/8 the bump is nearly a point, and its whole transform comes from a cusp
+/// in the centre. At alpha = 1,024 it is nearly a sharp ball, with an edge of a thousandth. Quadrature must resolve
+/// both, up to q = 200.
 #[test]
 fn bumps_from_a_point_to_a_sharp_ball() {
     for (alpha, q, exact) in TRANSFORM {

@@ -26,12 +26,12 @@ fn docked(place: &Place, more: &[&str]) -> Value {
     dock(place, &[&arguments, more].concat())
 }
 
-/// Docks a pair and holds rank 1 to the answer.
+/// Docks a pair and compares rank 1 with the known pose.
 fn put_together((pair, clearance): (Pair, f64)) {
     let place = Place::of(&pair);
     let run = docked(&place, &[]);
     let run = &run["run"];
-    // The clearance is what the sampling asks for: twice the sum of eps.
+    // The clearance is what the sampling needs: twice the sum of eps.
     let epsilon = |side: &str| run["inputs"][side]["sampling"]["epsilon"].as_f64().unwrap();
     let needed = 2.0 * (epsilon("receptor") + epsilon("ligand"));
     assert!(
