@@ -246,7 +246,7 @@ fn every_way_gives_the_same_spectrum() {
 
 /// Places and frequencies of a box agree, and the sampled ones spread over it from frequency zero on.
 #[test]
-fn a_box_knows_its_frequencies() {
+fn places_and_frequencies_of_a_box_agree() {
     let frequencies = FrequencyBox::of_power(9);
     assert_eq!(frequencies.half(), [8, 8, 4]);
     let mut seen = 0;

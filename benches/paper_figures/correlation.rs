@@ -6,8 +6,8 @@
 //! with G_k = (h^3 / n^3) F_1k conj(F_2k) and h = edge / n. Modes are those of a [`ModeSet`]: all but the Nyquist
 //! planes, (n - 1)^3 of them, conjugates counted.
 //!
-//! The engine's own uniform grid scores a double skin in a box that it chooses; here the box has exactly m points, as
-//! in the paper, and every step stands by itself to be timed.
+//! The engine's own uniform grid scores a double skin in a box that it chooses. Here the box has exactly m points, as
+//! in the paper, and every step is separate so that it can be timed.
 
 use crate::spectrum::{Body, Kernel};
 use knotdock_scoring::transform::fast_size;

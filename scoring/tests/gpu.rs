@@ -118,8 +118,8 @@ fn every_radix_of_grid_lengths() {
     }
 }
 
-/// One knot has one field of one row; balls of sizes 1 to 30 have many fields that cancel, which costs single precision
-/// more digits: what it costs the CPU it may cost the card.
+/// One knot has one component of one row. Balls of sizes 1 to 30 have many components that cancel, so single precision
+/// loses more digits. The card may lose as many as the CPU.
 #[test]
 fn a_single_knot_and_balls_of_many_sizes() {
     let Some(gpu) = adapter() else { return };

@@ -4,9 +4,9 @@
     python scripts/checks/check_assemblies.py target/release/knotdock FOLDER        # the files of check_gemmi.py
     python scripts/checks/check_assemblies.py target/release/knotdock FOLDER --few  # those of the smaller packages
 
-`knotdock inspect --assembly` must build each assembly that a file describes (the first four of a file) of the same
-atoms as gemmi: names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy
-that gemmi has and knotdock lacks must lie within half an Ångström of one that it has, as those on axes of symmetry do.
+`knotdock inspect --assembly` must build the first four assemblies that a file describes of the same atoms as gemmi.
+Compared are names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy that
+gemmi has and knotdock lacks must lie within half an Ångström of one that it has, as those on axes of symmetry do.
 
 Exit code 0: nothing differs; 1: something does; 2: the check could not be made.
 """

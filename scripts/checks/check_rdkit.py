@@ -4,8 +4,8 @@
     python scripts/checks/check_rdkit.py target/release/knotdock structures/examples
 
 Needs rdkit and numpy (requirements_rdkit.txt) in the running Python. The molecules are the example pair, read by RDKit
-without sanitising, and some that RDKit builds and embeds itself (fixed seeds): a peptide of all twenty amino acids and
-small molecules, with and without their hydrogens. What is compared, with the tolerance:
+without sanitising, and some that RDKit builds and embeds itself (fixed seeds). Those are a peptide of all twenty amino
+acids and small molecules, with and without their hydrogens. What is compared, with the tolerance:
 
     atoms       names, residues, numbers and coordinates of the atoms read, exactly
     radii       ProtOr's of every amino acid atom, as FreeSASA in RDKit has them, within 0.005 Å but for the atoms of

@@ -12,9 +12,9 @@ Kinds are the atoms of each amino acid by themselves, those alike by symmetry as
 --separation places from each other in the file, in shells of 0.5 A about the table's distances, the first one down
 to 0.
 
-In each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT. n_ab counts the pairs
-found, m_ab = p_a p_b n those of a reference state in which kinds pair at random, c is a pseudocount. Both counts take
-a pair from both sides.
+In each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT. Here n_ab counts the
+pairs found, m_ab = p_a p_b n counts those of a reference state in which kinds pair at random, and c is a pseudocount.
+Both counts take a pair from both sides.
 
 p is the share of a kind, x^B y^(1 - B), with B the --burial:
 - x, the share among all atoms (mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997)

@@ -111,8 +111,8 @@ fn off_in_other_lines() {
     }
 }
 
-/// A text STL with a zero at its end, in UTF-16, without its first line, after a comment or in one line was taken for a
-/// binary one of 1,684,234,849 triangles, or had none.
+/// Text STL files of other kinds: with a zero at the end, in UTF-16, without the first line, after a comment, in one
+/// line. At first such a file was read as a binary one of 1,684,234,849 triangles, or had none.
 #[test]
 fn text_stl_of_many_kinds() {
     let stl = cube().stl_text();

@@ -16,9 +16,9 @@ use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
-/// A grid of one fold in f64.
-fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, fold: Quantity) -> Vec<f64> {
-    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, a, b, fold);
+/// The grid of one quantity in f64.
+fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, quantity: Quantity) -> Vec<f64> {
+    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, a, b, quantity);
     let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&some_rotation(), &mut work);

@@ -21,8 +21,8 @@ struct Losses {
     lost: usize,
 }
 
-/// Poses are voxels at several rotations. Exact scores are taken of the 1,500 best fast ones; the rest lie so far
-/// below that the error would have to be several times its measured size to bring one of them up (asserted).
+/// Poses are voxels at several rotations. Exact scores are taken of the 1,500 best fast ones. The others lie so far
+/// below that only an error of several times the measured size could bring one of them up (asserted).
 fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let pair = Pair::<f32>::new(a, b, engine_options(tolerance));
     let spectra = ReceptorSpectra::<f32>::new(&pair.plan, a, b, Quantity::Score);

@@ -42,7 +42,7 @@ fn two_rings_that_are_known_to_fit_are_found_first() {
     let partner = inhibitor.map_positions(|position| half.inverse().apply(position));
     both.atoms.extend(partner.atoms);
     let (axis, crossing) = (Unit::new_normalize(out), behind + 40.0 * *across);
-    let turns = [0.0, 1.0, 2.0].map(|fold| turn(&axis, fold * TAU / 3.0, crossing));
+    let turns = [0.0, 1.0, 2.0].map(|third| turn(&axis, third * TAU / 3.0, crossing));
     let ring = copies(&both, &turns);
     let mut file = fs::File::create(folder.path().join("ring.pdb")).unwrap();
     write_molecule(&mut file, Format::Pdb, &ring, &[]).unwrap();
