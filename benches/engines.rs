@@ -1,9 +1,10 @@
 //! The uniform-grid baseline against the lifted engine on the example pair: time of a rotation at equal residual error.
 //!
-//! `cargo bench --bench engines` correlates the product kernel, which alone both engines compute, whole and low-passed. Each line is one
-//! setting: the error is the root mean square over the best voxels of each rotation against the exact pair sum, relative to the best exact
-//! score of the run; the time is that of the fastest rotation, one thread, single precision. Below, for each error asked, the
-//! fastest setting of either engine that meets it. Neither engine's preparation of the receptor, once a run, counts.
+//! `cargo bench --bench engines` correlates the product kernel, which alone both engines compute, whole and
+//! low-passed. Each line is one setting. The error is the root mean square over the best voxels of each rotation
+//! against the exact pair sum, relative to the best exact score of the run. The time is that of the fastest rotation,
+//! one thread, single precision. Below, for each error requested, is the fastest setting of either engine that meets
+//! it. Neither engine's preparation of the receptor, once a run, counts.
 
 mod example;
 
@@ -154,10 +155,10 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
             Some(scorer) => scorer,
             none => none.insert(ProductScorer::new(kernel, &pair.receptor, &pair.ligand)?),
         };
-        let folded =
+        let spectra =
             ReceptorSpectra::<f32>::new(&plan, &pair.receptor, &pair.ligand, Quantity::Score);
-        for rank in 1..=folded.full_rank().min(4) {
-            let engine = CpuEngine::new(Arc::clone(&plan), &folded, &pair.ligand, rank);
+        for rank in 1..=spectra.full_rank().min(4) {
+            let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &pair.ligand, rank);
             let mut work = engine.workspace();
             let mut measured = Measured::default();
             for rotation in &pair.rotations {

@@ -1,7 +1,8 @@
-//! Time of the exact score of the example pair, alone and with its slices, beside a plain double loop over the same tables.
+//! Time of the exact score of the example pair, alone and with its slices, beside a plain double loop over the same
+//! tables.
 //!
-//! `cargo bench --bench exact` prints microseconds a pose and nanoseconds a pair within reach, medians over the best grid pose of
-//! each of some rotations.
+//! `cargo bench --bench exact` prints microseconds a pose and nanoseconds a pair within reach, medians over the best
+//! grid pose of each of some rotations.
 
 mod example;
 
@@ -31,8 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         plan.kernel().reach(),
         1e3 * prepared.elapsed().as_secs_f64()
     );
-    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
-    let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, 3);
+    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, 3);
     let mut work = engine.workspace();
     let brute = Brute::new(&plan, &receptor, &ligand);
     let mut times: [Vec<f64>; 4] = Default::default();

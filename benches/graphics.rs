@@ -1,7 +1,9 @@
-//! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run, peaks included.
+//! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run,
+//! peaks included.
 //!
-//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, prints its name, and for two ranks of the lifted axis the
-//! milliseconds of a rotation on either, their ratio, and the stages on the card, each submitted by itself.
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. For
+//! two ranks of the lifted axis it prints the milliseconds of a rotation on either device, their ratio, and the
+//! stages on the card, each submitted by itself.
 
 mod example;
 
@@ -17,7 +19,7 @@ use std::time::Instant;
 
 /// Fours of rotations.
 const TURNS: usize = 900;
-/// Peaks of a rotation, and how far apart, as in a search.
+/// Peaks of a rotation, and their least distance, as in a search.
 const PEAKS: (usize, usize) = (3, 2);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -31,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
-    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     let turns: Vec<Turn> = rotation_set(4 * TURNS)
         .into_iter()
         .step_by(4)
@@ -41,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect();
     for rank in [2, 6] {
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
         let on_card = least_seconds(2, || card.best(&turns, |_| {}).map(drop))?;
         let mut work = engine.workspace();
@@ -61,7 +63,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (4 * turns) as f64;
         let (card_ms, core_ms) = (of_rotation(on_card, TURNS), of_rotation(on_core, TURNS / 9));
         println!(
-            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
+            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; \
+             one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
             engine.rank(),
             gpu.name(),
             gpu.backend(),

@@ -1,13 +1,15 @@
-//! Time of the general transform between points and modes, three- and four-dimensional, in double precision on one thread.
+//! Time of the general transform between points and modes, three- and four-dimensional, in double precision on one
+//! thread.
 //!
-//! `cargo bench --bench nfft` prints medians over 15 runs: sorting the points, forward and adjoint execution, by the wall clock
-//! and by the thread's own CPU time, with the error against the direct sum at 200 modes.
+//! `cargo bench --bench nfft` prints medians over 15 runs of sorting the points and of forward and adjoint execution.
+//! Times are by the wall clock and the thread's own CPU time; the error is against the direct sum at 200 modes.
 //!
 //! With `--serve` it does one thing for each line on standard input and answers with one line, so that
-//! `scripts/reference/finufft_reference.py` can take turns with other programs run by run, on the same numbers:
+//! `scripts/reference/finufft_reference.py` can alternate it with other programs run by run, on the same numbers:
 //!
-//! - `plan FOLDER TOLERANCE N1 N2 N3 [N4]`: reads `points.bin` (f64, D to a point, in units of the period) and `weights.bin`
-//!   (f64, re and im) from the folder and plans; answers with grid, window width, and seconds of planning.
+//! - `plan FOLDER TOLERANCE N1 N2 N3 [N4]`: reads `points.bin` (f64, D to a point, in units of the period) and
+//!   `weights.bin` (f64, re and im) from the folder, and plans. It answers with grid, window width, and seconds of
+//!   planning.
 //! - `run`: sorts and executes forward once; answers `WALL_SORT WALL_FORWARD CPU_SORT CPU_FORWARD`, in seconds.
 //! - `write FILE`: writes the modes of the last run (f64, re and im); answers `written`.
 
@@ -74,7 +76,7 @@ fn table<const D: usize>(
         let [sort, forward] = case.run()?;
         let (result, adjoint) = timed(|| {
             case.plan
-                .adjoint(&case.located, &case.output, &mut case.work, &mut values)
+                .adjoint(&case.sorted, &case.output, &mut case.work, &mut values)
         });
         result?;
         for (times, seconds) in times.iter_mut().zip([sort, forward, adjoint]) {
@@ -84,7 +86,8 @@ fn table<const D: usize>(
     }
     let [sort, forward, adjoint] = times.map(|pair| pair.map(|seconds| 1e3 * median(seconds)));
     println!(
-        "{modes:?} modes, {count} points, {tolerance:.0e}: grid {:?}, width {}; sort {:.2} ({:.2}), forward {:.2} ({:.2}), adjoint {:.2} ({:.2}); error {:.1e}",
+        "{modes:?} modes, {count} points, {tolerance:.0e}: grid {:?}, width {}; sort {:.2} ({:.2}), \
+         forward {:.2} ({:.2}), adjoint {:.2} ({:.2}); error {:.1e}",
         case.plan.grid(),
         case.plan.width(),
         sort[0],
@@ -103,7 +106,7 @@ struct Case<const D: usize> {
     plan: Plan<f64, D>,
     points: Vec<[f64; D]>,
     weights: Vec<Complex64>,
-    located: SortedPoints<D>,
+    sorted: SortedPoints<D>,
     work: Workspace<f64, D>,
     output: Vec<Complex64>,
 }
@@ -116,14 +119,14 @@ impl<const D: usize> Case<D> {
         weights: Vec<Complex64>,
     ) -> Result<Self, Box<dyn Error>> {
         let plan = Plan::new(modes, tolerance, points.len())?;
-        let located = plan.locate(&points)?;
+        let sorted = plan.locate(&points)?;
         let work = plan.workspace();
         let output = vec![Complex64::default(); plan.mode_count()];
         Ok(Self {
             plan,
             points,
             weights,
-            located,
+            sorted,
             work,
             output,
         })
@@ -131,11 +134,11 @@ impl<const D: usize> Case<D> {
 
     /// [wall, CPU] seconds of sorting and of the forward transform.
     fn run(&mut self) -> Result<[[f64; 2]; 2], Box<dyn Error>> {
-        let (result, sort) = timed(|| self.plan.locate_into(&self.points, &mut self.located));
+        let (result, sort) = timed(|| self.plan.locate_into(&self.points, &mut self.sorted));
         result?;
         let (result, forward) = timed(|| {
             self.plan.forward(
-                &self.located,
+                &self.sorted,
                 &self.weights,
                 &mut self.work,
                 &mut self.output,

@@ -1,8 +1,8 @@
 //! Time of one rotation of the example pair beside bare Fourier transforms of the planned sizes, in the same run.
 //!
-//! `cargo bench --bench rotation` prints, as medians over rotations: each stage; the whole rotation; and the stock transforms it
-//! is held against: q forward real transforms of the fine grid and one inverse of the mode grid, unpruned, out of place, by
-//! realfft and rustfft with the `transpose` crate between axes.
+//! `cargo bench --bench rotation` prints medians over rotations: each stage, the whole rotation, and the stock
+//! transforms for comparison. Those are q forward real transforms of the fine grid and one inverse of the mode grid,
+//! unpruned and out of place. They are computed by realfft and rustfft, with the `transpose` crate between axes.
 
 mod example;
 
@@ -22,9 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [receptor, ligand] = example::knots()?;
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
-    let folded = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     for rank in [2, 3] {
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &ligand, rank);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let mut work = engine.workspace();
         let mut stages: [Vec<f64>; 6] = Default::default();
         for rotation in knotdock_scoring::so3::rotation_set(ROTATIONS) {
@@ -47,7 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             plan.modes().count
         );
         println!(
-            "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: product with inverse x and y {:.3}, \
+            "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: \
+             product with inverse x and y {:.3}, \
              inverse z {:.3}; a rotation in all {:.3}",
             1e3 * spread,
             1e3 * planes,

@@ -1,8 +1,10 @@
-//! Time of one configuration of the example pair against its number of modes: a new translation at a prepared rotation, preparing
-//! a rotation, and a new rotation with the gradient over all six degrees of freedom. One core.
+//! Time of one configuration of the example pair against its number of modes, on one core.
 //!
-//! `cargo bench --bench configuration` prints medians in microseconds, and nanoseconds a mode, which stay level where time is
-//! linear in modes. B&I (Fig. 9) report under a millisecond for fewer than 4,096 modes.
+//! Timed are a new translation at a prepared rotation, preparing a rotation, and a new rotation with the gradient
+//! over all six degrees of freedom.
+//!
+//! `cargo bench --bench configuration` prints medians in microseconds, and nanoseconds a mode, which stay level where
+//! time is linear in modes. B&I (Fig. 9) report under a millisecond for fewer than 4,096 modes.
 
 mod example;
 
@@ -21,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut options = knotdock::options::DockOptions::default().kernel.engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;
-    let folded = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);
     println!(
         "{} receptor and {} ligand knots, {} modes in all; medians",
         receptor.len(),
@@ -35,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut most = 256;
     while most <= 65_536 && most <= total(plan.modes()) {
         let selection = Selection::low_frequency(plan.modes(), most);
-        let few = TruncatedCorrelation::new(&plan, &folded, &ligand, &selection);
+        let few = TruncatedCorrelation::new(&plan, &spectra, &ligand, &selection);
         let mut work = few.workspace();
         let rotation = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
         let prepared = few.prepare(&rotation, &mut work);

@@ -1,8 +1,8 @@
-"""The docking benchmark as every script here sees it: its pairs, what counts as found, and mean log ranks.
+"""The docking benchmark as every script here uses it: its pairs, what counts as found, and mean log ranks.
 
-A benchmark folder holds `manifest.csv` (columns `id` and `split`; others are optional) and for each pair a folder of
-its id with `receptor_unbound`, `ligand_unbound` (docked) and `receptor_bound`, `ligand_bound` (the known complex),
-each `.pdb` or `.pdb.gz`.
+A benchmark folder holds `manifest.csv` (columns `id` and `split`; others are optional) and for each pair a folder
+named by its id. That has `receptor_unbound` and `ligand_unbound` (docked), and `receptor_bound` and `ligand_bound`
+(the known complex), each `.pdb` or `.pdb.gz`.
 
 Splits: `eval`, `train`, `all`, and `fit`: the pairs of `train` without a relative in `eval` (column `near_eval`).
 

@@ -36,7 +36,7 @@ impl Place {
         command
     }
 
-    /// Runs what must be refused, and returns the JSON error after checking that people are told the same.
+    /// Runs what must be refused, and returns the JSON error after checking that the message for people says the same.
     fn refused(&self, arguments: &[&str]) -> Value {
         let before = self.files();
         let output = self.command(arguments).arg("--json").output().unwrap();
@@ -54,8 +54,11 @@ impl Place {
         );
         let message = error["message"].as_str().unwrap();
         let remedy = error["remedy"].as_str().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(told.contains(message) && told.contains(remedy), "{told}");
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            reported.contains(message) && reported.contains(remedy),
+            "{reported}"
+        );
         assert_eq!(self.files(), before, "a refused run must leave nothing");
         error.clone()
     }
@@ -235,7 +238,7 @@ fn options_out_of_range() {
     place.refused(&["export", "run", "--rank", "0"]);
 }
 
-/// A table that breaks off is told by its last line.
+/// A truncated table is detected from its last line.
 #[test]
 fn a_table_of_kinds_that_is_not_whole() {
     let place = Place::new();
@@ -356,7 +359,7 @@ fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
     assert!(kept("poses.csv").contains("dockq"));
 }
 
-/// A program that asks for an object and gets none must not read that all went well; a person who closes the pipe may.
+/// A program that requests an object and gets none must get an error code; a person who closes the pipe need not.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_object_that_cannot_be_written_is_a_failure() {
@@ -372,11 +375,15 @@ fn an_object_that_cannot_be_written_is_a_failure() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("cannot write to standard output"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        reported.contains("cannot write to standard output"),
+        "{reported}"
+    );
 }
 
-/// Found by an audit: meshes were told of an option of another command, and a picture by another name was an SVG all the same.
+/// Found by an audit: the error on a mesh named an option of another command, and a picture with another extension
+/// was an SVG all the same.
 #[test]
 fn a_mesh_too_thin_for_its_grid() {
     let place = Place::new();
@@ -410,9 +417,12 @@ fn a_mesh_too_thin_for_its_grid() {
     );
     assert!(object["volume"].is_null() && object["sets"][0]["volume_missed"].is_null());
     assert_eq!(object["warnings"].as_array().unwrap().len(), 1);
-    let told = place.command(&with(&["--force"])).output().unwrap();
-    let told = String::from_utf8(told.stdout).unwrap();
-    assert!(!told.contains("NaN") && !told.contains("inf "), "{told}");
+    let reported = place.command(&with(&["--force"])).output().unwrap();
+    let reported = String::from_utf8(reported.stdout).unwrap();
+    assert!(
+        !reported.contains("NaN") && !reported.contains("inf "),
+        "{reported}"
+    );
     let error = place.refused(&["dock", "plate.obj", "plate.obj", "--sample-grid", "2^12"]);
     assert!(
         error["remedy"].as_str().unwrap().contains("--sample-grid"),
@@ -420,7 +430,8 @@ fn a_mesh_too_thin_for_its_grid() {
     );
 }
 
-/// clap suggests what is spelled alike: `--restraint-weight` for `--restraints`, `--poses` for `--cores`, nothing for `rmsd`.
+/// The crate clap suggests what is spelled alike: `--restraint-weight` for `--restraints`, `--poses` for `--cores`,
+/// nothing for `rmsd`.
 #[test]
 fn words_of_other_programs_are_answered_by_what_does_that_here() {
     for (words, expected, wrong) in [

@@ -69,7 +69,8 @@ fn each_pair_is_docked_as_by_itself() {
         ("charged_helices", second, 36, &rows[1]),
     ] {
         let alone = format!(
-            "dock in/{case}_receptor.pdb in/{case}_ligand.pdb --rotations {rotations} --poses 60 --write-top 1 --threads 1 -o {case}"
+            "dock in/{case}_receptor.pdb in/{case}_ligand.pdb --rotations {rotations} --poses 60 --write-top 1 \
+             --threads 1 -o {case}"
         );
         succeed(folder.path(), alone.split(' '));
         for file in ["poses.csv", "top/rank_0001.pdb"] {
@@ -103,10 +104,10 @@ fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
     let call = format!("batch in/pairs.csv -o out {OPTIONS}");
     let first = batch(folder.path(), &call);
     assert_eq!(first.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&first.stderr);
+    let reported = String::from_utf8_lossy(&first.stderr);
     assert!(
-        told.contains("[1/2] first failed") && told.contains("late.pdb"),
-        "{told}"
+        reported.contains("[1/2] first failed") && reported.contains("late.pdb"),
+        "{reported}"
     );
     let status = |rows: &[Row]| {
         rows.iter()
@@ -154,7 +155,7 @@ fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
     assert!(forced.status.success(), "{forced:?}");
     let replaced = fs::read(&record).unwrap();
     assert_ne!(replaced, before);
-    // What is as asked is kept, forced or not.
+    // A finished run with the requested options is kept, forced or not.
     assert!(
         batch(folder.path(), &format!("{other} --force"))
             .status
@@ -320,7 +321,7 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
         assert!(!error["remedy"].as_str().unwrap().is_empty());
         assert!(!folder.path().join("out").exists(), "{table}");
     }
-    // What is the whole batch's is told to go there.
+    // For an option of the whole batch the error says where it goes.
     write_pairs(folder.path(), &format!("receptor,ligand\n{pair}\n"));
     for word in ["--quiet", "--json"] {
         let words = format!("batch in/pairs.csv -o out --json -- --rotations 6 {word}");
@@ -359,7 +360,8 @@ fn the_example_s_table_is_docked() {
     assert!((0.0..=1.0).contains(&rows[0]["dockq"].parse::<f64>().unwrap()));
 }
 
-/// Found by an audit: what came after -- was blamed on the table's second line, and `--help` printed a comment of the source.
+/// Found by an audit: what came after -- was blamed on the table's second line, and `--help` printed a comment of the
+/// source.
 #[test]
 fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
     let folder = place();
@@ -379,15 +381,16 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
             &format!("batch in/pairs.csv -o out -- {words}"),
         );
         assert_eq!(output.status.code(), Some(2), "{words}");
-        let told = String::from_utf8(output.stderr).unwrap();
+        let reported = String::from_utf8(output.stderr).unwrap();
         assert!(
-            told.contains(expected) && !told.contains("line 2"),
-            "{told}"
+            reported.contains(expected) && !reported.contains("line 2"),
+            "{reported}"
         );
     }
 }
 
-/// Found by a user: two batches into one folder each wrote results.csv without the other's rows, and the last one stood.
+/// Found by a user: two batches into one folder each wrote results.csv without the other's rows, and the last one
+/// stood.
 #[test]
 fn two_batches_into_one_directory_lose_no_row() {
     let folder = place();

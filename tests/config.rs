@@ -54,12 +54,12 @@ fn refused(folder: &Path, arguments: &str) -> Value {
 fn a_file_stands_for_what_would_be_typed_and_what_is_typed_wins() {
     let folder = place();
     let docked = |options: &str| {
-        let told = json(
+        let reported = json(
             folder.path(),
             &format!("dock receptor.pdb ligand.pdb {options} --json"),
         );
-        let poses = fs::read(told["poses"].as_str().unwrap()).unwrap();
-        (poses, told["run"]["options"].clone())
+        let poses = fs::read(reported["poses"].as_str().unwrap()).unwrap();
+        (poses, reported["run"]["options"].clone())
     };
     let at = |name: &str| folder.path().join(name).display().to_string();
     let typed = docked(&format!(
@@ -116,7 +116,7 @@ fn other_commands_take_their_part_of_a_file() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_is_told_with_its_line() {
+fn what_is_wrong_with_a_file_is_reported_with_its_line() {
     let folder = place();
     for (text, line, part) in [
         ("[search]\nrotations = 0\n", 2, "between 1 and"),
@@ -160,11 +160,11 @@ fn rings_and_angles_in_a_file() {
         fs::write(folder.path().join("ring.toml"), text).unwrap();
     };
     write("rotations = 12\n");
-    let told = json(
+    let reported = json(
         folder.path(),
         "dock receptor.pdb --config ring.toml -o ring --json",
     );
-    assert_eq!(told["run"]["options"]["search"]["rotations"], 12);
+    assert_eq!(reported["run"]["options"]["search"]["rotations"], 12);
     refused(
         folder.path(),
         "dock receptor.pdb ligand.pdb --config ring.toml",

@@ -31,8 +31,8 @@ fn a_near_native_pose_is_among_the_first_three() {
         .arg("--json")
         .output()
         .unwrap();
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let best = told["best"].as_array().unwrap();
+    let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let best = reported["best"].as_array().unwrap();
     assert_eq!(best.len(), 10);
     assert!(
         best.iter()

@@ -1,4 +1,5 @@
-//! `--engine gpu` as its users see it: the rows of the CPU's engine, the same bytes each time, and clear words where it cannot be had.
+//! `--engine gpu` as its users see it: the rows of the CPU's engine, the same bytes each time, and clear words where
+//! it cannot be had.
 
 #[path = "../scoring/tests/scene/adapter.rs"]
 mod adapter;
@@ -26,8 +27,9 @@ fn record(run: &Path) -> Value {
     serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap()
 }
 
-/// Runs with both engines and holds the rows of one to those of the other: every row of either among the other's but for a few at the end, where a
-/// rounding error decides what is kept. Rows that both have were scored by the same exact sum; the grid's scores differ by single precision alone.
+/// Runs with both engines and compares their rows. Every row of either is among the other's but for a few at the end,
+/// where a rounding error decides what is kept. Rows that both have were scored by the same exact sum; the grid's
+/// scores differ by single precision alone.
 fn hold_to_cpu(folder: &Path, arguments: &str) {
     run(
         folder,

@@ -1,4 +1,4 @@
-//! The JSON object of each command, and who hears what on which stream.
+//! The JSON object of each command, and what goes to which stream.
 
 mod molecules;
 mod program;
@@ -40,7 +40,7 @@ fn keys(object: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn dock_tells_where_the_run_is_and_what_is_best() {
+fn dock_says_where_the_run_is_and_what_is_best() {
     let folder = place();
     let output = run(
         folder.path(),
@@ -115,12 +115,12 @@ fn evaluate_gives_every_pose_and_the_match() {
         "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n2,1,0,0,0,0,0,50\n",
     )
     .unwrap();
-    let told = object(&run(
+    let reported = object(&run(
         folder.path(),
         "evaluate truth.csv --receptor receptor.pdb --ligand ligand.pdb --native native.pdb --json",
     ));
-    assert_eq!(keys(&told), ["match", "poses"]);
-    let poses = told["poses"].as_array().unwrap();
+    assert_eq!(keys(&reported), ["match", "poses"]);
+    let poses = reported["poses"].as_array().unwrap();
     assert_eq!(
         keys(&poses[0]),
         [
@@ -171,9 +171,9 @@ fn complex_lists_files_by_rank() {
         folder.path(),
         "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
     );
-    let told = object(&run(folder.path(), "export run --rank 3,1 --json"));
-    assert_eq!(keys(&told), ["chains", "files"]);
-    let files = told["files"].as_array().unwrap();
+    let reported = object(&run(folder.path(), "export run --rank 3,1 --json"));
+    assert_eq!(keys(&reported), ["chains", "files"]);
+    let files = reported["files"].as_array().unwrap();
     assert_eq!(
         files
             .iter()
@@ -207,20 +207,20 @@ fn a_reader_that_goes_away_does_not_stop_the_run() {
         .spawn()
         .unwrap();
     drop(child.stdout.take());
-    let mut told = String::new();
+    let mut reported = String::new();
     child
         .stderr
         .take()
         .unwrap()
-        .read_to_string(&mut told)
+        .read_to_string(&mut reported)
         .unwrap();
     assert!(child.wait().unwrap().success());
-    assert!(!told.contains("panic"), "{told}");
+    assert!(!reported.contains("panic"), "{reported}");
     assert!(folder.path().join("run/run.json").is_file());
 }
 
 #[test]
-fn inspect_tells_what_was_read_and_assumed() {
+fn inspect_says_what_was_read_and_assumed() {
     let folder = place();
     let output = run(folder.path(), "inspect receptor.pdb:A --json");
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -264,11 +264,11 @@ fn inspect_lists_every_atom_with_what_became_of_it() {
     for (option, kept, radius, dropped) in
         [("", 60, "", "water"), ("--waters keep", 61, "1.46", "")]
     {
-        let told = object(&run(
+        let reported = object(&run(
             folder.path(),
             &format!("inspect wet.pdb --atoms atoms.csv --force --json {option}"),
         ));
-        assert_eq!(told["input"]["atoms"], kept);
+        assert_eq!(reported["input"]["atoms"], kept);
         let table = fs::read_to_string(folder.path().join("atoms.csv")).unwrap();
         assert_eq!(table.lines().count(), 62);
         assert!(
@@ -284,7 +284,7 @@ fn inspect_lists_every_atom_with_what_became_of_it() {
     }
 }
 
-/// A run reads as it was told, records it, and --rerun, complex and evaluate read alike.
+/// A run follows its reading options and records them; --rerun, complex and evaluate read alike.
 #[test]
 fn reading_options_are_recorded_and_followed() {
     let folder = place();
@@ -298,7 +298,8 @@ fn reading_options_are_recorded_and_followed() {
     fs::write(folder.path().join("models.pdb"), models).unwrap();
     run(
         folder.path(),
-        "dock receptor.pdb models.pdb --model 2 --waters keep --altloc A --rotations 20 --write-top 1 --native native.pdb -o run --quiet",
+        "dock receptor.pdb models.pdb --model 2 --waters keep --altloc A --rotations 20 --write-top 1 \
+         --native native.pdb -o run --quiet",
     );
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.path().join(name).join("run.json")).unwrap())
@@ -329,13 +330,13 @@ fn reading_options_are_recorded_and_followed() {
 }
 
 #[test]
-fn score_tells_the_geometry_of_the_pose() {
+fn score_reports_the_geometry_of_the_pose() {
     let folder = place();
-    let told = object(&run(
+    let reported = object(&run(
         folder.path(),
         "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --json",
     ));
-    let geometry = |name: &str| told["geometry"][name].as_f64().unwrap();
+    let geometry = |name: &str| reported["geometry"][name].as_f64().unwrap();
     let sides = geometry("buried_area_receptor") + geometry("buried_area_ligand");
     assert!((geometry("buried_area") - sides).abs() < 1e-9 && sides > 200.0);
     assert!(geometry("volume_shared") < 0.2 * geometry("volume_ligand"));

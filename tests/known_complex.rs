@@ -1,4 +1,5 @@
-//! `knotdock evaluate` with known complexes as people have them: several copies, one chain name, two models, two data blocks.
+//! `knotdock evaluate` with known complexes as people have them: several copies, one chain name, two models, two data
+//! blocks.
 
 mod program;
 
@@ -119,8 +120,8 @@ fn the_copy_that_is_taken_is_named() {
     assert!(text.contains("left aside of the native: B"), "{text}");
 }
 
-/// Found with both partners under one name: here with a gap of 72 between their numbers, which might be a missing domain but
-/// for the TER record.
+/// Found with both partners under one name: here with a gap of 72 between their numbers, which might be a missing
+/// domain but for the TER record.
 #[test]
 fn a_ter_record_ends_a_chain() {
     let folder = place();
@@ -140,8 +141,8 @@ fn a_ter_record_ends_a_chain() {
     );
 }
 
-/// Found with assemblies of the archive, whose copies are models, and with files of PyMOL, whose objects are data blocks:
-/// the error said that the ligand's sequence was not there, and not that half of the file was not read.
+/// Found with assemblies of the archive, whose copies are models, and with files of PyMOL, whose objects are data
+/// blocks. The error said that the ligand's sequence was not there, and not that half of the file was not read.
 #[test]
 fn errors_name_what_was_not_read() {
     let folder = place();
@@ -156,7 +157,8 @@ fn errors_name_what_was_not_read() {
     );
 
     let table = |records: &str| -> String {
-        let items = "group_PDB id label_atom_id label_comp_id label_asym_id label_seq_id Cartn_x Cartn_y Cartn_z type_symbol";
+        let items = "group_PDB id label_atom_id label_comp_id label_asym_id label_seq_id Cartn_x Cartn_y Cartn_z \
+            type_symbol";
         let head: String = items
             .split(' ')
             .map(|item| format!("_atom_site.{item}\n"))
@@ -191,8 +193,8 @@ fn errors_name_what_was_not_read() {
     );
 }
 
-/// Whichever file is called the receptor: CAPRI's ligand is the smaller partner. Found with a nanobody as the receptor: the
-/// same complex was acceptable one way and incorrect the other.
+/// Whichever file is called the receptor: CAPRI's ligand is the smaller partner. Found with a nanobody as the
+/// receptor: the same complex was acceptable one way and incorrect the other.
 #[test]
 fn figures_are_the_same_with_the_partners_exchanged() {
     let folder = place();

@@ -1,5 +1,5 @@
-//! What `cargo bench --bench paper_figures` times is the same thing by every way: whole and truncated correlations, one configuration, and
-//! a body's spectrum from a grid and from its balls. Nothing is timed here.
+//! What `cargo bench --bench paper_figures` times is the same thing by every way: whole and truncated correlations,
+//! one configuration, and a body's spectrum from a grid and from its balls. Nothing is timed here.
 
 #[path = "../benches/paper_figures/correlation.rs"]
 #[allow(dead_code)] // The figures use more of it.
@@ -90,8 +90,8 @@ fn rms(errors: impl ExactSizeIterator<Item = f64>) -> f64 {
     (errors.map(|error| error * error).sum::<f64>() / count).sqrt()
 }
 
-/// All modes give the whole correlation; fewer, by falling magnitude, an error that is Parseval's, falls with every mode, and is no larger
-/// than that of as many modes of lowest frequency.
+/// All modes give the whole correlation; fewer, by falling magnitude, an error that is Parseval's, falls with every
+/// mode, and is no larger than that of as many modes of lowest frequency.
 #[test]
 fn the_residual_falls_to_rounding() {
     let whole = correlated(16);
@@ -144,7 +144,8 @@ fn the_transforms_give_the_sum_over_the_grid() {
     }
 }
 
-/// One configuration from some modes, and the small grid's values of the same modes, are the whole grid's truncated function: at voxels of either.
+/// One configuration from some modes, and the small grid's values of the same modes, are the whole grid's truncated
+/// function: at voxels of either.
 #[test]
 fn a_configuration_reads_the_truncated_function() {
     let whole = correlated(16);
@@ -179,7 +180,8 @@ fn a_configuration_reads_the_truncated_function() {
     }
 }
 
-/// Direct and fast sums through either expansion are the body's transform to the tolerance; a fine grid's is to its aliases.
+/// Direct and fast sums through either expansion are the body's transform to the tolerance; a fine grid's is to its
+/// aliases.
 #[test]
 fn every_way_gives_the_same_spectrum() {
     let body = body(40, 0.0);
@@ -244,7 +246,7 @@ fn every_way_gives_the_same_spectrum() {
 
 /// Places and frequencies of a box agree, and the sampled ones spread over it from frequency zero on.
 #[test]
-fn a_box_knows_its_frequencies() {
+fn places_and_frequencies_of_a_box_agree() {
     let frequencies = FrequencyBox::of_power(9);
     assert_eq!(frequencies.half(), [8, 8, 4]);
     let mut seen = 0;

@@ -1,4 +1,5 @@
-//! What is read of predicted models and of biological assemblies, through every command: it is told of, recorded and followed.
+//! Reading of predicted models and of biological assemblies, through every command: it is reported, recorded and
+//! followed.
 
 mod molecules;
 mod program;
@@ -43,7 +44,8 @@ fn json(folder: &Path, arguments: &str) -> Value {
 fn residues_left_out_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
-    let run = "dock receptor.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb model.pdb --min-plddt 50 --rotations 20 --write-top 1 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
@@ -75,7 +77,8 @@ fn residues_left_out_are_recorded_and_followed() {
     assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
     let matched = json(folder, "evaluate run --native native.pdb --json");
     assert_eq!(matched["match"], first["match"]);
-    let named = "evaluate run/poses.csv --receptor receptor.pdb --ligand model.pdb --min-plddt 50 --native native.pdb --json";
+    let named = "evaluate run/poses.csv --receptor receptor.pdb --ligand model.pdb --min-plddt 50 \
+        --native native.pdb --json";
     assert_eq!(json(folder, named), matched);
 }
 
@@ -83,10 +86,10 @@ fn residues_left_out_are_recorded_and_followed() {
 fn inspect_says_how_sure_the_model_is() {
     let folder = place();
     let folder = folder.path();
-    let told = json(folder, "inspect model.pdb --json");
-    assert_eq!(told["input"]["atoms"], 60);
-    assert_eq!(told["input"]["report"]["confidence"]["below_50"], 2);
-    let warnings = told["input"]["report"]["warnings"].to_string();
+    let reported = json(folder, "inspect model.pdb --json");
+    assert_eq!(reported["input"]["atoms"], 60);
+    assert_eq!(reported["input"]["report"]["confidence"]["below_50"], 2);
+    let warnings = reported["input"]["report"]["warnings"].to_string();
     assert!(warnings.contains("--min-plddt 50"), "{warnings}");
     succeed(
         folder,
@@ -117,9 +120,9 @@ fn an_assembly_is_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
     fs::write(folder.join("half.pdb"), half_of_a_dimer()).unwrap();
-    let told = json(folder, "inspect half.pdb --json");
+    let reported = json(folder, "inspect half.pdb --json");
     assert!(
-        told["input"]["report"]["warnings"]
+        reported["input"]["report"]["warnings"]
             .to_string()
             .contains("--assembly 1")
     );
@@ -133,7 +136,7 @@ fn an_assembly_is_recorded_and_followed() {
         first["inputs"]["ligand"]["report"]["assembly"],
         serde_json::json!({"id": "1", "chains": 2, "chains_in_file": 1, "on_axes": 0})
     );
-    // The receptor's file says nothing of assemblies, and is read as it stands.
+    // The receptor's file describes no assembly, and is read as it is.
     assert_eq!(
         first["inputs"]["receptor"]["report"]["assembly"],
         Value::Null
@@ -206,8 +209,8 @@ fn an_assembly_is_written_and_read_again() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{options}");
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(told.contains(says), "{options}: {told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(reported.contains(says), "{options}: {reported}");
     }
     assert!(!folder.join("all.cif").exists());
 }
@@ -226,23 +229,25 @@ fn two_models() -> String {
     )
 }
 
-/// Found by a user: of an assembly in models half was docked. All models are read where they are asked for, by every command.
+/// Found by a user: only half of an assembly in models was docked. Every command reads all models where they are
+/// requested.
 #[test]
 fn all_models_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
     fs::write(folder.join("dimer.pdb1"), two_models()).unwrap();
-    let told = json(folder, "inspect dimer.pdb1 --json");
-    assert_eq!(told["input"]["atoms"], 60);
-    let warnings = told["input"]["report"]["warnings"].to_string();
+    let reported = json(folder, "inspect dimer.pdb1 --json");
+    assert_eq!(reported["input"]["atoms"], 60);
+    let warnings = reported["input"]["report"]["warnings"].to_string();
     assert!(warnings.contains("--model all"), "{warnings}");
-    let told = json(
+    let reported = json(
         folder,
         "inspect dimer.pdb1:A-2 --model all --atoms atoms.csv --json",
     );
-    assert_eq!(told["input"]["atoms"], 60);
+    assert_eq!(reported["input"]["atoms"], 60);
 
-    let run = "dock receptor.pdb dimer.pdb1 --model all --rotations 20 --write-top 1 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb dimer.pdb1 --model all --rotations 20 --write-top 1 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let recorded = |name: &str| -> Value {
         serde_json::from_slice(&fs::read(folder.join(name).join("run.json")).unwrap()).unwrap()
@@ -290,12 +295,13 @@ fn all_models_are_recorded_and_followed() {
     );
 }
 
-/// The user's word on pLDDT is taken where no file is known as a prediction, and a measured partner is left alone where one is.
+/// The option that B values are pLDDT is followed where no file is detected as a prediction. Where one is, a measured
+/// partner is left unchanged.
 #[test]
-fn the_users_word_on_plddt_is_taken_and_followed() {
+fn b_values_that_the_user_calls_plddt_are_read_as_such() {
     let folder = place();
     let folder = folder.path();
-    // pLDDT 22, 27 ... 77: a mean of 49.5, by which nothing tells.
+    // pLDDT 22, 27 ... 77: a mean of 49.5, from which nothing can be detected.
     let low = predicted().lines().fold(String::new(), |text, line| {
         let line = match line
             .get(60..66)
@@ -307,16 +313,17 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
         text + &line + "\n"
     });
     fs::write(folder.join("low.pdb"), &low).unwrap();
-    let told = json(folder, "inspect low.pdb --min-plddt 50 --json");
-    assert_eq!(told["input"]["report"]["confidence"]["source"], "user");
-    assert_eq!(told["input"]["atoms"], 30);
-    let warnings = told["input"]["report"]["warnings"].to_string();
+    let reported = json(folder, "inspect low.pdb --min-plddt 50 --json");
+    assert_eq!(reported["input"]["report"]["confidence"]["source"], "user");
+    assert_eq!(reported["input"]["atoms"], 30);
+    let warnings = reported["input"]["report"]["warnings"].to_string();
     assert!(
         warnings.contains("because --min-plddt is given"),
         "{warnings}"
     );
 
-    let run = "dock receptor.pdb low.pdb --min-plddt 50 --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
+    let run = "dock receptor.pdb low.pdb --min-plddt 50 --rotations 20 --write-top 0 --native native.pdb -o run \
+        --quiet";
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
@@ -344,7 +351,8 @@ fn the_users_word_on_plddt_is_taken_and_followed() {
 fn picked_residues_are_recorded_and_followed() {
     let folder = place();
     let folder = folder.path();
-    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --active-ligand A:2,3,4-6 --rotations 20 --write-top 1 -o run --quiet";
+    let run = "dock receptor.pdb:A:3-12,B ligand.pdb:A:2-6,8 --active-ligand A:2,3,4-6 --rotations 20 \
+        --write-top 1 -o run --quiet";
     succeed(folder, run.split_whitespace());
     let text = fs::read(folder.join("run/run.json")).unwrap();
     let first: Value = serde_json::from_slice(&text).unwrap();
@@ -378,7 +386,7 @@ fn picked_residues_are_recorded_and_followed() {
     assert!(said.contains("write A:5"), "{said}");
 }
 
-/// Options that would do nothing are no answer to who asked for them.
+/// Options that would do nothing are refused, and not ignored.
 #[test]
 fn what_would_do_nothing_is_refused() {
     let folder = place();
@@ -411,12 +419,17 @@ fn what_would_do_nothing_is_refused() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{command}");
-        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let message = told["error"]["message"].as_str().unwrap();
+        let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let message = reported["error"]["message"].as_str().unwrap();
         assert!(message.contains(says), "{message}");
-        assert!(told["error"]["remedy"].as_str().unwrap().contains(remedy));
+        assert!(
+            reported["error"]["remedy"]
+                .as_str()
+                .unwrap()
+                .contains(remedy)
+        );
     }
-    // What a run read is read again as it was, whatever is asked of it now.
+    // The files of a run are read again as the run read them, whatever the options say now.
     let run = "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
     succeed(folder.path(), run.split_whitespace());
     for (options, says) in [
@@ -430,8 +443,8 @@ fn what_would_do_nothing_is_refused() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{options}");
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(told.contains(says), "{options}: {told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(reported.contains(says), "{options}: {reported}");
     }
     succeed(
         folder.path(),
@@ -454,9 +467,9 @@ fn the_known_complex_may_come_from_a_pipe() {
         .write_stdin(fs::read(folder.join("native.pdb")).unwrap())
         .output()
         .unwrap();
-    let told: Value = serde_json::from_slice(&piped.stdout).unwrap();
+    let reported: Value = serde_json::from_slice(&piped.stdout).unwrap();
     assert_eq!(
-        told,
+        reported,
         json(folder, "evaluate run --native native.pdb --json")
     );
 }
@@ -476,12 +489,15 @@ fn a_report_that_cannot_be_written_is_a_failure() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(1));
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(told.contains("cannot write to standard output"), "{told}");
+        let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            reported.contains("cannot write to standard output"),
+            "{reported}"
+        );
     }
 }
 
-/// A pipe can be read but once: what is recorded, listed and measured is of one reading.
+/// A pipe can be read but once: the record, the table of atoms and the measures come from one reading.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pipe_is_recorded_as_what_came_through_it() {

@@ -1,4 +1,5 @@
-//! Residues that are left out by their name, ligands that are warned of, and chains that are docked against themselves: through every command.
+//! Residues that are left out by their name, ligands that are warned of, and chains that are docked against
+//! themselves: through every command.
 
 mod molecules;
 mod program;
@@ -150,15 +151,15 @@ fn names_that_no_residue_has_are_refused() {
 fn a_kept_ligand_is_warned_of() {
     let folder = place();
     let output = succeed(folder.path(), ["inspect", "inhibited.pdb"]);
-    let told = String::from_utf8(output.stdout).unwrap();
-    let warnings: Vec<&str> = told
+    let reported = String::from_utf8(output.stdout).unwrap();
+    let warnings: Vec<&str> = reported
         .lines()
         .filter(|line| line.contains("XK2 (6"))
         .collect();
-    assert_eq!(warnings.len(), 1, "{told}");
+    assert_eq!(warnings.len(), 1, "{reported}");
     assert!(
         warnings[0].contains("--hetatm drop or --drop-residue XK2"),
-        "{told}"
+        "{reported}"
     );
 }
 
@@ -177,11 +178,14 @@ fn a_chain_that_the_other_file_holds_is_warned_of() {
         ("receptor", "complex.pdb complex.pdb:C", "complex.pdb:A,B"),
         ("ligand", "enzyme.pdb complex.pdb", "complex.pdb:C"),
     ] {
-        let told = warnings(side, arguments).to_string();
-        assert!(told.contains("already") && told.contains(remedy), "{told}");
+        let reported = warnings(side, arguments).to_string();
+        assert!(
+            reported.contains("already") && reported.contains(remedy),
+            "{reported}"
+        );
     }
     for arguments in ["complex.pdb:A,B complex.pdb:C", "complex.pdb complex.pdb"] {
-        let told = warnings("receptor", arguments).to_string();
-        assert!(!told.contains("already"), "{told}");
+        let reported = warnings("receptor", arguments).to_string();
+        assert!(!reported.contains("already"), "{reported}");
     }
 }

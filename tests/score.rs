@@ -20,9 +20,9 @@ fn score(receptor: &Path, ligand: &Path, arguments: &[&str]) -> Value {
         .arg("--json")
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    assert!(!told.contains("warning"), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{reported}");
+    assert!(!reported.contains("warning"), "{reported}");
     let text = std::str::from_utf8(&output.stdout).unwrap();
     assert_eq!(text.lines().count(), 1);
     serde_json::from_str(text).unwrap()
@@ -32,11 +32,11 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// What every answer must satisfy; returns the rows.
-fn check(told: &Value) -> Vec<Value> {
-    let (exact, scale) = (number(&told["exact"]), number(&told["scale"]));
+/// Checks what every object of the command must satisfy; returns the rows.
+fn check(reported: &Value) -> Vec<Value> {
+    let (exact, scale) = (number(&reported["exact"]), number(&reported["scale"]));
     assert!(scale > 0.0);
-    let rows = told["rows"].as_array().unwrap().clone();
+    let rows = reported["rows"].as_array().unwrap().clone();
     let full = rows.last().unwrap();
     assert!(
         number(&full["error"]) < 1e-3 * exact.abs().max(scale),
@@ -58,7 +58,7 @@ fn check(told: &Value) -> Vec<Value> {
         }
     }
     // The sensitivity to the offset, by the lifted axis and by differences of the exact sum.
-    let sensitivity = &told["offset_sensitivity"];
+    let sensitivity = &reported["offset_sensitivity"];
     let size = |value: &Value| number(value).abs();
     let slices = sensitivity["exact_slices"].as_array().unwrap();
     let weights = [100.0, 20.0, 1.0];
@@ -74,9 +74,9 @@ fn check(told: &Value) -> Vec<Value> {
     assert!(off.abs() <= 2e-3 * largest, "{sensitivity}");
     for part in ["force", "torque"] {
         for axis in 0..3 {
-            let a = number(&told["gradient"][part][axis]);
-            let b = number(&told["gradient_modes"][part][axis]);
-            assert!((a - b).abs() <= 0.05 * scale, "{part}: {told}");
+            let a = number(&reported["gradient"][part][axis]);
+            let b = number(&reported["gradient_modes"][part][axis]);
+            assert!((a - b).abs() <= 0.05 * scale, "{part}: {reported}");
         }
     }
     rows
@@ -86,12 +86,12 @@ fn check(told: &Value) -> Vec<Value> {
 fn the_example_pair_reaches_its_exact_score() {
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     // The unbound partners come superposed on the complex: near the native pose.
-    let told = score(
+    let reported = score(
         &receptor,
         &ligand,
         &["--pose", "1,0,0,0,0,0,0", "--modes", "1000"],
     );
-    let rows = check(&told);
+    let rows = check(&reported);
     assert!(rows.iter().any(|row| row["modes"] == 1000));
     // By magnitude fewer modes do the same: at every count the bound is no worse.
     let other = score(
@@ -106,7 +106,7 @@ fn the_example_pair_reaches_its_exact_score() {
             "magnitude",
         ],
     );
-    assert_eq!(told["exact"], other["exact"]);
+    assert_eq!(reported["exact"], other["exact"]);
     for (low, by_magnitude) in rows.iter().zip(&check(&other)) {
         assert!(number(&by_magnitude["bound"]) <= 1.01 * number(&low["bound"]));
     }
@@ -145,14 +145,14 @@ fn poses_that_are_none_are_refused() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{pose}");
-        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(
-            told["error"]["message"]
+            reported["error"]["message"]
                 .as_str()
                 .unwrap()
                 .contains("--pose")
         );
-        assert!(told["error"]["remedy"].is_string());
+        assert!(reported["error"]["remedy"].is_string());
     }
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder.path())

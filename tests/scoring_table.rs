@@ -1,13 +1,14 @@
 //! Scores, terms, slices and ranks of the example and of six small cases against committed tables.
 //!
-//! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose among its case's;
-//! `search.csv` the first poses of a small search. These are regression tables, our own output of the day they were blessed; what
-//! can be known otherwise is tested as such below: closed forms, signs, sums.
-//! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every pose in Python.
+//! `poses.csv` says which poses of which case are scored; `scores.csv` what came of it, with the rank of each pose
+//! among its case's; `search.csv` the first poses of a small search. These are regression tables, our own output of
+//! the day they were blessed; what can be known otherwise is tested as such below: closed forms, signs, sums.
+//! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every
+//! pose in Python.
 //!
-//! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`.
-//! After a change that is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why.
-//! The cases are made by `scripts/reference/scoring_cases.py`.
+//! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`. After a change that
+//! is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why. The cases
+//! are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -22,8 +23,8 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues, Workspace};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
-/// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other processors round
-/// otherwise.
+/// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other
+/// processors round otherwise.
 const TOLERANCE: f64 = 1e-6;
 /// The same for what the fast path computed in f32.
 const FAST_TOLERANCE: f64 = 1e-4;
@@ -220,7 +221,8 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
     }
     assert!(
         lines.is_empty(),
-        "{} moves in tests/scoring_table/{name}, the first of them:\n{}\nIf they are meant: KNOTDOCK_BLESS=1 cargo test --test scoring_table",
+        "{} moves in tests/scoring_table/{name}, the first of them:\n{}\n\
+         If they are meant: KNOTDOCK_BLESS=1 cargo test --test scoring_table",
         lines.len(),
         lines
             .iter()
@@ -305,8 +307,10 @@ fn first_poses_of_small_searches() {
     check("search.csv", &columns, &found, &tolerance);
 }
 
-/// Not from a table: one atom against one is -lambda^2 psi(d/s) + 2 lambda psi(d/(s+r0)) - psi(d/(s+2 r0)), with s the sum of the
-/// radii and psi_a(x) = exp(1 / (1 - x^-a)) (Behandish and Ilieş 2016, eqs. 10 and 44, with the sign that their text needs).
+/// Not from a table: one atom against one scores -lambda^2 psi(d/s) + 2 lambda psi(d/(s+r0)) - psi(d/(s+2 r0)).
+///
+/// Here s is the sum of the radii, and psi_a(x) = exp(1 / (1 - x^-a)) (Behandish and Ilieş 2016, eqs. 10 and 44, with
+/// the sign that their text needs).
 #[test]
 fn two_atoms_score_the_closed_form() {
     let options = DockOptions::default();
@@ -340,8 +344,12 @@ fn two_atoms_score_the_closed_form() {
     assert!(positive > 0, "no pose of the case touches");
 }
 
-/// Not from a table: terms add up to the score, weighted slices to shape; a pose out of reach scores nothing at all; unlike charges
-/// attract; and what is blocked only costs, other terms left as they are.
+/// Identities, not from a table:
+///
+/// - Terms add up to the score, weighted slices to shape.
+/// - A pose out of reach scores nothing at all.
+/// - Unlike charges score better.
+/// - Blocked residues only lower the score, and leave other terms as they are.
 #[test]
 fn what_every_row_must_satisfy() {
     let weights = DockOptions::default()
@@ -396,9 +404,9 @@ fn what_every_row_must_satisfy() {
     }
 }
 
-/// The comparison itself must hear a move of a hundred-thousandth, a lost row, and a rank that changes.
+/// The comparison itself must detect a change of a hundred-thousandth, a lost row, and a rank that changes.
 #[test]
-fn moves_are_heard() {
+fn changes_are_detected() {
     let columns = ["case", "pose", "rank", "score"];
     let table = |rank: f64, score: f64| -> Table {
         let other = vec![Some(2.0), Some(-50.0)];

@@ -116,8 +116,8 @@ fn check(folder: &Path, object: &Value) {
     assert!(!directory.join(".partial").exists());
 }
 
-/// Two helices: every parameter of molecules is moved, a finer tolerance has a smaller error and is nearer to the reference score, and the known
-/// complex is ranked.
+/// Two helices: every parameter of molecules is moved, a finer tolerance has a smaller error and is nearer to the
+/// reference score, and the known complex is ranked.
 #[test]
 fn molecules() {
     let folder = tempfile::tempdir().unwrap();
@@ -173,10 +173,10 @@ fn molecules() {
         );
     }
     // Another resolution is another score, another tolerance all but the same.
-    let apart = settings
+    let other_resolutions = settings
         .iter()
         .filter(|setting| setting["parameter"] == "resolution");
-    for setting in apart {
+    for setting in other_resolutions {
         assert!(setting["definition_rms"].as_f64().unwrap() > of("default", "definition_rms"));
     }
     assert!(of("default", "definition_correlation") > 0.98);
@@ -206,7 +206,8 @@ fn molecules() {
     );
 }
 
-/// Two halves of a block: the sampler's grid is a parameter, and a grid that cannot sample the parts is left out with the reason.
+/// Two halves of a block: the sampler's grid is a parameter, and a grid that cannot sample the parts is left out with
+/// the reason.
 #[test]
 fn meshes() {
     let folder = tempfile::tempdir().unwrap();
@@ -296,7 +297,8 @@ fn dock(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--rerun` repeats it without a cost model.
+/// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--rerun` repeats
+/// it without a cost model.
 #[test]
 fn a_docking_within_an_accuracy_and_a_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -345,7 +347,7 @@ fn a_docking_within_an_accuracy_and_a_time() {
     assert!(again.status.success());
     let table = |run: &str| fs::read(folder.path().join(run).join("poses.csv")).unwrap();
     assert_eq!(table("one"), table("two"));
-    // A file that is no cost model is told of, and the built-in one serves.
+    // A file that is no cost model gives a warning, and the built-in one serves.
     let warned = dock(
         folder.path(),
         &[
@@ -378,8 +380,9 @@ fn a_docking_within_an_accuracy_and_a_time() {
     }
 }
 
-/// A budget is a deadline: where the machine is slower than the cost model has it, the search stops, and what it searched is
-/// recorded, so that the run repeats to the byte. It once went on to its last rotation, at four times the time allowed.
+/// A budget is a deadline: where the machine is slower than the cost model has it, the search stops, and what it
+/// searched is recorded, so that the run repeats to the byte. It once went on to its last rotation, at four times the
+/// time allowed.
 #[test]
 fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();

@@ -4,11 +4,12 @@
 //!
 //! docks the example pair, and then any pairs of structure files that are named.
 //!
-//! Printed are, for each rung of the ladder of accuracies and for three numbers of rotations, the seconds on the clock that both models
-//! expect and those that the search took, and the error expected and made. Each docking is done three times, or until they have taken a
-//! minute. `pace` is the time of a fixed piece of work just before and after a docking, over that beside the calibration: what the fitted model
-//! expects is of a machine at its pace then, so `share` sets the time taken, at that pace, against it. Told are the median share of the
-//! dockings and the time and pace of the one that had it.
+//! A line of the table is a rung of the ladder of accuracies at one of three numbers of rotations. It has the seconds
+//! on the clock that both models expect, those that the search took, and the error expected and made. Each docking is
+//! done three times, or until they have taken a minute. `pace` is the time of a fixed piece of work just before and
+//! after a docking, divided by its time beside the calibration. The fitted model expects a machine at its pace during
+//! the calibration. So `share` compares the time taken, converted to that pace, with the expected time. Printed are
+//! the median share of the dockings, and the time and pace of the docking that had it.
 
 mod pace;
 
@@ -24,7 +25,7 @@ use knotdock::tradeoff::cost_model::{CostModel, LADDER, Workload};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 use pace::Pace;
 
-/// Dockings of a setting, and seconds after which no further one is begun.
+/// Dockings of a setting, and seconds after which no further one starts.
 const MAX_DOCKINGS: usize = 3;
 const ENOUGH_SECONDS: f64 = 60.0;
 

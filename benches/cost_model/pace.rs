@@ -1,7 +1,8 @@
 //! How fast the machine is at a moment: a fixed piece of work, timed.
 //!
-//! Virtual machines share cores and caches with others, and clocks rise and fall: the same docking may take half as long again a minute
-//! later. A cost model cannot know that; a time is told beside that of the same work just before and after.
+//! Virtual machines share cores and caches with others, and clocks rise and fall: the same docking may take half as
+//! long again a minute later. A cost model cannot know that, so a time is printed with that of the same work just
+//! before and after.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,7 +10,8 @@ use std::time::Instant;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
-/// Edge of the cube whose lines are transformed, 2 MiB a thread, and how often: a fifth of a second, longer than a moment that is by chance fast or slow.
+/// Edge of the cube whose lines are transformed, 2 MiB a thread, and how often: a fifth of a second, longer than a
+/// moment that is by chance fast or slow.
 const EDGE: usize = 64;
 const TIMES: usize = 500;
 

@@ -1,11 +1,13 @@
-//! The gap function on a uniform grid: rasterise, transform, multiply, transform back; whole, or from some of its modes.
+//! The gap function on a uniform grid: rasterise, transform, multiply, transform back; whole, or from some of its
+//! modes.
 //!
-//! g(t) = integral of f_1(x) f_2(x - t) dx over the periodic cube, by sums over its n^3 grid points: with F_1 and F_2 the transforms
-//! of the sampled functions, g(t) = sum_k G_k exp(2 pi i k.t / edge), G_k = (h^3 / n^3) F_1k conj(F_2k), h = edge / n. Modes are
-//! those of a [`ModeSet`]: all but the Nyquist planes, (n - 1)^3 of them, conjugates counted.
+//! The gap function is g(t) = integral of f_1(x) f_2(x - t) dx over the periodic cube, by sums over its n^3 grid
+//! points. F_1 and F_2 are the transforms of the sampled functions. Then g(t) = sum_k G_k exp(2 pi i k.t / edge),
+//! with G_k = (h^3 / n^3) F_1k conj(F_2k) and h = edge / n. Modes are those of a [`ModeSet`]: all but the Nyquist
+//! planes, (n - 1)^3 of them, conjugates counted.
 //!
-//! The engine's own uniform grid scores a double skin in a box that it chooses; here the box has exactly m points, as in the paper, and every
-//! step stands by itself to be timed.
+//! The engine's own uniform grid scores a double skin in a box that it chooses. Here the box has exactly m points, as
+//! in the paper, and every step is separate so that it can be timed.
 
 use crate::spectrum::{Body, Kernel};
 use knotdock_scoring::transform::fast_size;

@@ -1,5 +1,6 @@
-//! Figure 7: the gap function on a uniform grid, whole and from its m' dominant modes; the time of every step, the error of leaving out the
-//! rest.
+//! Figure 7: the gap function on a uniform grid, whole and from its m' dominant modes.
+//!
+//! It shows the time of every step, and the error of leaving out the other modes.
 
 use crate::report::{Figure, colour_of_grid, grid_name};
 use crate::scene::Scene;

@@ -1,5 +1,7 @@
-//! Figure 8: the bunny's spectrum at its m' lowest frequencies, by a rasterised grid of m points and its FFT, and from the balls
-//! themselves: by the direct 4D sum (NDFT), by the 4D fast transform, and by both after compressing the radius.
+//! Figure 8: the bunny's spectrum at its m' lowest frequencies.
+//!
+//! One way is a rasterised grid of m points and its FFT. The others start from the balls themselves: the direct 4D sum
+//! (NDFT), the 4D fast transform, and both after compressing the radius.
 
 use crate::report::{Figure, grid_name};
 use crate::scene::Scene;

@@ -1,5 +1,6 @@
-//! Figure 9: one configuration from m' dominant modes: value and force at one relative place, its time and the error it makes; and what a
-//! new rotation costs before that, a new spectrum of the peg's balls.
+//! Figure 9: one configuration from m' dominant modes: value and force at one relative place, with time and error.
+//!
+//! A new rotation needs a new spectrum of the peg's balls before that; its time is shown as well.
 
 use crate::lifted::{Expansion, Task};
 use crate::report::{Figure, colour_of_grid, grid_name};
@@ -42,8 +43,8 @@ pub fn prepared(whole: &Whole, selection: &Selection) -> RotationSpectrum {
     })
 }
 
-/// Grid points at which the bodies touch or overlap, spread over them, each with its place in the cube about the origin and the whole
-/// function's value there.
+/// Grid points at which the bodies touch or overlap, spread over them, each with its place in the cube about the
+/// origin and the whole function's value there.
 pub fn places(whole: &Whole, count: usize) -> Vec<(Vector3<f64>, f64)> {
     let grid = whole.grid();
     let n = grid.per_axis;

@@ -1,9 +1,14 @@
 //! Two ways to take the radius out of a ball's transform, so that sums over balls become sums of plain waves.
 //!
-//! Both write r^3 psi^(r |w|) = sum_f A_f(|w|) B_f(r). [`Expansion::series`] is B&I's: a Fourier series along the fourth axis, whose
-//! B_f(r) = exp(-2 pi i eta_f r) makes the sum over balls a four-dimensional transform of the points (x, y, z, r) and whose A_f is the
-//! kernel's transform in four dimensions. [`Expansion::compressed`] is ours: the fewest functions of the radius that do, from a
-//! singular value decomposition. A is computed beforehand for every |w| of a box, as in the paper, and costs no time here.
+//! Both write r^3 psi^(r |w|) = sum_f A_f(|w|) B_f(r).
+//!
+//! - [`Expansion::series`] is B&I's: a Fourier series along the fourth axis. Its B_f(r) = exp(-2 pi i eta_f r) makes
+//!   the sum over balls a four-dimensional transform of the points (x, y, z, r). Its A_f is the kernel's transform in
+//!   four dimensions.
+//! - [`Expansion::compressed`] is ours: the fewest functions of the radius that suffice, from a singular value
+//!   decomposition.
+//!
+//! A is computed beforehand for every |w| of a box, as in the paper, and costs no time here.
 
 use crate::spectrum::{Body, FrequencyBox, Kernel, exact, phase, square};
 use knotdock_scoring::kernel::low_pass::smooth_step_down;
@@ -16,7 +21,7 @@ const CHECKED: usize = 160;
 /// Lengths by which the series' period exceeds the range of radii, as shares of that range.
 const GAPS: [f64; 3] = [0.25, 0.5, 1.0];
 /// Most modes of the series on either side of zero.
-const MOST: usize = 60;
+const MAX_ORDER: usize = 60;
 /// Samples of a period.
 const SAMPLES: usize = 256;
 /// Frequencies and radii from which the compression is made, and its largest rank.
@@ -60,7 +65,8 @@ impl Expansion {
         self.radial.len()
     }
 
-    /// The Fourier series along the radius with the fewest modes that keep the tolerance; with `MOST` where none do.
+    /// The Fourier series along the radius with the fewest modes that keep the tolerance; with `MAX_ORDER` where none
+    /// do.
     pub fn series(task: &Task) -> Self {
         let [low, high] = task.body.radius_range();
         let range = (high - low).max(1e-3 * high);
@@ -69,17 +75,17 @@ impl Expansion {
         for gap in GAPS {
             let period = (1.0 + gap) * range;
             // Zero first, then by pairs, so that the fewest are a first part of all.
-            let order = (0..2 * MOST as i32 + 1).map(in_pairs);
+            let order = (0..2 * MAX_ORDER as i32 + 1).map(in_pairs);
             let candidate = Candidate {
                 radial: order.map(|k| waves(&task.body.radii, k, period)).collect(),
                 checked: checked.each(|w| {
-                    let all = series_at(task, w, low, high, period, MOST);
+                    let all = series_at(task, w, low, high, period, MAX_ORDER);
                     (0..all.len())
-                        .map(|f| all[centered(in_pairs(f as i32), MOST)])
+                        .map(|f| all[centered(in_pairs(f as i32), MAX_ORDER)])
                         .collect()
                 }),
             };
-            let needed = candidate.needed(&checked, 2).unwrap_or(2 * MOST + 1);
+            let needed = candidate.needed(&checked, 2).unwrap_or(2 * MAX_ORDER + 1);
             if best.is_none_or(|(fewest, _)| needed < fewest) {
                 best = Some((needed, period));
             }
@@ -119,7 +125,7 @@ impl Expansion {
         });
         let decomposed = matrix.svd(true, true);
         let (Some(u), Some(v_t)) = (decomposed.u, decomposed.v_t) else {
-            // Both were asked for.
+            // Both were requested.
             return Self::series(task);
         };
         let rank = RANK.min(nodes.len());
@@ -158,7 +164,8 @@ impl Expansion {
         }
     }
 
-    /// sum over f of A_f(|w|) times the f-th sum over balls, at every frequency held of a box: `value(place, f)` gives that sum.
+    /// Sum over f of A_f(|w|) times the f-th sum over balls, at every frequency held of a box. `value(place, f)`
+    /// gives the f-th sum.
     pub fn combine(
         &self,
         frequencies: FrequencyBox,
@@ -177,7 +184,7 @@ impl Expansion {
     }
 }
 
-/// 0, 1, -1, 2, -2, ...
+/// Indices 0, 1, -1, 2, -2, ...
 fn in_pairs(index: i32) -> i32 {
     if index % 2 == 1 {
         (index + 1) / 2
@@ -190,7 +197,7 @@ fn centered(k: i32, most: usize) -> usize {
     (k + most as i32) as usize
 }
 
-/// exp(-2 pi i k r / period) of every radius.
+/// Phases exp(-2 pi i k r / period) of every radius.
 fn waves(radii: &[f64], k: i32, period: f64) -> Vec<Complex64> {
     let turns = f64::from(k) / period;
     radii
@@ -199,8 +206,9 @@ fn waves(radii: &[f64], k: i32, period: f64) -> Vec<Complex64> {
         .collect()
 }
 
-/// Coefficients k = -most..=most of the series in r at one frequency. Between the largest radius and the smallest of the next period the
-/// transform is led over smoothly from one continuation to the other, so that the series falls faster than any power.
+/// Coefficients k = -most..=most of the series in r at one frequency. Between the largest radius and the smallest of
+/// the next period the transform is led over smoothly from one continuation to the other, so that the series falls
+/// faster than any power.
 fn series_at(task: &Task, w: f64, low: f64, high: f64, period: f64, most: usize) -> Vec<Complex64> {
     let gap = period - (high - low);
     let samples: Vec<f64> = (0..SAMPLES)
@@ -280,8 +288,8 @@ impl Checked {
 }
 
 impl Candidate {
-    /// The fewest functions that keep the tolerance at every frequency checked, one more than a multiple of `step`; `None` where all are
-    /// too few.
+    /// The fewest functions that keep the tolerance at every frequency checked, one more than a multiple of `step`;
+    /// `None` where all are too few.
     fn needed(&self, checked: &Checked, step: usize) -> Option<usize> {
         let mut left = checked.exact.clone();
         for (f, radial) in self.radial.iter().enumerate() {

@@ -1,8 +1,14 @@
-//! Figures 7, 8 and 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny against a keyed peg.
+//! Figures 7, 8 and 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny against a
+//! keyed peg.
 //!
-//! `cargo bench --bench paper_figures` prints the tables and writes them (Markdown, CSV) and the pictures (SVG, PNG) to
-//! `paper_figures` in the folder of Cargo's temporary files; `-- --out FOLDER` elsewhere, `--images docs/images` the pictures besides, and
-//! `--grids 12,15` takes fewer grid sizes. docs/paper_figures.md says what is measured and shows the results.
+//! `cargo bench --bench paper_figures` prints the tables. It writes them (Markdown, CSV) and the pictures (SVG, PNG)
+//! to `paper_figures` in the folder of Cargo's temporary files.
+//!
+//! - `-- --out FOLDER` writes them elsewhere.
+//! - `--images docs/images` writes the pictures to that folder as well.
+//! - `--grids 12,15` takes fewer grid sizes.
+//!
+//! The page docs/paper_figures.md says what is measured and shows the results.
 //!
 //! - Figure 7 ([`figure7`]): the gap function by FFT, and what is left of it with m' modes.
 //! - Figure 8 ([`figure8`]): a body's spectrum by rasterising and FFT, or from its balls by direct and fast transforms.
@@ -87,7 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let images = options.images.as_deref();
     let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
     figure7::figure(&correlations).write(&options.out, images)?;
-    // Of the largest grid but one, whose points can still be told apart.
+    // Of the largest grid but one, whose points the eye can still resolve.
     if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
         let picture = sections::sections(whole);
         for folder in [Some(options.out.as_path()), images].into_iter().flatten() {
@@ -108,7 +114,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A kernel for all radii of a scene, those that the series along the radius continues to included, and all frequencies of its grid.
+/// A kernel for all radii of a scene, those that the series along the radius continues to included, and all
+/// frequencies of its grid.
 fn kernel(scene: &Scene) -> Result<Kernel, Box<dyn Error>> {
     let largest = scene.bunny.radius_range()[1].max(scene.peg.radius_range()[1]);
     let frequency = 0.5 * 3f64.sqrt() * scene.per_axis as f64 / scene.edge;

@@ -18,7 +18,7 @@ pub struct Figure {
     pub columns: usize,
 }
 
-/// Colours that stay apart for colour-blind readers too (Okabe and Ito).
+/// Colours that colour-blind readers can distinguish too (Okabe and Ito).
 pub fn colour_of_grid(per_axis: usize) -> Colour {
     match per_axis {
         0..=16 => [0x56, 0xb4, 0xe9],

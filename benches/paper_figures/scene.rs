@@ -1,8 +1,9 @@
 //! The two solids as balls: the Stanford bunny and a keyed peg, sampled with one spacing by B&I's Algorithm 1.
 //!
-//! Lengths are in longest edges of the bunny's bounding box. The paper's second solid is not named; its share of the bunny's
-//! inside nodes is 7 to 12% (Table 1), and the peg, which the docking tests make (`structures/examples/docking_parts`), is given a size
-//! that comes near this. It is turned once, so that none of its faces lies along the grid.
+//! Lengths are in longest edges of the bunny's bounding box. The paper's second solid is not named; its share of the
+//! bunny's inside nodes is 7 to 12% (Table 1). The peg is made by the docking tests
+//! (`structures/examples/docking_parts`), and its size here comes near this share. It is turned once, so that none of
+//! its faces lies along the grid.
 
 use crate::docking_parts::peg_and_hole;
 use crate::spectrum::Body;

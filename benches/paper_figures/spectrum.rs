@@ -2,10 +2,11 @@
 //!
 //! # Conventions
 //!
-//! - A body's function is f(x) = sum_j psi(|x - x_j| / r_j), psi the bump function of exponent 2, every weight one. Its transform is
-//!   f^(w) = sum_j r_j^3 psi^(r_j |w|) exp(-2 pi i w.x_j).
-//! - Frequencies are integers over the edge of the periodic cube. A [`FrequencyBox`] of m' = a b c of them, conjugates counted, has kx
-//!   and ky from -a/2 and -b/2 on and kz from 0 to c/2 - 1: f is real, and the other half is known with the first.
+//! - A body's function is f(x) = sum_j psi(|x - x_j| / r_j), psi the bump function of exponent 2, every weight one.
+//!   Its transform is f^(w) = sum_j r_j^3 psi^(r_j |w|) exp(-2 pi i w.x_j).
+//! - Frequencies are integers over the edge of the periodic cube. A [`FrequencyBox`] has m' = a b c of them,
+//!   conjugates counted. It has kx and ky from -a/2 and -b/2 on, and kz from 0 to c/2 - 1. As f is real, the other
+//!   half is known with the first.
 //! - Arrays over a box are row-major, kz fastest, and hold m' / 2 values.
 
 use knotdock_scoring::kernel::Bump;
@@ -128,8 +129,8 @@ impl FrequencyBox {
         self.size.iter().map(|n| (n / 2) * (n / 2)).sum()
     }
 
-    /// About `count` places spread over the box, that of frequency zero the first of them. None lies where a grid of the same size has its
-    /// Nyquist frequencies, which it cannot tell from their conjugates.
+    /// About `count` places spread over the box; the first is that of frequency zero. None lies where a grid of
+    /// the same size has its Nyquist frequencies, which it cannot distinguish from their conjugates.
     pub fn sample(self, count: usize) -> Vec<usize> {
         let [a, b, c] = self.half();
         let zero = (a / 2 * b + b / 2) * c;

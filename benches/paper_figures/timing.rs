@@ -3,10 +3,10 @@
 use cpu_time::ThreadTime;
 use std::hint::black_box;
 
-/// Seconds of processor time after which no further run is begun, once there are `LEAST` of them.
+/// Seconds of processor time after which no further run starts, once there are `MIN_RUNS` of them.
 const ENOUGH: f64 = 0.2;
-const LEAST: usize = 2;
-const MOST: usize = 300;
+const MIN_RUNS: usize = 2;
+const MAX_RUNS: usize = 300;
 
 /// Processor seconds of one call, and what it gave.
 pub fn timed<R>(task: impl FnOnce() -> R) -> (f64, R) {
@@ -18,8 +18,8 @@ pub fn timed<R>(task: impl FnOnce() -> R) -> (f64, R) {
 /// Processor seconds of the fastest of several calls.
 pub fn least<R>(mut task: impl FnMut() -> R) -> f64 {
     let (mut best, mut spent) = (f64::INFINITY, 0.0);
-    for run in 0..MOST {
-        if run >= LEAST && spent > ENOUGH {
+    for run in 0..MAX_RUNS {
+        if run >= MIN_RUNS && spent > ENOUGH {
             break;
         }
         let (seconds, _) = timed(&mut task);

@@ -1,4 +1,5 @@
-//! Three ways from balls to the spectrum of their summed bumps without a grid, all through an [`Expansion`] of the radius.
+//! Three ways from balls to the spectrum of their summed bumps without a grid, all through an [`Expansion`] of the
+//! radius.
 //!
 //! - [`direct`]: the nufft sums as they stand (NDFT), over whichever expansion: with the series that is the 4D sum.
 //! - [`fast_4d`]: one four-dimensional fast transform of the points (x, y, z, r), for the series.
@@ -21,7 +22,8 @@ pub struct Points<'a> {
     frequencies: FrequencyBox,
     /// Centres in units of the cube's edge.
     centers: Vec<[f64; 3]>,
-    /// For every function of the radius the weights, with the phase that moves the half box of frequencies onto one about zero.
+    /// For every function of the radius the weights, with the phase that moves the half box of frequencies onto one
+    /// about zero.
     weights: Vec<Vec<Complex64>>,
     /// Radii in units of the series' period.
     heights: Vec<f64>,
@@ -87,9 +89,9 @@ pub fn direct(points: &Points) -> Vec<Complex64> {
     output
 }
 
-/// A share of [`direct`]'s work: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is the same for every
-/// kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases of x and y are multiplied once for
-/// all of them.)
+/// A share of [`direct`]'s work: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is
+/// the same for every kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases
+/// of x and y are multiplied once for all of them.)
 pub fn direct_share(points: &Points, planes: usize) -> f64 {
     let [_, b, c] = points.frequencies.half();
     let sums = direct::forward(&points.centers, &points.weights, [planes, b, c]);
@@ -106,7 +108,7 @@ pub fn direct_share(points: &Points, planes: usize) -> f64 {
 /// A fast transform in D dimensions, planned.
 pub struct Fast<const D: usize> {
     plan: Plan<f64, D>,
-    located: SortedPoints<D>,
+    sorted: SortedPoints<D>,
     work: Workspace<f64, D>,
     sums: Vec<Vec<Complex64>>,
 }
@@ -120,7 +122,7 @@ impl<const D: usize> Fast<D> {
     ) -> Result<Self, PlanningError> {
         let plan = Plan::new(modes, tolerance, points.len())?;
         Ok(Self {
-            located: plan.locate(points)?,
+            sorted: plan.locate(points)?,
             work: plan.workspace(),
             sums: vec![vec![Complex64::default(); plan.mode_count()]; outputs],
             plan,
@@ -155,12 +157,13 @@ pub fn plan_4d(points: &Points, tolerance: f64) -> Result<Fast<4>, PlanningError
 
 /// One four-dimensional fast transform.
 pub fn fast_4d(points: &Points, fast: &mut Fast<4>) -> Result<Vec<Complex64>, PlanningError> {
-    fast.plan.locate_into(&lifted(points), &mut fast.located)?;
-    // The fourth coordinate carries the functions of the radius; that of frequency zero is one, so that its weights are the phases alone.
+    fast.plan.locate_into(&lifted(points), &mut fast.sorted)?;
+    // The fourth coordinate carries the functions of the radius; that of frequency zero is one, so that its weights
+    // are the phases alone.
     let weights = &points.weights[points.expansion.len() / 2];
     let sums = &mut fast.sums[0];
     fast.plan
-        .forward(&fast.located, weights, &mut fast.work, sums)?;
+        .forward(&fast.sorted, weights, &mut fast.work, sums)?;
     let functions = points.expansion.len();
     let mut output = points.values();
     points
@@ -179,10 +182,10 @@ pub fn plan_3d(points: &Points, tolerance: f64) -> Result<Fast<3>, PlanningError
 
 /// A three-dimensional fast transform for each function of the radius.
 pub fn fast_3d(points: &Points, fast: &mut Fast<3>) -> Result<Vec<Complex64>, PlanningError> {
-    fast.plan.locate_into(&points.centers, &mut fast.located)?;
+    fast.plan.locate_into(&points.centers, &mut fast.sorted)?;
     for (weights, sums) in points.weights.iter().zip(&mut fast.sums) {
         fast.plan
-            .forward(&fast.located, weights, &mut fast.work, sums)?;
+            .forward(&fast.sorted, weights, &mut fast.work, sums)?;
     }
     let mut output = points.values();
     points

@@ -10,8 +10,9 @@ use crate::ways::{Points, direct, direct_share, fast_3d, fast_4d, plan_3d, plan_
 use num_complex::Complex64;
 use std::error::Error;
 
-/// Bounds of the error that the ways without a grid are allowed, as a share of the value at frequency zero. Between them it is what the
-/// grid itself makes at the same frequencies, so that like is compared with like: half for the expansion, half for the transform.
+/// Bounds of the error that the ways without a grid are allowed, as a share of the value at frequency zero. Between
+/// them it is what the grid itself makes at the same frequencies, so that like is compared with like: half for the
+/// expansion, half for the transform.
 const TOLERANCE: [f64; 2] = [1e-6, 1e-2];
 /// Multiplications above which only a share of the direct sums is timed: about a third of a second.
 const SHARE: f64 = 4e8;
@@ -23,7 +24,8 @@ const CHECKED: usize = 300;
 pub struct Measured {
     /// Processor time.
     pub seconds: f64,
-    /// Largest error at the frequencies checked, as a share of the value at frequency zero; not a number where only a share was done.
+    /// Largest error at the frequencies checked, as a share of the value at frequency zero; not a number where only a
+    /// share was done.
     pub error: f64,
     /// Whether the time was scaled up from a share of the work.
     pub scaled: bool,
@@ -128,7 +130,8 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
             let values = fast_4d(&points, &mut fast)?;
             let seconds = least(|| fast_4d(&points, &mut fast));
             let lifted = checked(seconds, &values);
-            // The direct sums differ from the fast ones by the transform's tolerance alone; where they take too long a share is timed.
+            // The direct sums differ from the fast ones by the transform's tolerance alone; where they take too long
+            // a share is timed.
             (by_direct_sums(&points, &reference, &places), lifted)
         };
         let compressed = Expansion::compressed(&task);

@@ -1,4 +1,5 @@
-//! The correlation of two bodies at one grid size, the time of each of its steps, and what leaving out modes does to it.
+//! The correlation of two bodies at one grid size, the time of each of its steps, and what leaving out modes does to
+//! it.
 
 use crate::correlation::Grid;
 use crate::scene::Scene;
@@ -8,7 +9,7 @@ use knotdock_scoring::transform::truncation::Selection;
 use num_complex::Complex64;
 use std::hint::black_box;
 
-/// Share of the peak from which two bodies count as colliding. A truncated function has no exact zeros to tell by.
+/// Share of the peak from which two bodies count as colliding. A truncated function has no exact zeros.
 const CONTACT: f64 = 1e-3;
 /// Pairs of balls of which pairwise summation is timed; the time of all follows by their number.
 const PAIRS: usize = 4_000_000;
@@ -32,7 +33,8 @@ pub struct Whole {
     pub pairwise: f64,
 }
 
-/// Errors of a truncated function, as shares of the peak, and the share of the cube in which its verdict on collision is another.
+/// Errors of a truncated function, as shares of the peak, and the share of the cube in which its verdict on collision
+/// is another.
 #[derive(Clone, Copy, Debug)]
 pub struct Errors {
     /// Root mean square.
@@ -126,7 +128,8 @@ impl Whole {
         }
     }
 
-    /// Selections of at most 2^6, 2^7, ... modes, each with the power of two: dominant ones, and those of lowest frequency.
+    /// Selections of at most 2^6, 2^7, ... modes, each with the power of two: dominant ones, and those of lowest
+    /// frequency.
     pub fn selections(&self) -> impl Iterator<Item = (u32, [Selection; 2])> {
         let magnitudes = self.grid.magnitudes(&self.product);
         let modes = &self.grid.modes;

@@ -62,8 +62,8 @@ fn free_terms(a: &Knots, b: &Knots) -> Vec<Term> {
     ]
 }
 
-/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact, as
-/// the defaults have it, and as many attracted.
+/// The same, every fourth knot of the receptor and every fifth of the ligand blocked at half the weight of contact,
+/// as the defaults have it, and as many active.
 fn terms(a: &Knots, b: &Knots) -> Vec<Term> {
     let every = |knots: &Knots, step: usize| -> Vec<ResidueRole> {
         let mark = |count: usize| match count % step {
@@ -363,9 +363,10 @@ fn pair(charges: [f64; 2], types: [&str; 2], distance: f64) -> [f64; Effect::ALL
     scorer(&plan, &a, &b).score(&pose).terms
 }
 
-/// Opposite charges attract, like ones repel by as much, and less so farther apart; a neutral knot feels nothing.
+/// Opposite charges raise the score, like ones lower it by as much, and less so at larger distances; a neutral knot
+/// has no effect.
 #[test]
-fn charges_attract_and_repel() {
+fn opposite_charges_gain_and_like_charges_lose() {
     let electrostatics = Effect::Electrostatics as usize;
     let at = |charges, distance| pair(charges, ["N", "N"], distance)[electrostatics];
     let (near, far) = (at([1.0, -1.0], 4.0), at([1.0, -1.0], 7.0));
@@ -462,7 +463,7 @@ fn a_ball_finds_the_patch_that_is_made_for_it() {
 /// A ball touches the body where nothing is blocked, whichever of the two the marked atoms belong to. That is at the
 /// only free patch, away from a blocked one, and at an active one.
 #[test]
-fn a_ball_goes_where_nothing_is_blocked_and_where_it_is_attracted() {
+fn a_ball_goes_where_nothing_is_blocked_and_to_the_active_patch() {
     let (body, ball) = (patched([0.0; 2], ["SOG"; 2], 8.0), ball(0.0, "SOG"));
     let marked = |inside: ResidueRole, outside: ResidueRole| -> Vec<ResidueRole> {
         let inside = |x: &[f64; 3]| if x[0] > 6.0 { inside } else { outside };

@@ -21,8 +21,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
-fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, fold: Quantity) -> f64 {
-    worst_after::<T>(a, b, tolerance, fold, HalfTurn::None)
+fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, quantity: Quantity) -> f64 {
+    worst_after::<T>(a, b, tolerance, quantity, HalfTurn::None)
 }
 
 /// The same where a half-turn of the grid follows the rotation, so that the ligand's transform is read mirrored.
@@ -30,10 +30,10 @@ fn worst_after<T: Real>(
     a: &Knots,
     b: &Knots,
     tolerance: f64,
-    fold: Quantity,
+    quantity: Quantity,
     half_turn: HalfTurn,
 ) -> f64 {
-    worst_of::<T>(a, b, options(tolerance), fold, half_turn)
+    worst_of::<T>(a, b, options(tolerance), quantity, half_turn)
 }
 
 /// The same of any options.
@@ -41,12 +41,12 @@ fn worst_of<T: Real>(
     a: &Knots,
     b: &Knots,
     options: EngineOptions,
-    fold: Quantity,
+    quantity: Quantity,
     half_turn: HalfTurn,
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(plan.kernel(), a, b).unwrap();
-    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, fold);
+    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, quantity);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
@@ -60,7 +60,7 @@ fn worst_of<T: Real>(
     for voxel in order[..100].iter().copied().chain(sweep) {
         let place = plan.receptor_center() + engine.position_after(half_turn, voxel);
         let exact = scorer.score(&Pose::about(rotation, plan.ligand_center(), place));
-        let value = match fold {
+        let value = match quantity {
             Quantity::Score => exact.score,
             Quantity::Slice(slice) => exact.slices[slice],
             other => unreachable!("the exact sum has no {other:?}"),
@@ -101,7 +101,7 @@ fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
     }
 }
 
-/// Searches for a spacing that fits into memory ask for grids alone.
+/// A search for a spacing that fits into memory plans grids alone; such a plan must equal a new one.
 #[test]
 fn a_plan_with_another_spacing_is_the_plan_made_for_it() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));

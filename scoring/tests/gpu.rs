@@ -70,7 +70,7 @@ fn greedy(grid: &[f32], size: [usize; 3], count: usize, reach: usize) -> Vec<(u3
     kept.into_iter().map(|v| (v as u32, grid[v])).collect()
 }
 
-/// Single precision costs the same small share whatever the tolerance asks of the plan: window widths, ranks and grids
+/// The error of single precision is the same small share at every tolerance of the plan: window widths, ranks and grids
 /// all change with it.
 #[test]
 fn the_grid_is_that_of_the_cpu_in_double_precision() {
@@ -118,8 +118,8 @@ fn every_radix_of_grid_lengths() {
     }
 }
 
-/// One knot has one field of one row; balls of sizes 1 to 30 have many fields that cancel, which costs single precision
-/// more digits: what it costs the CPU it may cost the card.
+/// One knot has one component of one row. Balls of sizes 1 to 30 have many components that cancel, so single precision
+/// loses more digits. The card may lose as many as the CPU.
 #[test]
 fn a_single_knot_and_balls_of_many_sizes() {
     let Some(gpu) = adapter() else { return };

@@ -1,4 +1,5 @@
-//! The general transform between points and modes, held to the direct sum and to identities that need no reference.
+//! The general transform between points and modes, tested against the direct sum and by identities that need no
+//! reference.
 
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft;

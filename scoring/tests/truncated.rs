@@ -33,9 +33,9 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(receptor: Knots, ligand: Knots, tolerance: f64, fold: Quantity) -> Self {
+    fn new(receptor: Knots, ligand: Knots, tolerance: f64, quantity: Quantity) -> Self {
         let plan = Arc::new(Plan::new(&receptor, &ligand, options(tolerance)).unwrap());
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, fold);
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, quantity);
         Self {
             receptor,
             ligand,
@@ -44,9 +44,14 @@ impl Pair {
         }
     }
 
-    fn clouds(tolerance: f64, fold: Quantity, seed: u64) -> Self {
+    fn clouds(tolerance: f64, quantity: Quantity, seed: u64) -> Self {
         let receptor = cloud(70, 8.0, &RADII, seed);
-        Self::new(receptor, cloud(29, 5.0, &RADII, seed + 1), tolerance, fold)
+        Self::new(
+            receptor,
+            cloud(29, 5.0, &RADII, seed + 1),
+            tolerance,
+            quantity,
+        )
     }
 
     fn configuration(&self, selection: &Selection) -> TruncatedCorrelation {
@@ -98,7 +103,7 @@ fn at_voxels_it_is_the_engines_grid() {
     assert!(worst < 1e-6);
 }
 
-/// Many radii: fields come from the factored lifted axis. Both ways of summing must still agree with the exact sum.
+/// Many radii: components come from the factored lifted axis. Both ways of summing must still agree with the exact sum.
 #[test]
 fn every_knot_its_own_radius() {
     let many: Vec<f64> = (0..90).map(|i| 1.5 + 0.4 * f64::from(i) / 89.0).collect();
@@ -206,7 +211,8 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
             let anywhere = Tail::of(modes, &selection, &over_rotations);
             let error = (value - full).abs();
             println!(
-                "order {order}, {:6} modes: {value:9.3}, error {error:.2e}, rms {:.2e}, bound {:.2e}, over rotations {:.2e}",
+                "order {order}, {:6} modes: {value:9.3}, error {error:.2e}, rms {:.2e}, bound {:.2e}, \
+                 over rotations {:.2e}",
                 few.modes(),
                 tail.rms,
                 tail.bound,
@@ -225,7 +231,7 @@ fn ladders_converge_to_the_exact_score_within_their_bounds() {
 }
 
 /// By Parseval the rms tail is the root mean square of the grid's error to rounding, once modes of the product do not
-/// alias: they do not, as the grid holds every mode of the set.
+/// alias. They do not alias here, as the grid holds every mode of the set.
 #[test]
 fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says() {
     let mut pair = Pair::clouds(1e-6, Quantity::Score, 31);
@@ -289,8 +295,8 @@ fn the_whole_correlation_truncated_has_the_rms_and_the_bound_that_its_tail_says(
     }
 }
 
-/// dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in rho: all ligand
-/// radii grown and shrunk by h move every radius sum, which is what an offset does.
+/// The derivative dg/drho by differentiation along the lifted axis against finite differences of the exact kernel in
+/// rho. All ligand radii grown and shrunk by h move every radius sum, as an offset does.
 #[test]
 fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
     let h = 1e-3;
@@ -300,7 +306,7 @@ fn offset_sensitivity_is_the_slope_of_the_exact_slices() {
         Quantity::SliceByOffset(2),
         Quantity::ScoreByOffset,
     ]
-    .map(|fold| Pair::clouds(1e-5, fold, 41));
+    .map(|quantity| Pair::clouds(1e-5, quantity, 41));
     let first = &pairs[0];
     let grown = |by: f64| {
         let mut ligand = first.ligand.clone();

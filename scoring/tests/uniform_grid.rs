@@ -59,7 +59,7 @@ fn errors<T: Real>(
     position: impl Fn(usize) -> Vector3<f64>,
     scorer: &ProductScorer,
     (a, b): (&Knots, &Knots),
-    fold: Quantity,
+    quantity: Quantity,
 ) -> (f64, f64) {
     let mut order: Vec<usize> = (0..grid.len()).collect();
     order.sort_by(|&x, &y| grid[y].partial_cmp(&grid[x]).unwrap());
@@ -69,7 +69,7 @@ fn errors<T: Real>(
     for voxel in order[..100].iter().copied().chain(sweep) {
         let place = middle(a) + position(voxel);
         let exact = scorer.score(&Pose::about(turned().rotation, middle(b), place));
-        let value = match fold {
+        let value = match quantity {
             Quantity::Score => exact.score,
             Quantity::Slice(slice) => exact.slices[slice],
             Quantity::ScoreByOffset | Quantity::SliceByOffset(_) => unreachable!("not tried here"),
@@ -87,11 +87,11 @@ fn uniform<T: Real>(
     a: &Knots,
     b: &Knots,
     options: UniformGridOptions,
-    fold: Quantity,
+    quantity: Quantity,
 ) -> (f64, f64) {
     let plan = UniformGridPlan::new(a, b, options).unwrap();
     let scorer = ProductScorer::new(&plan.kernel, a, b).unwrap();
-    let engine = UniformGrid::<T>::new(plan, a, b, fold);
+    let engine = UniformGrid::<T>::new(plan, a, b, quantity);
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     errors(
@@ -99,7 +99,7 @@ fn uniform<T: Real>(
         |voxel| engine.position(voxel),
         &scorer,
         (a, b),
-        fold,
+        quantity,
     )
 }
 
@@ -108,19 +108,19 @@ fn lifted<T: Real>(
     b: &Knots,
     options: EngineOptions,
     band: Band,
-    fold: Quantity,
+    quantity: Quantity,
 ) -> f64 {
     let plan = Arc::new(Plan::product(a, b, options, band).unwrap());
     let PairKernel::Product(kernel) = plan.pair() else {
         unreachable!("a product plan has a product kernel");
     };
     let scorer = ProductScorer::new(kernel, a, b).unwrap();
-    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, fold);
+    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, quantity);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     let position = |voxel| engine.position(voxel);
-    errors(&work.grid, position, &scorer, (a, b), fold).1
+    errors(&work.grid, position, &scorer, (a, b), quantity).1
 }
 
 /// Smooth bumps: the sum over voxels errs by the bumps' spectrum at 1 / h, which falls like exp(-sqrt(r / h)): faster

@@ -8,13 +8,17 @@ OPTIONS are those of `knotdock dock`.
 DIR is laid out as scripts/docked_pairs.py says. Unbound files may lie superposed on the complex, so each ligand is
 first centred and rotated at random, uniformly over SO(3), by the pair's id and the seed alone.
 
-Into the --out folder go, for the ranking of all poses and for that of the clusters (each by its best pose),
-`poses.csv` and `clusters.csv` (a row for each pair and seed) and `poses.md` and `clusters.md` (a row for each pair,
-and how many pairs succeed among the first 1, 10, 100 and 1000, as the mean over the seeds). Runs that are done are
-kept, and repeated only if the program, its options or the input changed. A pair that fails is named and costs no other.
+The --out folder gets two files for the ranking of all poses and two for that of the clusters, each by its best pose:
 
-With --active N each docking is given N residues of either side that are in contact in the known complex, drawn by the
-pair's id and the seed, as an experiment might find them.
+- `poses.csv` and `clusters.csv`: a row for each pair and seed.
+- `poses.md` and `clusters.md`: a row for each pair, and how many pairs succeed among the first 1, 10, 100 and 1000, as
+  the mean over the seeds.
+
+Runs that are done are kept, and repeated only if the program, its options or the input changed. A pair that fails is
+named and costs no other.
+
+With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
+contact in the known complex, and are drawn by the pair's id and the seed.
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -173,7 +177,7 @@ def dock_and_measure(options, folder, files, name, seed):
     if run.exists():
         shutil.rmtree(run)
     command = [options.knotdock, "dock", str(files["receptor_unbound"]), str(rotated), "-o", str(run), "--quiet"]
-    # Every pose is listed with its cluster, so one run serves both rankings.
+    # Every pose is written with its cluster, so one run serves both rankings.
     for option, value in (("--no-cluster", []), ("--write-top", ["0"])):
         if option not in options.dock_options:
             command += [option, *value]

@@ -7,11 +7,11 @@ Each folder is the --out of a `benchmark.py` run; several, with commas between t
 Pairs and seeds that all settings hold are compared; a folder with a run that failed is refused.
 
 First table: pairs that succeed among the first N, as the mean over seeds. Intervals are the middle 95% over pairs
-drawn anew with replacement (bootstrap). A gain's interval is of the difference on the same draws, so that a pair that
-is easy for all counts for none.
+drawn anew with replacement (bootstrap). A gain's interval is of the difference on the same draws, so a pair that is
+easy for all counts for none.
 
-Second table: the mean logarithm of the first rank, over seeds, then over pairs, which a rank that is merely better
-moves, too; its difference from the first setting's, and the standard error of that over pairs. Below it: how far a
+Second table: the mean logarithm of the first rank, over seeds, then over pairs. Any better rank changes it, too.
+Beside it are its difference from the first setting's, and the standard error of that over pairs. Below it: how far a
 pair's start orientations disagree, as the standard deviation of its log rank over them, averaged over pairs.
 
 Needs Python 3.9 or later and nothing else.

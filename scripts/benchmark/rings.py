@@ -6,10 +6,10 @@
 OPTIONS are those of `knotdock dock`.
 
 FILE is a PDB file, perhaps gzipped; the chains after the colon, one letter for each molecule, are its ring, and their
-number is its symmetry's. The first of them is docked as it stands there, with the side chains of the complex: ranks
-say whether the search finds a fit that exists, not how well unbound molecules are docked. Each is centred and rotated
-at random, uniformly over SO(3), by the file's name and the seed alone. FILE:A,C+B,D names two rings face to face, of
-dihedral symmetry: the first of them is docked, and copies stand for neighbours in what follows.
+number is its symmetry's. The first of them is docked as it is in the file, with the side chains of the complex. So
+ranks say whether the search finds a fit that exists, not how well unbound molecules are docked. Each is centred and
+rotated at random, uniformly over SO(3), by the file's name and the seed alone. FILE:A,C+B,D names two rings face to
+face, of dihedral symmetry: the first of them is docked, and copies stand for neighbours in what follows.
 
 A cluster counts by its best pose, between neighbours, as scripts/docked_pairs.py says. With --pairs the same is done
 without symmetry, two copies docked as any pair.

@@ -4,9 +4,9 @@
     python scripts/checks/check_assemblies.py target/release/knotdock FOLDER        # the files of check_gemmi.py
     python scripts/checks/check_assemblies.py target/release/knotdock FOLDER --few  # those of the smaller packages
 
-`knotdock inspect --assembly` must build each assembly that a file describes (the first four of a file) of the same
-atoms as gemmi: names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy
-that gemmi has and knotdock lacks must lie within half an Ångström of one that it has, as those on axes of symmetry do.
+`knotdock inspect --assembly` must build the first four assemblies that a file describes of the same atoms as gemmi.
+Compared are names, residues, numbers, insertion codes, alternate locations, and positions within 0.01 Å. A copy that
+gemmi has and knotdock lacks must lie within half an Ångström of one that it has, as those on axes of symmetry do.
 
 Exit code 0: nothing differs; 1: something does; 2: the check could not be made.
 """
@@ -45,16 +45,16 @@ def built(knotdock, path, name, table):
         "--quiet",
     ]
     done = subprocess.run(command, capture_output=True, text=True)
-    told = json.loads(done.stdout)
+    reported = json.loads(done.stdout)
     if done.returncode:
-        return None, told["error"]["message"]
+        return None, reported["error"]["message"]
     positions = collections.defaultdict(list)
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
             if row["dropped"] != "assembly":
                 key = (row["atom"], row["altloc"], row["residue"], int(row["number"]), row["insertion"])
                 positions[key].append(tuple(float(row[axis]) for axis in "xyz"))
-    return positions, told["input"]["report"]["assembly"]
+    return positions, reported["input"]["report"]["assembly"]
 
 
 def expected(assembly, model):
@@ -106,22 +106,22 @@ def main():
                 theirs = expected(assembly, structure[0])
                 if sum(map(len, theirs.values())) > MOST_ATOMS:
                     continue
-                ours, told = built(options.knotdock, path, assembly.name, Path(scratch) / "atoms.csv")
+                ours, reported = built(options.knotdock, path, assembly.name, Path(scratch) / "atoms.csv")
                 where = f"{path.relative_to(options.folder)}, assembly {assembly.name}"
                 if ours is None:
                     # A file that was cut may have none of the assembly's chains left, and some cannot be read at all.
-                    meant = (not theirs and "no atom" in told) or any(part in str(path) for part in MEANT)
+                    meant = (not theirs and "no atom" in reported) or any(part in str(path) for part in MEANT)
                     kind = "refused as meant" if meant else "REFUSED"
                     counts[kind] += 1
                     if kind == "REFUSED":
-                        print(f"{where}: {told}")
+                        print(f"{where}: {reported}")
                     continue
                 lines, on_axes = differences(ours, theirs)
-                if on_axes != told["on_axes"]:
-                    lines.append(f"{told['on_axes']} copies on axes by knotdock, {on_axes} by what gemmi has more")
+                if on_axes != reported["on_axes"]:
+                    lines.append(f"{reported['on_axes']} copies on axes by knotdock, {on_axes} by what gemmi has more")
                 counts["DIFFER" if lines else "the same"] += 1
                 counts["copies on axes"] += on_axes
-                if told["chains"] != told["chains_in_file"]:
+                if reported["chains"] != reported["chains_in_file"]:
                     counts["of them more or fewer chains than the file"] += 1
                 if lines:
                     print(f"{where}: {len(lines)} differences")

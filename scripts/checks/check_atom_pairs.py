@@ -30,8 +30,8 @@ def pairs_by_hand():
     positions = np.array([[x, 0.0, 0.0] for x in (0.0, 3.0, 4.0, 8.1, 12.0)])
     found = count(positions, np.array([0, 1, 0, 1, 1]), np.array([0, 10, 12, 30, 31]), 10, 2)
     expected = np.zeros_like(found)
-    # 0-3 A: ten residues apart, nearer than the first shell and counted in it. 0-4 A: nearest to 4.25 (as near to
-    # 3.75: halves go up).
+    # 0-3 A: a separation of ten residues, nearer than the first shell and counted in it. 0-4 A: nearest to 4.25 (as
+    # near to 3.75: halves go up).
     expected[0, 0, 1] += 1
     expected[0, 1, 0] += 1
     expected[2, 0, 0] += 2

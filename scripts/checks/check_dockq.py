@@ -4,13 +4,13 @@
     python scripts/checks/check_dockq.py target/release/knotdock RECEPTOR LIGAND NATIVE_RECEPTOR NATIVE_LIGAND
 
 Needs numpy and DockQ==2.1.3 in the running Python. Files are PDB, plain or gzip. The poses are made here, so that no
-docking run is needed: the native one, small and large moves about it, random orientations, one with the centres on top
-of each other and some without any contact. Each side's chains are merged to one for DockQ. Poses reach DockQ as
-coordinates in memory: three decimals of a PDB file would move a contact at 5.000 Å across the limit.
+docking run is needed. They are the native one, small and large moves about it, random orientations, one with the
+centres on top of each other, and some without any contact. Each side's chains are merged to one for DockQ. Poses reach
+DockQ as coordinates in memory: three decimals of a PDB file would move a contact at 5.000 Å across the limit.
 
 Residues: DockQ aligns them by sequence alone, and beside a gap it may pair the wrong one of two equal residues. Where
-the files' numbers pair at least as many equal residues, DockQ is given the pairs that the numbers name. If its own
-differ, what that would change in its score is printed and does not count.
+the files' numbers pair at least as many equal residues, DockQ gets the pairs that the numbers name. If its own differ,
+what that would change in its score is printed and does not count.
 
 Not for sides of several identical chains: knotdock gives each pose the best of their orders, merged chains have one.
 

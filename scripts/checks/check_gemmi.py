@@ -11,7 +11,7 @@ on.
 For every file `knotdock inspect --atoms` must exit with 0, or with 2 and name file and remedy. Where gemmi finds
 atoms, both must have the same atoms in the first model: names, residues, chains, numbers, insertion codes, alternate
 locations, coordinates, occupancies and temperature factors. Gemmi's are then sorted by the same rules (no waters, no
-listed additives, no hydrogens, one alternate location a residue), and both must keep the same, with the same elements.
+known additives, no hydrogens, one alternate location a residue), and both must keep the same, with the same elements.
 Differences that are intended stand in MEANT, each with its reason, and are counted.
 
 Exit code 0: nothing else differs; 1: something does; 2: the check could not be made.
@@ -113,14 +113,14 @@ def ours(knotdock, path, table):
     )
     if done.returncode not in (0, 2) or "panicked" in done.stderr:
         raise SystemExit(f"{path}: exit code {done.returncode}\n{done.stderr}")
-    told = json.loads(done.stdout)
+    reported = json.loads(done.stdout)
     if done.returncode == 2:
-        error = told["error"]
+        error = reported["error"]
         if not (error["file"] and error["message"] and error["remedy"]):
             raise SystemExit(f"{path}: an error without file, message or remedy: {error}")
-        return 2, told, []
+        return 2, reported, []
     with open(table, newline="") as file:
-        return 0, told, list(csv.DictReader(file))
+        return 0, reported, list(csv.DictReader(file))
 
 
 Row = collections.namedtuple("Row", "key element occupancy b_factor altloc residue place is_water is_hydrogen")
@@ -284,7 +284,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         for path in paths:
             name = str(path.relative_to(options.folder))
-            code, told, table = ours(options.knotdock, path, Path(scratch) / "atoms.csv")
+            code, reported, table = ours(options.knotdock, path, Path(scratch) / "atoms.csv")
             read, why = theirs(path)
             reason = next((reason for part, reason in MEANT.items() if part in name), None)
             if read is None or not read[0]:
@@ -292,13 +292,14 @@ def main():
                 continue
             rows, is_pdb = read
             if code == 2:
-                differences = {"refused": [f"{told['error']['message']} (line {told['error']['line']})"]}
-                nothing_left = "no atom is left" in told["error"]["message"]
+                differences = {"refused": [f"{reported['error']['message']} (line {reported['error']['line']})"]}
+                nothing_left = "no atom is left" in reported["error"]["message"]
                 if nothing_left and not kept_by_rule(rows, names):
                     counts["both keep nothing"] += 1
                     continue
             else:
-                differences = compare(rows, is_pdb, table, names, told["input"]["report"]["altered"]["defaults_filled"])
+                filled = reported["input"]["report"]["altered"]["defaults_filled"]
+                differences = compare(rows, is_pdb, table, names, filled)
             atoms += len(rows)
             if not differences:
                 counts["the same"] += 1

@@ -4,8 +4,8 @@
     python scripts/checks/check_rdkit.py target/release/knotdock structures/examples
 
 Needs rdkit and numpy (requirements_rdkit.txt) in the running Python. The molecules are the example pair, read by RDKit
-without sanitising, and some that RDKit builds and embeds itself (fixed seeds): a peptide of all twenty amino acids and
-small molecules, with and without their hydrogens. What is compared, with the tolerance:
+without sanitising, and some that RDKit builds and embeds itself (fixed seeds). Those are a peptide of all twenty amino
+acids and small molecules, with and without their hydrogens. What is compared, with the tolerance:
 
     atoms       names, residues, numbers and coordinates of the atoms read, exactly
     radii       ProtOr's of every amino acid atom, as FreeSASA in RDKit has them, within 0.005 Å but for the atoms of
@@ -83,7 +83,7 @@ class Molecule:
     def __init__(self, knotdock, path, scratch, options=()):
         self.path, self.options = path, options
         table = scratch / "atoms.csv"
-        self.told = run(knotdock, "inspect", path, "--atoms", table, "--force", *options)
+        self.reported = run(knotdock, "inspect", path, "--atoms", table, "--force", *options)
         with open(table, newline="") as file:
             rows = list(csv.DictReader(file))
         self.rows = [row for row in rows if not row["dropped"]]
@@ -187,7 +187,7 @@ def accessible(molecule, radii):
 
 def check_solid(tally, name, molecule, spoil=0.0):
     radii = [radius + spoil for radius in molecule.radii]
-    volume, area = molecule.told["volume"], molecule.told["accessible_area"]
+    volume, area = molecule.reported["volume"], molecule.reported["accessible_area"]
     lattice = rdMolDescriptors.DoubleCubicLatticeVolume(molecule.rdkit, radii, False, True, 1.4).GetVDWVolume()
     tally.compare("volume, lattice", name, volume, lattice, 0.008 * lattice)
     low, high = molecule.positions.min(0) - 3, molecule.positions.max(0) + 3
@@ -223,24 +223,23 @@ def check_pair(tally, knotdock, name, receptor, ligand, quaternion, translation,
     """One placed pair; `spoil` in Å moves RDKit's ligand away from ours."""
     unit = np.array(quaternion) / np.linalg.norm(quaternion)
     pose = ",".join(f"{x:.12f}" for x in [*unit, *translation])
-    told = run(knotdock, "score", receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options)[
-        "geometry"
-    ]
+    scored = [receptor.path, ligand.path, "--pose", pose, "--effects", "shape", *receptor.options]
+    reported = run(knotdock, "score", *scored)["geometry"]
     placed = ligand.placed(rotation_of(unit), np.array(translation)) + spoil
     moved = with_positions(ligand.rdkit, placed)
     together = Chem.CombineMols(receptor.rdkit, moved)
     alone = accessible(receptor.rdkit, receptor.radii) + accessible(moved, ligand.radii)
     buried = alone - accessible(together, receptor.radii + ligand.radii)
-    tally.compare("buried", name, told["buried_area"], buried, max(0.015 * buried, 8.0))
+    tally.compare("buried", name, reported["buried_area"], buried, max(0.015 * buried, 8.0))
     both = np.vstack([receptor.positions, placed])
     low, high = both.min(0) - 3, both.max(0) + 3
     grids = [
         grid_of(positions, radii, low, high, 0.2)
         for positions, radii in ((receptor.positions, receptor.radii), (placed, ligand.radii))
     ]
-    tally.compare("Tanimoto", name, 1 - told["shape_tanimoto"], rdGeometry.TanimotoDistance(*grids), 0.004)
+    tally.compare("Tanimoto", name, 1 - reported["shape_tanimoto"], rdGeometry.TanimotoDistance(*grids), 0.004)
     smaller_first = sorted(grids, key=lambda grid: grid.GetOccupancyVect().GetTotalVal())
-    tally.compare("protrusion", name, told["protrusion"], rdGeometry.ProtrudeDistance(*smaller_first), 0.004)
+    tally.compare("protrusion", name, reported["protrusion"], rdGeometry.ProtrudeDistance(*smaller_first), 0.004)
     if own_radii:
         options = dict(
             gridSpacing=0.2,
@@ -251,9 +250,9 @@ def check_pair(tally, knotdock, name, receptor, ligand, quaternion, translation,
             ignoreHs=False,
         )
         shape = rdShapeHelpers.ShapeTanimotoDist(receptor.rdkit, moved, **options)
-        tally.compare("ShapeTanimotoDist", name, 1 - told["shape_tanimoto"], shape, 0.05)
+        tally.compare("ShapeTanimotoDist", name, 1 - reported["shape_tanimoto"], shape, 0.05)
         shape = rdShapeHelpers.ShapeProtrudeDist(receptor.rdkit, moved, allowReordering=True, **options)
-        tally.compare("ShapeProtrudeDist", name, told["protrusion"], shape, 0.05)
+        tally.compare("ShapeProtrudeDist", name, reported["protrusion"], shape, 0.05)
 
 
 def build(scratch):

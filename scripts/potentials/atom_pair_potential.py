@@ -8,12 +8,13 @@ DIR is a benchmark folder (scripts/docked_pairs.py); the unbound proteins of the
 the statistics.
 
 Kinds are the atoms of each amino acid by themselves, those alike by symmetry as one
-(structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of atoms whose residues stand at least
---separation apart in the file, in shells of 0.5 A about the table's distances, the first one down to 0.
+(structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of atoms whose residues are at least
+--separation places from each other in the file, in shells of 0.5 A about the table's distances, the first one down
+to 0.
 
-In each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT. n_ab counts the pairs
-found, m_ab = p_a p_b n those of a reference state in which kinds pair at random, c is a pseudocount. Both counts take
-a pair from both sides.
+In each shell the energy of kinds a and b is e_ab = -ln((n_ab + c) / (m_ab + c)) in units of RT. Here n_ab counts the
+pairs found, m_ab = p_a p_b n counts those of a reference state in which kinds pair at random, and c is a pseudocount.
+Both counts take a pair from both sides.
 
 p is the share of a kind, x^B y^(1 - B), with B the --burial:
 - x, the share among all atoms (mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997)
@@ -123,8 +124,8 @@ def read_atoms(path, kinds):
 def count(positions, types, residues, separation, kinds):
     """Pairs by shell and kinds, each from both sides."""
     first, second, distances = neighbours(positions, positions, DISTANCES[-1] + STEP / 2)
-    apart = np.abs(residues[first] - residues[second]) >= separation
-    first, second, distances = first[apart], second[apart], distances[apart]
+    distant = np.abs(residues[first] - residues[second]) >= separation
+    first, second, distances = first[distant], second[distant], distances[distant]
     shells = np.maximum(((distances - DISTANCES[0]) / STEP + 0.5).astype(int), 0)
     counts = np.zeros((len(DISTANCES), kinds, kinds))
     np.add.at(counts, (shells, types[first], types[second]), 1.0)

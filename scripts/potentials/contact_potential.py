@@ -5,9 +5,9 @@
         [--exclude ID,...] [-o FILE]
 
 DIR is a benchmark folder (scripts/docked_pairs.py); the pairs of the split give the statistics. Energies are
-e_ab = -ln(n_ab / m_ab) in units of RT. n_ab are the contacts of types a and b across the bound interfaces, counted as
-the score counts them (1 up to 5 A, falling smoothly to 0 at 7 A), each complex with the same weight. m_ab are those of
-a reference state with as many contacts:
+e_ab = -ln(n_ab / m_ab) in units of RT. The n_ab are the contacts of types a and b across the bound interfaces, each
+complex with the same weight. They are counted as the score counts them: 1 up to 5 A, falling smoothly to 0 at 7 A. The
+m_ab are those of a reference state with as many contacts:
 
 - without --decoys: pairs of surface atoms at random, m_ab = s_a s_b, s the share of a type among the
   solvent-accessible surface areas;

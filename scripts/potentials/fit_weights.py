@@ -8,13 +8,16 @@ DIR is the benchmark folder. Each RUNS is the --out folder of a `benchmark.py` r
 `--diagnostics` (for the slices) and best without refinement: refined poses were maximized under their run's weights.
 
 A pose's slices and terms are linear in the weights, so its score under others needs no docking. The poses of a pair
-and seed in all RUNS are pooled. Whether each pose is acceptable and near-native, `knotdock evaluate` is run for once,
-and its answer is kept beside the run (`verdicts.json`).
+and seed in all RUNS are pooled. `knotdock evaluate` is run once to find whether each pose is acceptable and
+near-native. Its output is kept beside the run (`verdicts.json`).
 
-Printed for every combination: the mean log rank of the first acceptable pose, pairs with one in the first 1, 10, 100
-and 1000, as means over seeds, then over pairs; and the mean log rank of the first near-native one; both against the
-weights of the first run. Then the same for weights chosen for each fold of the pairs on the others, which is what a
-choice like this is worth on new pairs. Then a bootstrap interval over pairs of the difference between the two best.
+Printed are:
+
+- For every combination the mean log rank of the first acceptable pose, and the pairs with one in the first 1, 10, 100
+  and 1000, as means over seeds, then over pairs. Beside them is the mean log rank of the first near-native pose. Both
+  are compared with the weights of the first run.
+- The same for weights chosen for each fold of the pairs on the others, which estimates the gain on new pairs.
+- A bootstrap interval over pairs of the difference between the two best.
 
 With --clusters temperatures are compared instead, at the runs' own weights: clusters ordered by
 T ln sum exp(score / T), T a share of the run's best score (0: the best pose alone).
@@ -90,8 +93,8 @@ def parse_arguments():
 def load(options, folder, pair):
     """The poses of a run as rows, the weights of the run, and the names of the terms that it has.
 
-    A row holds slices, unweighted terms, the sum of all other terms at the weights of the run (restraint, and the pose
-    terms that run.json names), acceptable and near-native (0 or 1), pose score and cluster.
+    A row holds slices, unweighted terms, the sum of all other terms, acceptable and near-native (0 or 1), pose score
+    and cluster. The other terms are restraint and the pose terms that run.json names, at the weights of the run.
     """
     table = folder / "run/poses.csv"
     found = verdicts(options, folder, pair, table)
@@ -178,8 +181,8 @@ def compare_weights(options, decoys, own, computed):
     )
 
     def show(name, ranks, near_ranks):
-        told = f"{by_pair(near_ranks, log_rank).mean():.3f}  {against(near_ranks, near_native[own])}"
-        print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {told}")
+        near_summary = f"{by_pair(near_ranks, log_rank).mean():.3f}  {against(near_ranks, near_native[own])}"
+        print(f"{name}   {summary(ranks)}  {against(ranks, acceptable[own])}   {near_summary}")
 
     for weights in order:
         name = f"{weights[0]:6g}  {weights[1]:14g}  {weights[2]:7g}  {weights[3]:7g}  {weights[4]:7g}  {weights[5]:7g}"

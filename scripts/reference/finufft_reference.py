@@ -6,14 +6,18 @@
 Builds `benches/nfft.rs`, installs finufft and numpy (and pyNFFT3, where it can be installed) from PyPI into a virtual
 environment of its own, and prints two tables in Markdown.
 
-Timed is what a user repeats for every new set of points: setpts + execute of FINUFFT's plan interface, locate_into +
-forward of ours, `x =` + adjoint of NFFT3 (its name for this direction). Planning is left out. All run in turn, run by
-run, so that noise of the machine affects all alike. Medians are by the wall clock, and in parentheses by the thread's
-CPU time, which other programs on the machine disturb less.
+Timed is what a user repeats for every new set of points; planning is left out:
 
-FINUFFT runs at its own best of several settings (oversampling 1.25, 1.5 and 2, each by a median of three runs, twice),
-NFFT3 at the cheapest of several window widths and grids that meets the tolerance. Errors are relative, in the 2-norm,
-against the direct sum at 300 modes; agreement is between ours and FINUFFT's over all modes.
+- FINUFFT: setpts + execute of the plan interface.
+- Ours: locate_into + forward.
+- NFFT3: `x =` + adjoint (its name for this direction).
+
+All run in turn, run by run, so that noise of the machine affects all alike. Medians are by the wall clock, and in
+parentheses by the thread's CPU time, which other programs on the machine disturb less.
+
+FINUFFT runs at its own best of several settings: oversampling 1.25, 1.5 and 2, each by a median of three runs, twice.
+NFFT3 runs at the cheapest of several window widths and grids that meets the tolerance. Errors are relative, in the
+2-norm, against the direct sum at 300 modes; agreement is between ours and FINUFFT's over all modes.
 
 Exits with 1 if ours misses the tolerance anywhere or, at a settled load, takes more than 1.3 times FINUFFT's CPU time.
 """

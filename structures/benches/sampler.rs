@@ -124,10 +124,15 @@ fn main() {
     let edge = solid.half_sides().into_iter().fold(0.0, f64::max) * 2.0;
     let (mut cells, mut at_or_below, mut within) = (0, 0, 0);
     let mut sound = true;
-    let mut others = vec!["| m | sampler | balls | paper | inward, eps | outward, eps | missed, % | outside, % | wall, s | CPU, s |".to_owned()];
+    let mut others = vec![
+        "| m | sampler | balls | paper | inward, eps | outward, eps | missed, % | outside, % | \
+         wall, s | CPU, s |"
+            .to_owned(),
+    ];
     others.push(format!("|{}", "---|".repeat(10)));
     println!(
-        "| m | eps, box edges | \\|X\\| | paper | mu | n1 | paper | n3 | paper | ratio | inward, eps (A1, A2, A3) | outward, eps (A3) | bounds | wall, s | CPU, s |"
+        "| m | eps, box edges | \\|X\\| | paper | mu | n1 | paper | n3 | paper | ratio | inward, eps (A1, A2, \
+         A3) | outward, eps (A3) | bounds | wall, s | CPU, s |"
     );
     println!("|{}", "---|".repeat(15));
     for paper in PAPER.iter().filter(|paper| paper.power <= last) {
@@ -158,7 +163,8 @@ fn main() {
                 .map(|fit| format!("{:.3}", fit.hausdorff_inward / epsilon))
                 .collect();
             println!(
-                "| 2^{} | {:.4} | {inside} | {} | {mu} | {n1} | {} | {n3} | {} | {ratio:.2} | {} | {:.3} | {} | {:.1} | {:.1} |",
+                "| 2^{} | {:.4} | {inside} | {} | {mu} | {n1} | {} | {n3} | {} | {ratio:.2} | {} | {:.3} | {} | \
+                 {:.1} | {:.1} |",
                 paper.power,
                 epsilon / edge,
                 paper.inside,
@@ -193,7 +199,8 @@ fn main() {
         }
     }
     println!(
-        "\nBounds hold in {cells} cells; n3 is at or below the paper's in {at_or_below} and within 1.5 times in {within}.\n"
+        "\nBounds hold in {cells} cells; n3 is at or below the paper's in {at_or_below} and within 1.5 times in \
+         {within}.\n"
     );
     println!("{}", others.join("\n"));
     println!(

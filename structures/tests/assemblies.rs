@@ -44,7 +44,8 @@ REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n";
 fn dimer() -> String {
     format!(
         "REMARK 350\nREMARK 350 COORDINATES FOR A COMPLETE MULTIMER REPRESENTING THE KNOWN\n\
-         REMARK 350 BIOMOLECULE: 1\nREMARK 350 AUTHOR DETERMINED BIOLOGICAL UNIT: DIMERIC\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
+         REMARK 350 BIOMOLECULE: 1\nREMARK 350 AUTHOR DETERMINED BIOLOGICAL UNIT: DIMERIC\n\
+         REMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
          {IDENTITY}{}REMARK 350 BIOMOLECULE: 2\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n{IDENTITY}{}",
         half_turn(2, 0.0),
         chains()
@@ -144,19 +145,19 @@ fn every_atom_has_a_fate_with_the_copies() {
         assembly: Some("1".to_owned()),
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
-    let outside: Vec<_> = listed
+    let (molecule, entries) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
+    let outside: Vec<_> = entries
         .iter()
         .filter(|entry| entry.dropped.is_some())
         .collect();
-    assert_eq!(listed.len(), molecule.atoms.len() + 1);
+    assert_eq!(entries.len(), molecule.atoms.len() + 1);
     assert_eq!(
         (outside[0].dropped, outside[0].atom.chain.as_str()),
         (Some(DropKind::Assembly), "B")
     );
 }
 
-/// Who docks an asymmetric unit should know that it is not the molecule; who picks chains has chosen.
+/// Docking an asymmetric unit gives a warning that it is not the assembly; a user who picks chains gets none.
 #[test]
 fn a_unit_that_is_no_assembly_is_warned_of() {
     let folder = tempfile::tempdir().unwrap();
@@ -199,14 +200,16 @@ fn lines_of_the_remark_belong_together() {
         read_as(folder.path(), "x.pdb", text, "", Some(assembly)).unwrap()
     };
     let lines = format!(
-        "REMARK 350 BIOMOLECULE: 1, 2\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A,\nREMARK 350                    AND CHAINS: B\n{IDENTITY}{}",
+        "REMARK 350 BIOMOLECULE: 1, 2\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A,\n\
+         REMARK 350                    AND CHAINS: B\n{IDENTITY}{}",
         chains()
     );
     for assembly in ["1", "2"] {
         assert_eq!(built(&lines, assembly).atoms.len(), 4);
     }
     let groups = format!(
-        "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n{IDENTITY}REMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n{}{}",
+        "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n\
+         {IDENTITY}REMARK 350 APPLY THE FOLLOWING TO CHAINS: B\n{}{}",
         half_turn(2, 4.0),
         chains()
     );
@@ -263,7 +266,7 @@ fn what_cannot_be_built_says_why() {
         .replacen(IDENTITY.lines().last().unwrap(), "", 3)
         .replace("REMARK 350   BIOMT3", "REMARK 900");
     assert!(refused(&cut, "1").1.contains("due"));
-    // A file that says nothing of assemblies is read as it stands: the other of two molecules may have one.
+    // A file that describes no assembly is read as it is: the other of two molecules may have one.
     let plain = read_as(folder.path(), "x.pdb", &chains(), "", Some("1")).unwrap();
     assert_eq!((plain.atoms.len(), plain.report.assembly), (4, None));
 }
@@ -291,9 +294,12 @@ fn mmcif(parts: &str) -> String {
         tags += &format!("_pdbx_struct_oper_list.vector[{axis}]\n");
     }
     format!(
-        "data_x\n{parts}\nloop_\n{tags}{operators}#\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
-         _atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.auth_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n\
-         _atom_site.Cartn_y\n_atom_site.Cartn_z\nATOM C CA GLY X A 1 5 1 2\nHETATM ZN ZN ZN Y A 301 7 1 2\nATOM C CA GLY Z B 1 9 1 2\n"
+        "data_x\n{parts}\nloop_\n{tags}{operators}#\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n\
+         _atom_site.label_atom_id\n\
+         _atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.auth_asym_id\n_atom_site.auth_seq_id\n\
+         _atom_site.Cartn_x\n\
+         _atom_site.Cartn_y\n_atom_site.Cartn_z\nATOM C CA GLY X A 1 5 1 2\nHETATM ZN ZN ZN Y A 301 7 1 2\n\
+         ATOM C CA GLY Z B 1 9 1 2\n"
     )
 }
 
@@ -322,7 +328,8 @@ fn mmcif_goes_by_the_names_of_the_archive() {
     );
     // Lists that are text fields of several lines, rows of a loop that add up to one assembly, names that are no
     // numbers.
-    let rows = "loop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n\
+    let rows = "loop_\n_pdbx_struct_assembly_gen.assembly_id\n_pdbx_struct_assembly_gen.oper_expression\n\
+        _pdbx_struct_assembly_gen.asym_id_list\n\
                 PAU 1-3\n;X,\nY\n;\nPAU P Z";
     let molecule = built(rows, "PAU");
     let names: Vec<&str> = placed(&molecule).iter().map(|one| one.0).collect();

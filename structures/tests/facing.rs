@@ -100,7 +100,7 @@ fn a_mirror_image_that_touches_its_original_is_turned() {
     }
 }
 
-/// What touches and faces outward is sound, and nothing of it is changed.
+/// Bodies that touch and face outward are sound, and stay unchanged.
 #[test]
 fn bodies_that_touch_stay_as_they_are() {
     let at = |x: f64, y: f64, z: f64| cube([x, y, z], 1.0);

@@ -68,7 +68,8 @@ fn further_data_blocks_with_atoms_are_warned_of() {
 #[test]
 fn archive_names_stand_in_for_missing_author_names() {
     let file = "data_x\nloop_\n_ATOM_SITE.label_asym_id\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
-                _atom_site.label_seq_id\n_atom_site.cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\nQ CA GLY 5 1 2 3\n";
+                _atom_site.label_seq_id\n_atom_site.cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+                Q CA GLY 5 1 2 3\n";
     let molecule = read_text(file, "").unwrap();
     let atom = &molecule.atoms[0];
     assert_eq!((atom.chain.as_str(), atom.residue_number), ("Q", 5));
@@ -213,7 +214,7 @@ fn both_formats_give_the_same_atoms() {
     }
 }
 
-/// PyMOL writes each object as a data block: "the file has only A" was all that was said of a chain in the second one.
+/// PyMOL writes each object as a data block: for a chain in the second one the error said only "the file has only A".
 #[test]
 fn a_chain_of_a_block_that_was_not_read_is_answered_with_the_block() {
     let atom = |chain: &str| format!("ATOM 1 C CA . GLY {chain} 1 ? 1 2 3 1 9 1 {chain} 1\n");

@@ -10,9 +10,9 @@ use knotdock_structures::molecule::{Format, InputSpec, ReadError, ReadOptions, r
 use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 #[test]
-fn records_that_break_pdbtbx_are_sieved_out() {
+fn records_that_break_pdbtbx_are_filtered_out() {
     // Free-form REMARK, short header, old DBREF and SEQADV, the dummy CRYST1 of NMR and model files, ANISOU without its
-    // atom, a MASTER record that does not add up: each alone makes pdbtbx 0.12 refuse or panic.
+    // atom, a MASTER record that does not add up. Each alone makes pdbtbx 0.12 refuse or panic.
     let mut file = String::from(
         "HEADER    SHORT\nREMARK free text, no number\nREMARK\nDBREF  1ABC A\nSEQADV\nDBREF2 X\nSSBOND\nMODRES\n\
          CRYST1    0.000    0.000    0.000  90.00  90.00  90.00\nANISOU\nSEQRES\nMASTER\nUSER  x\n",

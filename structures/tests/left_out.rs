@@ -1,4 +1,5 @@
-//! What is left out of a molecule whatever else is asked: records that are no atoms, and residues that are named.
+//! What is left out of a molecule whatever the other options say: records that are no atoms, and residues that are
+//! named.
 
 #![cfg(feature = "molecule")]
 

@@ -111,8 +111,8 @@ fn off_in_other_lines() {
     }
 }
 
-/// A text STL with a zero at its end, in UTF-16, without its first line, after a comment or in one line was taken for a
-/// binary one of 1,684,234,849 triangles, or had none.
+/// Text STL files of other kinds: with a zero at the end, in UTF-16, without the first line, after a comment, in one
+/// line. At first such a file was read as a binary one of 1,684,234,849 triangles, or had none.
 #[test]
 fn text_stl_of_many_kinds() {
     let stl = cube().stl_text();
@@ -302,29 +302,85 @@ fn ply_dialects() {
         is_cube("normals.ply", text.as_bytes());
     }
     for (name, text) in [
-        ("blank.ply", format!("{head}end_header\n\n{vertices}\n\n{faces}\n\n")),
-        ("blank_head.ply", ply.replace("comment test\n", "comment\n\n\ncomment\tx\nobj_info\nobj_info a b\n")),
+        (
+            "blank.ply",
+            format!("{head}end_header\n\n{vertices}\n\n{faces}\n\n"),
+        ),
+        (
+            "blank_head.ply",
+            ply.replace(
+                "comment test\n",
+                "comment\n\n\ncomment\tx\nobj_info\nobj_info a b\n",
+            ),
+        ),
         ("crlf.ply", ply.replace('\n', "\r\n")),
         ("cr.ply", ply.replace('\n', "\r")),
-        ("crlf_head.ply", format!("{}end_header\r\n{body}", head.replace('\n', "\r\n"))),
-        ("spaces.ply", ply.replace('\n', "  \n").replace("element ", "element  ")),
-        ("line.ply", format!("{head}end_header\n{}", body.replace('\n', " "))),
-        ("word.ply", format!("{head}end_header\n{}", body.replace(' ', "\n"))),
-        ("short.ply", ply.replace("double", "float64").replace("uchar int", "uint8 int32")),
+        (
+            "crlf_head.ply",
+            format!("{}end_header\r\n{body}", head.replace('\n', "\r\n")),
+        ),
+        (
+            "spaces.ply",
+            ply.replace('\n', "  \n").replace("element ", "element  "),
+        ),
+        (
+            "line.ply",
+            format!("{head}end_header\n{}", body.replace('\n', " ")),
+        ),
+        (
+            "word.ply",
+            format!("{head}end_header\n{}", body.replace(' ', "\n")),
+        ),
+        (
+            "short.ply",
+            ply.replace("double", "float64")
+                .replace("uchar int", "uint8 int32"),
+        ),
         ("index.ply", ply.replace("vertex_indices", "vertex_index")),
         ("float.ply", ply.replace("uchar int", "uchar float")),
         ("real.ply", ply.replace("uchar int", "int double")),
-        ("real_words.ply", format!("{head}end_header\n{vertices}{}", faces.replace("3 ", "3.0 "))
-            .replace("uchar int", "float double")),
-        ("list.ply", format!("{}property list uchar float texcoord\nend_header\n{vertices}{}", head,
-            faces.replace('\n', " 2 0.5 nan\n"))),
-        ("edges.ply", format!("{head}element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n{body}0 1\n1 2\n")),
-        ("first.ply", format!("{}end_header\n1 2.5 nan\n{body}",
-            head.replace("element vertex", "element camera 1\nproperty int a\nproperty float b\nproperty float c\nelement vertex"))),
+        (
+            "real_words.ply",
+            format!(
+                "{head}end_header\n{vertices}{}",
+                faces.replace("3 ", "3.0 ")
+            )
+            .replace("uchar int", "float double"),
+        ),
+        (
+            "list.ply",
+            format!(
+                "{}property list uchar float texcoord\nend_header\n{vertices}{}",
+                head,
+                faces.replace('\n', " 2 0.5 nan\n")
+            ),
+        ),
+        (
+            "edges.ply",
+            format!(
+                "{head}element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+                 {body}0 1\n1 2\n"
+            ),
+        ),
+        (
+            "first.ply",
+            format!(
+                "{}end_header\n1 2.5 nan\n{body}",
+                head.replace(
+                    "element vertex",
+                    "element camera 1\nproperty int a\nproperty float b\nproperty float c\n\
+                     element vertex"
+                )
+            ),
+        ),
         ("faces_first.ply", {
             let (vertex, face) = head.split_at(head.find("element face").unwrap());
             let start = vertex.find("element vertex").unwrap();
-            format!("{}{face}{}end_header\n{faces}{vertices}", &vertex[..start], &vertex[start..])
+            format!(
+                "{}{face}{}end_header\n{faces}{vertices}",
+                &vertex[..start],
+                &vertex[start..]
+            )
         }),
     ] {
         is_cube(name, text.as_bytes());
@@ -395,7 +451,8 @@ fn binary_ply_dialects() {
                 };
                 let order = if big { "big" } else { "little" };
                 let head = format!(
-                    "ply\nformat binary_{order}_endian 1.0\ncomment\nelement vertex 8\nproperty {name} x\nproperty {name} y\n\
+                    "ply\nformat binary_{order}_endian 1.0\ncomment\nelement vertex 8\nproperty {name} x\n\
+                     property {name} y\n\
                      property {name} z\nelement face 12\nproperty list uchar {name} vertex_indices\nend_header"
                 );
                 let line_end = end.trim_end_matches('\n').to_owned() + "\n";

@@ -94,13 +94,15 @@ fn a_text_format_keeps_every_digit() {
 #[test]
 fn dialects() {
     // Quads, counting back, continued lines, groups, no final newline; CRLF.
-    let obj = "g x\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0 0 1\r\nv 1 0 1\r\nv 1 1 1\r\nv 0 1 1\r\nvn 0 0 1\r\n\
+    let obj = "g x\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nv 0 0 1\r\nv 1 0 1\r\nv 1 1 1\r\nv 0 1 1\r\n\
+        vn 0 0 1\r\n\
                f 1 4 3 2\r\nf 5 6 \\\r\n7 8\r\nusemtl y\r\nf 1 2 6 5\r\nf 2 3 7 6\r\nf 3 4 8 7\r\nf -8 -4 -1 -5";
     let (mesh, report) = parse(obj.as_bytes(), MeshFormat::Obj).unwrap();
     assert_eq!(report.triangles, 12);
     assert!((mesh.volume() - 1.0).abs() < 1e-15 && report.is_sound());
     // Counts on the line of the keyword, and a colour a vertex.
-    let off = "COFF 4 4 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1 # last\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let off = "COFF 4 4 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1 # last\n3 0 2 1\n3 0 1 3\n\
+        3 1 2 3\n3 2 0 3\n";
     let (mesh, report) = parse(off.as_bytes(), MeshFormat::Off).unwrap();
     assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15 && report.is_sound());
     // Two solids in one file, and upper case.

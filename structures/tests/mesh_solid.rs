@@ -175,8 +175,7 @@ fn triangles_and_parts_that_face_the_wrong_way_are_turned() {
     }
 }
 
-/// A surface whose triangles have corners of their own, a little apart from their neighbours', as many programs write
-/// them.
+/// A surface whose triangles have corners of their own, a little off their neighbours', as many programs write them.
 fn in_pieces(surface: &Surface) -> Surface {
     let mut pieces = Surface {
         positions: Vec::new(),

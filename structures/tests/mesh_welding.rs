@@ -1,5 +1,5 @@
 //! Vertices in one place are one: bridges of polygons with holes, seams within the rounding of numbers, and what must
-//! stay apart.
+//! not be joined.
 
 #![cfg(feature = "mesh")]
 
@@ -166,7 +166,7 @@ fn ulps(x: f64, steps: i64) -> f64 {
     f64::from(f32::from_bits(((x as f32).to_bits() as i64 + steps) as u32))
 }
 
-/// A ball at an offset of 100, its faces meshed apart: corners differ by a last bit of `float`, and triangles face
+/// A ball at an offset of 100, its faces meshed separately: corners differ by a last bit of `float`, and triangles face
 /// either way. It was open throughout, had a volume of 9.2 in place of 4100, and took minutes.
 #[test]
 fn seams_within_the_rounding_of_a_float_are_closed() {

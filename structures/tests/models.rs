@@ -40,7 +40,8 @@ fn models(parts: &[String]) -> String {
 fn mmcif(parts: &[String]) -> String {
     let mut text = String::from(
         "data_x\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
-         _atom_site.label_comp_id\n_atom_site.auth_asym_id\n_atom_site.label_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n\
+         _atom_site.label_comp_id\n_atom_site.auth_asym_id\n_atom_site.label_asym_id\n_atom_site.auth_seq_id\n\
+         _atom_site.Cartn_x\n\
          _atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.pdbx_PDB_model_num\n",
     );
     for (number, part) in (1..).zip(parts) {

@@ -70,7 +70,7 @@ fn dextro(name: &str) -> &str {
     }
 }
 
-/// Found by users: names that are not listed lost charges, contact types and rescoring, and with them a docking (DockQ
+/// Found by users: names outside the tables lost charges, contact types and rescoring, and with them a docking (DockQ
 /// of the first rank from 0.63 to 0.15) by renaming alone.
 #[test]
 fn renaming_changes_nothing() {

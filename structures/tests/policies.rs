@@ -177,8 +177,10 @@ fn models_of_mmcif_go_by_their_column() {
         .map(|(model, x)| format!("C CA GLY A 1 {x} 0 0 {model}\n"))
         .concat();
     let file = format!(
-        "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n\
-         _atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.pdbx_PDB_model_num\n{rows}"
+        "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
+         _atom_site.label_asym_id\n\
+         _atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+         _atom_site.pdbx_PDB_model_num\n{rows}"
     );
     for (model, expected) in [(1, [1.0, 3.0]), (2, [2.0, 4.0])] {
         let options = ReadOptions {
@@ -202,8 +204,8 @@ fn every_atom_has_a_fate_with_the_reason() {
         hetatm: Hetatm::Drop,
         ..ReadOptions::default()
     };
-    let (molecule, listed) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
-    let reasons: Vec<Option<DropKind>> = listed.iter().map(|entry| entry.dropped).collect();
+    let (molecule, entries) = read_with_fates(&InputSpec::whole(&path), &options).unwrap();
+    let reasons: Vec<Option<DropKind>> = entries.iter().map(|entry| entry.dropped).collect();
     let dropped = |kind| Some(kind);
     assert_eq!(
         reasons,
@@ -223,11 +225,11 @@ fn every_atom_has_a_fate_with_the_reason() {
         ]
     );
     assert!(
-        listed
+        entries
             .windows(2)
             .all(|pair| pair[0].atom.line < pair[1].atom.line)
     );
-    let kept: Vec<_> = listed
+    let kept: Vec<_> = entries
         .iter()
         .filter(|entry| entry.dropped.is_none())
         .map(|entry| &entry.atom)

@@ -1,4 +1,4 @@
-//! Predicted models: what tells them from measured structures, and the residues of which they are not sure.
+//! Predicted models: how they are detected, and their residues of low confidence.
 
 #![cfg(feature = "molecule")]
 
@@ -41,8 +41,10 @@ fn rising(residue: usize) -> f64 {
 /// The same atoms in mmCIF, after the items of `head`.
 fn mmcif(head: &str, b: impl Fn(usize, usize) -> f64) -> String {
     let mut text = format!(
-        "data_x\n{head}\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
-         _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
+        "data_x\n{head}\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
+         _atom_site.label_comp_id\n\
+         _atom_site.label_asym_id\n_atom_site.label_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n\
+         _atom_site.Cartn_z\n\
          _atom_site.occupancy\n_atom_site.B_iso_or_equiv\n"
     );
     for residue in 0..10 {
@@ -89,9 +91,9 @@ fn one_value_a_residue_shows_a_prediction() {
     assert!(shown.contains("warning: 3 of 10 residues"), "{shown}");
 }
 
-/// B columns that are not one value a residue, or no share of a hundred, or low, or the same throughout, tell nothing.
+/// B columns that are not one value a residue, or no share of a hundred, or low, or the same throughout, are no pLDDT.
 #[test]
-fn other_columns_tell_none() {
+fn other_columns_are_no_confidence() {
     type Column = fn(usize, usize) -> f64;
     let columns: [(&str, Column); 6] = [
         ("refined atom by atom", |residue, atom| {
@@ -161,7 +163,8 @@ fn an_experiment_rules_a_prediction_out() {
 fn scores_that_a_model_names_go_before_its_values() {
     let metrics = |first: &str, second: &str| {
         format!(
-            "loop_\n_ma_qa_metric.id\n_ma_qa_metric.mode\n_ma_qa_metric.name\n_ma_qa_metric.type\n1 global {first}\n2 local {second}\n#"
+            "loop_\n_ma_qa_metric.id\n_ma_qa_metric.mode\n_ma_qa_metric.name\n_ma_qa_metric.type\n\
+             1 global {first}\n2 local {second}\n#"
         )
     };
     let named = metrics("'mean' pLDDT", "pLDDT pLDDT");
@@ -213,12 +216,12 @@ fn residues_below_the_limit_are_left_out_and_named() {
         (50.0, 7, ""),
         (93.0, 1, ""),
     ] {
-        let (molecule, listed) = read_with_fates(&spec, &options(least)).unwrap();
+        let (molecule, entries) = read_with_fates(&spec, &options(least)).unwrap();
         assert_eq!(molecule.atoms.len(), 4 * residues, "{least}");
         assert!(molecule.atoms.iter().all(|atom| atom.b_factor >= least));
         assert_eq!(molecule.report.confidence, Some(SURE_OF_TEN));
-        assert_eq!(listed.len(), 40);
-        let dropped = listed
+        assert_eq!(entries.len(), 40);
+        let dropped = entries
             .iter()
             .filter(|entry| entry.dropped == Some(DropKind::LowConfidence));
         assert_eq!(dropped.count(), 40 - 4 * residues);

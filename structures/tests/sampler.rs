@@ -242,7 +242,7 @@ fn grids_have_both_ends_and_the_middle() {
     assert_eq!(grid.node(0), [-0.5; 3]);
     assert_eq!(grid.node(124), [0.5; 3]);
     assert_eq!(grid.node(62), [0.0; 3]);
-    // Balls find the nodes that a look at each would.
+    // Balls find the same nodes as a test of each node.
     for (center, radius) in scattered(50, 0.6).zip(scattered(50, 0.5)) {
         let radius = radius[0].abs();
         let mut found = Vec::new();
@@ -339,7 +339,7 @@ fn the_farthest_point_of_a_ball_about_a_ring_is_found() {
         radius: radius / frame.unit,
     }]);
     // By hand: a point at rho from the ring's axis has the square distance 100 + r^2 - d^2 - rho (20 - 2 d cos phi)
-    // from its core, d the centre's own distance from the axis, so that the farthest point lies on the axis.
+    // from its core. Here d is the centre's own distance from the axis. So the farthest point lies on the axis.
     let square = 100.0 + radius * radius - center[0].powi(2) - center[1].powi(2);
     let farthest = square.sqrt() - 3.0;
     assert!((farthest - 22.51).abs() < 0.01, "{farthest}");

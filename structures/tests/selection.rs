@@ -207,7 +207,7 @@ fn a_trace_and_missing_side_chains_are_warned_of() {
     assert!(warnings[0].starts_with("1 atom repeats"), "{warnings:?}");
 }
 
-/// Residues 1 to 9 of chain A, 1 to 3 of chain B, a bond's length apart, and a zinc numbered 301 in chain A.
+/// Residues 1 to 9 of chain A, 1 to 3 of chain B, spaced by a bond's length, and a zinc numbered 301 in chain A.
 fn two_chains() -> String {
     let residue = |chain: char, number: i64| {
         let at = |name: &'static str, element: &'static str, x: f64| Line {
@@ -298,13 +298,14 @@ fn residues_are_picked_by_their_numbers() {
     assert!(matches!(refused(":A:x"), ReadError::Specification { .. }));
 }
 
-/// Chains without a name are `_`, and names of several letters are told from numbers.
+/// Chains without a name are `_`, and names of several letters are distinguished from numbers.
 #[test]
 fn residues_of_blank_and_long_chain_names_are_picked() {
     let blank = two_chains().replace(" A ", "   ");
     let molecule = read_bytes("x.pdb", blank.as_bytes(), ":_:1-2").unwrap();
     assert_eq!(molecule.atoms.len(), 8);
-    let cif = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.type_symbol\n_atom_site.auth_asym_id\n\
+    let cif = "data_x\nloop_\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n_atom_site.type_symbol\n\
+        _atom_site.auth_asym_id\n\
         _atom_site.label_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n\
         CA ALA C AA A 5 0 0 0\nCA ALA C AA A 6 4 0 0\nCA ALA C 6 B 1 9 0 0\n";
     let of = |selection: &str| {

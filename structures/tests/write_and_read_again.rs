@@ -251,7 +251,7 @@ fn the_limits_of_pdb_are_exact() {
     assert!(text.lines().any(|line| line.starts_with("ATOM  99999")));
 }
 
-/// Every copy of a ring has a chain of its own, whatever chains its molecule has, and the map tells them apart.
+/// Every copy of a ring has a chain of its own, whatever chains its molecule has, and the map names each.
 #[test]
 fn copies_of_a_ring_have_chains_of_their_own() {
     let one = molecule(vec![atom("B", 1, 0.0), atom("A", 1, 1.0)]);

@@ -100,8 +100,8 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
             .args(arguments.split(' '))
             .assert()
             .code(2);
-        let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
-        assert!(told.contains(reason), "{told}");
+        let reported = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(reported.contains(reason), "{reported}");
     }
     let kept = fs::read_to_string(&ligand).unwrap();
     assert_eq!(kept, crate::molecules::ligand());
@@ -136,29 +136,30 @@ fn too_little_memory_is_refused_before_the_search_with_a_spacing_that_fits() {
         let object: Value = serde_json::from_slice(&output.stdout).unwrap();
         (output.status.code(), object)
     };
-    let (code, told) = attempt("1M", "");
+    let (code, reported) = attempt("1M", "");
     assert_eq!(code, Some(2));
     assert!(!folder.path().join("run").exists());
-    let message = told["error"]["message"].as_str().unwrap();
+    let message = reported["error"]["message"].as_str().unwrap();
     let needed: u64 = message
         .split(|c: char| !c.is_ascii_digit())
         .find_map(|word| word.parse().ok())
         .unwrap();
-    let (code, told) = attempt(&(needed * 19 / 20).to_string(), "");
-    assert_eq!(code, Some(2), "{told}");
-    let remedy = told["error"]["remedy"].as_str().unwrap();
+    let (code, reported) = attempt(&(needed * 19 / 20).to_string(), "");
+    assert_eq!(code, Some(2), "{reported}");
+    let remedy = reported["error"]["remedy"].as_str().unwrap();
     let coarser = remedy.strip_prefix("use ").unwrap();
     let coarser = coarser.split(',').next().unwrap();
     assert!(coarser.starts_with("--spacing "), "{remedy}");
-    let (code, told) = attempt(&(needed * 19 / 20).to_string(), coarser);
-    assert_eq!(code, Some(0), "{told}");
-    // A coarser grid under the same resolution would fit as well, and its scores would be off by far more than was asked for.
-    let tolerance = told["run"]["options"]["kernel"]["tolerance"]
+    let (code, reported) = attempt(&(needed * 19 / 20).to_string(), coarser);
+    assert_eq!(code, Some(0), "{reported}");
+    // A coarser grid under the same resolution would fit as well, and its scores would be off by far more than was
+    // requested.
+    let tolerance = reported["run"]["options"]["kernel"]["tolerance"]
         .as_f64()
         .unwrap();
     assert!(
-        told["run"]["error"]["rms"].as_f64().unwrap() < tolerance,
-        "{told}"
+        reported["run"]["error"]["rms"].as_f64().unwrap() < tolerance,
+        "{reported}"
     );
 }
 
@@ -200,11 +201,12 @@ fn mmcif_and_gzip_go_in_and_mmcif_comes_out() {
     }
 }
 
-/// Found by an audit: a grid too coarse for its resolution was told of by a figure among others, or by an infinite one.
+/// Found by an audit: a grid too coarse for its resolution was reported by a figure among others, or by an infinite
+/// one.
 #[test]
-fn scores_that_are_off_by_more_than_was_asked_are_warned_of() {
+fn scores_that_are_off_by_more_than_was_requested_are_warned_of() {
     let folder = place();
-    let told = |options: &str| {
+    let reported = |options: &str| {
         let output = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
             .args(["dock", "receptor.pdb", "ligand.pdb", "--rotations", "20"])
@@ -216,14 +218,14 @@ fn scores_that_are_off_by_more_than_was_asked_are_warned_of() {
         let words = |bytes| String::from_utf8(bytes).unwrap();
         (words(output.stdout), words(output.stderr))
     };
-    let (_, warned) = told("--spacing 6");
+    let (_, warned) = reported("--spacing 6");
     assert!(
         warned.contains("warning: the fast path was off by"),
         "{warned}"
     );
-    let (report, warned) = told("--spacing 60");
+    let (report, warned) = reported("--spacing 60");
     assert!(warned.contains("nothing fits"), "{warned}");
     assert!(!report.contains("inf"), "{report}");
-    let (_, warned) = told("--tolerance 1e-2 --resolution 6 --spacing 1.5");
+    let (_, warned) = reported("--tolerance 1e-2 --resolution 6 --spacing 1.5");
     assert!(!warned.contains("warning: the fast path"), "{warned}");
 }

@@ -23,7 +23,7 @@ fn a_recorded_run_repeats_to_the_byte() {
         comparable(&folder.path().join("first")),
         comparable(&folder.path().join("again"))
     );
-    // What is recorded cannot be asked for otherwise at the same time.
+    // An option cannot contradict the record at the same time.
     for option in [
         "--rotations=60",
         "--no-cluster",
@@ -47,8 +47,8 @@ fn a_recorded_run_repeats_to_the_byte() {
         .args(["dock", "--rerun", "first/run.json", "-o", "third"])
         .assert()
         .code(2);
-    let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
-    assert!(told.contains("has changed"), "{told}");
+    let reported = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+    assert!(reported.contains("has changed"), "{reported}");
     assert!(!folder.path().join("third").exists());
 }
 
@@ -103,7 +103,7 @@ fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
 }
 
 #[test]
-fn an_older_run_goes_only_when_told_and_when_the_new_one_is_done() {
+fn an_older_run_goes_only_when_forced_and_when_the_new_one_is_done() {
     let folder = place();
     let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";
     run(folder.path(), dock);
@@ -118,10 +118,10 @@ fn an_older_run_goes_only_when_told_and_when_the_new_one_is_done() {
             .code(2)
     };
     let refused = attempt(dock);
-    let told = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    let reported = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
     assert!(
-        told.contains("already holds a run") && told.contains("--force"),
-        "{told}"
+        reported.contains("already holds a run") && reported.contains("--force"),
+        "{reported}"
     );
     attempt("dock receptor.pdb:Z ligand.pdb -o knotdock_receptor_ligand --force");
     assert_eq!(files(&directory), before);
@@ -188,8 +188,8 @@ fn an_interrupted_run_leaves_nothing_that_looks_whole() {
     run(folder.path(), &format!("{dock} --rotations 20"));
     let run_folder = folder.path().join("run");
     let before = files(&run_folder);
-    // A shell starts background jobs with SIGINT ignored, and children inherit that: when CI itself ran as such a job, the
-    // signal was lost and the search ran on. GNU env gives the child the signal's default back.
+    // A shell starts background jobs with SIGINT ignored, and children inherit that: when CI itself ran as such a
+    // job, the signal was lost and the search ran on. GNU env gives the child the signal's default back.
     let mut child = std::process::Command::new("env")
         .arg("--default-signal=INT")
         .arg(assert_cmd::cargo::cargo_bin!("knotdock"))

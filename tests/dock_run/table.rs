@@ -62,14 +62,16 @@ fn the_table_says_what_its_columns_promise() {
     }
 }
 
-/// A list of shape alone names a place once: no row lies within a step of the search (a turn by the covering radius and a shift by the spacing, as RMSD of the ligand's CA atoms) of a
-/// better refined one of its cluster, and rows that lie little farther are kept. Clusters are so wide here that the step decides.
+/// A table by shape alone names a place once: no row lies within a step of the search of a better refined one of its
+/// cluster. Rows that lie little farther are kept. A step is a turn by the covering radius and a shift by the
+/// spacing, as RMSD of the ligand's CA atoms. Clusters are so wide here that the step decides.
 #[test]
 fn refined_rows_stand_for_what_lies_within_a_step() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 --no-cluster --diagnostics --write-top 0 -o run --quiet",
+        "dock receptor.pdb ligand.pdb --effects shape --rotations 600 --poses 400 --refine 300 --cluster-radius 30 \
+         --no-cluster --diagnostics --write-top 0 -o run --quiet",
     );
     let run = folder.path().join("run");
     let record: Value = serde_json::from_slice(&fs::read(run.join("run.json")).unwrap()).unwrap();
@@ -82,10 +84,10 @@ fn refined_rows_stand_for_what_lies_within_a_step() {
         .collect();
     assert!(alphas.len() >= 3);
     let mean_square = |a: &[[f64; 3]], b: &dyn Fn(usize, usize) -> f64| {
-        let apart = |(i, x): (usize, &[f64; 3])| -> f64 {
+        let square = |(i, x): (usize, &[f64; 3])| -> f64 {
             (0..3).map(|axis| (x[axis] - b(i, axis)).powi(2)).sum()
         };
-        a.iter().enumerate().map(apart).sum::<f64>() / a.len() as f64
+        a.iter().enumerate().map(square).sum::<f64>() / a.len() as f64
     };
     let middle = [0, 1, 2].map(|k| alphas.iter().map(|x| x[k]).sum::<f64>() / alphas.len() as f64);
     let gyration = mean_square(&alphas, &|_, axis| middle[axis]);
@@ -107,8 +109,9 @@ fn refined_rows_stand_for_what_lies_within_a_step() {
         for better in 0..index {
             let other = &rows[better];
             if other["cluster"] == row["cluster"] && other["refined"] == "true" {
-                let apart = mean_square(&placed[index], &|i, axis| placed[better][i][axis]).sqrt();
-                nearest = nearest.min(apart);
+                let distance =
+                    mean_square(&placed[index], &|i, axis| placed[better][i][axis]).sqrt();
+                nearest = nearest.min(distance);
             }
         }
     }
@@ -167,7 +170,8 @@ fn double_precision_goes_where_single_cannot() {
         run(
             folder.path(),
             &format!(
-                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster --diagnostics {options} -o {name} --quiet"
+                "dock receptor.pdb ligand.pdb --rotations 24 --per-rotation 1 --no-cluster --diagnostics {options} \
+                 -o {name} --quiet"
             ),
         );
         let record = fs::read(folder.path().join(name).join("run.json")).unwrap();
@@ -221,7 +225,8 @@ fn any_number_of_threads_gives_the_same_bytes() {
     assert_eq!(one, comparable(&folder.path().join("five")));
 }
 
-/// A finer search can only find better peaks in the cells that it searches, keeps the number of poses, and says where each came from.
+/// A finer search can only find better peaks in the cells that it searches, keeps the number of poses, and says where
+/// each came from.
 #[test]
 fn a_finer_search_about_the_best_rotations() {
     let folder = place();
@@ -248,8 +253,8 @@ fn a_finer_search_about_the_best_rotations() {
     // Grid poses of finer rotations score what the fast path said, to its tolerance.
     let scale = best(&fine_rows);
     for row in fine_rows.iter().filter(finer).take(20) {
-        let apart = number(row, "score_grid") - number(row, "search_score");
-        assert!(apart.abs() < 0.02 * scale, "{row:?}");
+        let difference = number(row, "score_grid") - number(row, "search_score");
+        assert!(difference.abs() < 0.02 * scale, "{row:?}");
     }
     let record = |files: &BTreeMap<String, Vec<u8>>| -> Value {
         serde_json::from_slice(&files["run.json"]).unwrap()

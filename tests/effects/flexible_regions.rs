@@ -4,8 +4,9 @@ use super::*;
 use knotdock_structures::Conformers;
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 
-/// An atom near unresolved residues costs the weight times the share of conformers within reach, whatever effects are on; search
-/// scores stay unchanged. The program looks conformers up in cells of 1 Å; distances to all their residues bound the result.
+/// An atom near unresolved residues costs the weight times the share of conformers within reach, whatever effects are
+/// on; search scores stay unchanged. The program looks conformers up in cells of 1 Å; distances to all their residues
+/// bound the result.
 #[test]
 fn clashes_with_unresolved_residues_cost() {
     const WEIGHT: f64 = 12.5;
@@ -86,7 +87,8 @@ fn inside(atoms: &[[f64; 3]], segments: &[Conformers], reach: f64) -> f64 {
     sum
 }
 
-/// Atoms of the first and last residues of a chain in contact with the other side cost their weight each, counted by all pairs.
+/// Atoms of the first and last residues of a chain in contact with the other side cost their weight each, counted by
+/// all pairs.
 #[test]
 fn contacts_of_termini_cost() {
     let folder = tempfile::tempdir().unwrap();

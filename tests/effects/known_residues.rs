@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Contacts of blocked residues cost and active residues draw poses, in the search, the table and `score`. Unknown names are errors.
+/// Contacts of blocked residues cost and active residues draw poses, in the search, the table and `score`. Unknown
+/// names are errors.
 #[test]
 fn named_residues_are_kept_free_or_touched() {
     let folder = tempfile::tempdir().unwrap();

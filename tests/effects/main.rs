@@ -132,8 +132,8 @@ fn a_protein_pair_calls_for_all_and_a_reported_pose_scores_the_same_again() {
     }
 }
 
-/// A ligand without amino acids has no contact types, and one of neutral atoms no charges: auto leaves them off and says why, and to
-/// force them is an error.
+/// A ligand without amino acids has no contact types, and one of neutral atoms no charges: auto leaves them off and
+/// says why, and to force them is an error.
 #[test]
 fn what_the_inputs_cannot_feed_is_off_and_cannot_be_forced() {
     let folder = tempfile::tempdir().unwrap();

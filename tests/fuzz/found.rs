@@ -3,8 +3,8 @@
 use knotdock_scoring::effect::contact::Potential;
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 
-/// The first runs on tables of potentials took too many inputs: whatever followed the last row, a copied line or a cut-off second table,
-/// was never looked at, so a table joined to another by mistake was half used without a word.
+/// The first runs on tables of potentials accepted too many inputs. Whatever followed the last row, a copied line or
+/// a cut-off second table, was never read. So a table joined to another by mistake was half used without a warning.
 #[test]
 fn rows_after_a_table_are_refused() {
     let coarse = include_str!("../../scoring/src/terms/effect/contact_potential.csv");

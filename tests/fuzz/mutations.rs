@@ -1,4 +1,5 @@
-//! Mutated inputs for every reader, by a fixed sequence of pseudo-random numbers: the n-th input of a reader is the same everywhere.
+//! Mutated inputs for every reader, by a fixed sequence of pseudo-random numbers: the n-th input of a reader is the
+//! same everywhere.
 
 /// A sequence of pseudo-random numbers: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
 pub struct Random(u64);
@@ -85,7 +86,7 @@ const WORDS: [&str; 56] = [
 /// The mutated input number `index` of a reader: one of its seeds with up to eight changes.
 pub fn mutated(seeds: &[Vec<u8>], reader: u64, index: u64) -> Vec<u8> {
     let mut random = Random::new(reader.wrapping_mul(0x1000_0000_0000).wrapping_add(index));
-    // Neighbouring starts of SplitMix64 are far apart after one step.
+    // Neighbouring starts of SplitMix64 differ widely after one step.
     let mut random = Random::new(random.next());
     let mut bytes = seeds[random.below(seeds.len())].clone();
     for _ in 0..1 + random.below(8) {

@@ -1,4 +1,5 @@
-//! Every reader with its seeds, and what may come of any input: a value that can be used, or an error that says what is wrong.
+//! Every reader with its seeds, and what may come of any input: a value that can be used, or an error that says what
+//! is wrong.
 
 use std::fs;
 use std::path::Path;
@@ -50,8 +51,8 @@ impl Reader {
         Self::Pairs,
     ];
 
-    /// Reads an input; says whether it was taken, or panics where a promise is broken. `scratch` is a folder to write into, and
-    /// `index` chooses the options.
+    /// Reads an input; says whether it was taken, or panics where a promise is broken. `scratch` is a folder to write
+    /// into, and `index` chooses the options.
     pub fn read(self, bytes: &[u8], scratch: &Path, index: u64) -> bool {
         match self {
             Self::Pdb | Self::Mmcif | Self::Gzip => {
@@ -131,8 +132,8 @@ impl Reader {
     }
 }
 
-/// Puts an input where the last one was. As a new file: some file systems flush one that is cut short and written again, which took fifty
-/// times as long as reading it.
+/// Puts an input where the last one was. As a new file: some file systems flush one that is cut short and written
+/// again, which took fifty times as long as reading it.
 fn replace(path: &Path, bytes: &[u8]) {
     // There is none before the first input.
     let _ = fs::remove_file(path);
@@ -215,13 +216,13 @@ fn molecule(path: &Path, index: u64) -> bool {
         ..ReadOptions::default()
     };
     match read_with_fates(&InputSpec::whole(path), &options) {
-        Ok((molecule, listed)) => {
-            assert!(!molecule.atoms.is_empty() && listed.len() >= molecule.atoms.len());
+        Ok((molecule, entries)) => {
+            assert!(!molecule.atoms.is_empty() && entries.len() >= molecule.atoms.len());
             let knots = molecule.knots().unwrap();
             assert!(!molecule.report.to_string().is_empty());
             let labels = molecule.labels(7.0);
             assert_eq!(labels.charges.len(), molecule.atoms.len());
-            // What is slow is asked of a few.
+            // What is slow is computed for a few.
             if index.is_multiple_of(16) {
                 let _ = union_volume(&knots);
                 let areas = molecule.accessible_areas(8);
@@ -233,9 +234,9 @@ fn molecule(path: &Path, index: u64) -> bool {
             }
             true
         }
-        // The sieve let something through that the parser behind it refused or broke down on.
+        // The record filter passed something that the parser behind it refused or broke down on.
         Err(ReadError::Parser { what, .. }) => {
-            panic!("the sieve let through what the parser refuses: {what}")
+            panic!("the record filter passed what the parser refuses: {what}")
         }
         Err(error) => {
             assert!(!error.to_string().is_empty() && !error.remedy().is_empty());

@@ -10,16 +10,55 @@ impl Reader {
         let texts: Vec<String> = match self {
             Self::Pdb => vec![pdb(), MODELS.to_owned()],
             Self::Mmcif => vec![mmcif(), SINGLE.to_owned()],
-            Self::Gzip => return vec![gzip(&pdb()), gzip(&mmcif()), [gzip("REMARK\n"), gzip(&pdb())].concat()],
-            Self::Stl => return vec![STL.as_bytes().to_vec(), binary_stl(), STL.replace('\n', " ").into_bytes(), uncounted_stl()],
-            Self::Obj => vec![OBJ.to_owned(), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -2 -3\nf 1/1 2/2 4/4\nf 1//1 4//4 3//3\nf 2 3 4\n".to_owned()],
-            Self::Ply => return vec![PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false), STRIPS.as_bytes().to_vec()],
-            Self::Off => vec![OFF.to_owned(), format!("# a comment\n{OFF}"), WRAPPED_OFF.to_owned()],
-            Self::Poses => vec!["rank,score,qw,qx,qy,qz,tx,ty,tz,note\n1,10.5,1,0,0,0,0.5,-1,2e1,\"a, b\"\n2,9,0.5,0.5,0.5,0.5,1,2,3,\n3,8,0,0,0,1,4,5,6,c\n".to_owned()],
+            Self::Gzip => {
+                return vec![
+                    gzip(&pdb()),
+                    gzip(&mmcif()),
+                    [gzip("REMARK\n"), gzip(&pdb())].concat(),
+                ];
+            }
+            Self::Stl => {
+                return vec![
+                    STL.as_bytes().to_vec(),
+                    binary_stl(),
+                    STL.replace('\n', " ").into_bytes(),
+                    uncounted_stl(),
+                ];
+            }
+            Self::Obj => vec![
+                OBJ.to_owned(),
+                "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf -4 -2 -3\nf 1/1 2/2 4/4\n\
+                 f 1//1 4//4 3//3\nf 2 3 4\n"
+                    .to_owned(),
+            ],
+            Self::Ply => {
+                return vec![
+                    PLY.as_bytes().to_vec(),
+                    binary_ply(true),
+                    binary_ply(false),
+                    STRIPS.as_bytes().to_vec(),
+                ];
+            }
+            Self::Off => vec![
+                OFF.to_owned(),
+                format!("# a comment\n{OFF}"),
+                WRAPPED_OFF.to_owned(),
+            ],
+            Self::Poses => vec![
+                "rank,score,qw,qx,qy,qz,tx,ty,tz,note\n1,10.5,1,0,0,0,0.5,-1,2e1,\"a, b\"\n\
+                 2,9,0.5,0.5,0.5,0.5,1,2,3,\n3,8,0,0,0,1,4,5,6,c\n"
+                    .to_owned(),
+            ],
             Self::Run => vec![RUN.to_owned()],
-            Self::Contact => vec![include_str!("../../scoring/src/terms/effect/contact_potential.csv").to_owned()],
-            Self::FineContact => vec![include_str!("../../scoring/src/terms/pose/fine_contact_potential.csv").to_owned()],
-            Self::AtomPair => vec![include_str!("../../scoring/src/terms/pose/atom_pair_potential.csv").to_owned()],
+            Self::Contact => vec![
+                include_str!("../../scoring/src/terms/effect/contact_potential.csv").to_owned(),
+            ],
+            Self::FineContact => vec![
+                include_str!("../../scoring/src/terms/pose/fine_contact_potential.csv").to_owned(),
+            ],
+            Self::AtomPair => vec![
+                include_str!("../../scoring/src/terms/pose/atom_pair_potential.csv").to_owned(),
+            ],
             Self::Pairs => vec![PAIRS.to_owned()],
         };
         texts.into_iter().map(String::into_bytes).collect()
@@ -27,7 +66,8 @@ impl Reader {
 }
 
 /// A table of pairs with all that it may have.
-const PAIRS: &str = "name,receptor,ligand,native,rotations\n# of spring\nfirst,a.pdb,\"b.cif.gz:H,L\",,\n\n,c.pdb,d.pdb,e.pdb,1200\n";
+const PAIRS: &str = "name,receptor,ligand,native,rotations\n# of spring\nfirst,a.pdb,\"b.cif.gz:H,L\",,\n\n\
+    ,c.pdb,d.pdb,e.pdb,1200\n";
 
 fn gzip(text: &str) -> Vec<u8> {
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
@@ -35,10 +75,11 @@ fn gzip(text: &str) -> Vec<u8> {
     packed.finish().unwrap()
 }
 
-/// Alternate locations, an insertion code, a modified residue, hydrogens, water, an ion, an additive, a nucleotide, odd columns.
+/// Alternate locations, an insertion code, a modified residue, hydrogens, water, an ion, an additive, a nucleotide,
+/// odd columns.
 fn pdb() -> String {
     "\
-HEADER    SEED
+     HEADER    SEED
 EXPDTA    THEORETICAL MODEL
 REMARK 350 BIOMOLECULE: 1
 REMARK 350 APPLY THE FOLLOWING TO CHAINS: A,
@@ -80,7 +121,7 @@ END
 
 fn mmcif() -> String {
     "\
-data_SEED
+     data_SEED
 _entry.id 'SEED'
 _struct.title
 ;a text
@@ -139,8 +180,10 @@ ATOM 7 N N . ALA A 1 ? 12.104 6.134 -6.504 1.00 10.00 1 A 2
     .to_owned()
 }
 
-const SINGLE: &str = "data_ONE\n_atom_site.id 1\n_atom_site.type_symbol C\n_atom_site.label_atom_id CA\n_atom_site.label_comp_id GLY\n\
-_atom_site.label_asym_id A\n_atom_site.label_seq_id 1\n_atom_site.Cartn_x 1.5\n_atom_site.Cartn_y 2\n_atom_site.Cartn_z -3e0\n";
+const SINGLE: &str = "data_ONE\n_atom_site.id 1\n_atom_site.type_symbol C\n_atom_site.label_atom_id CA\n\
+    _atom_site.label_comp_id GLY\n\
+_atom_site.label_asym_id A\n_atom_site.label_seq_id 1\n_atom_site.Cartn_x 1.5\n_atom_site.Cartn_y 2\n\
+_atom_site.Cartn_z -3e0\n";
 
 /// A tetrahedron in each format.
 const STL: &str = "\
@@ -176,7 +219,8 @@ endfacet
 endsolid seed
 ";
 
-const OBJ: &str = "# seed\no a\nv 0 0 0 1.0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nusemtl none\nf 1 3 2\nf 1/1 2/1 4/1\nf 1//1 4//1 3//1\nf 2/1/1 3/1/1 4/1/1\n";
+const OBJ: &str = "# seed\no a\nv 0 0 0 1.0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nusemtl none\nf 1 3 2\n\
+    f 1/1 2/1 4/1\nf 1//1 4//1 3//1\nf 2/1/1 3/1/1 4/1/1\n";
 
 const PLY: &str = "\
 ply
@@ -221,7 +265,8 @@ end_header
 9 0 2 1 3 0 2 -1 0 1
 ";
 
-const WRAPPED_OFF: &str = "noff4 4\n6 0 0 0 1 0\n0 1 0 0 1 0 0\n0 1 0 1 0 0 0 0 1 1 0 0 3 0 2 1 3 0 1 3 3 0 3 2 3 1\n2 3\n";
+const WRAPPED_OFF: &str = "noff4 4\n6 0 0 0 1 0\n0 1 0 0 1 0 0\n\
+    0 1 0 1 0 0 0 0 1 1 0 0 3 0 2 1 3 0 1 3 3 0 3 2 3 1\n2 3\n";
 
 const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const FACES: [[i32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];

@@ -1,7 +1,10 @@
 //! Identities of the score, of the fast path over whole grids and of the pair sum against closed forms.
 //!
-//! That a run's table adds up, shape = -lambda^2 slice_0 + 2 lambda slice_r0 - slice_2r0, is asserted of its CSV in tests/dock_run; what
-//! holds for the pair sum alone (r0 = 0, a split knot, doubled lengths) in scoring/tests/identities.rs.
+//! Other identities are tested elsewhere:
+//!
+//! - tests/dock_run checks in a run's CSV that its columns add up: shape = -lambda^2 slice_0 + 2 lambda slice_r0 -
+//!   slice_2r0.
+//! - scoring/tests/identities.rs checks what holds for the pair sum alone (r0 = 0, a split knot, doubled lengths).
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_options, some_rotation};
 use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
@@ -13,10 +16,10 @@ use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
-/// A grid of one fold in f64.
-fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, fold: Quantity) -> Vec<f64> {
-    let folded = ReceptorSpectra::<f64>::new(&pair.plan, a, b, fold);
-    let engine = CpuEngine::new(pair.plan.clone(), &folded, b, folded.full_rank());
+/// The grid of one quantity in f64.
+fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, quantity: Quantity) -> Vec<f64> {
+    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, a, b, quantity);
+    let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&some_rotation(), &mut work);
     work.grid
@@ -26,10 +29,10 @@ fn largest(grid: &[f64]) -> f64 {
     grid.iter().fold(0.0, |a, b| a.max(b.abs()))
 }
 
-/// One folded correlation is the weighted sum of its three slices' correlations, over the whole grid; and with r0 = 0, where the
-/// slices fall together, -(lambda - 1)^2 of one.
+/// The correlation of the score is the weighted sum of its three slices' correlations, over the whole grid. With r0 =
+/// 0 the slices are equal, and it is -(lambda - 1)^2 times one of them.
 #[test]
-fn the_folded_grid_is_the_weighted_sum_of_the_slices() {
+fn the_grid_of_the_score_is_the_weighted_sum_of_the_slices() {
     let (a, b) = (cloud(80, 9.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
     for (lambda, offset) in [(10.0, 2.0), (0.0, 2.0), (1e3, 2.0), (10.0, 0.0), (1e3, 0.0)] {
         let mut options = engine_options(1e-3);
@@ -58,9 +61,10 @@ fn the_folded_grid_is_the_weighted_sum_of_the_slices() {
     }
 }
 
-/// With lambda = 1 the score is a second difference, and as r0 -> 0 tends to -r0^2 d2g / d rho2. For alpha = 2 that derivative has a
-/// closed form: with u = (d / sigma)^2 and psi = exp(-u / (1 - u)), d ln psi / d sigma = 2 u / (sigma (1 - u)^2). The error must fall
-/// like r0^3 (first order relative to r0^2), until the digits of the difference end.
+/// With lambda = 1 the score is a second difference, and as r0 -> 0 tends to -r0^2 d2g / d rho2. For alpha = 2 that
+/// derivative has a closed form. Let u = (d / sigma)^2 and psi = exp(-u / (1 - u)). Then `d ln psi / d sigma = 2 u /
+/// (sigma (1 - u)^2)`. The error must fall like r0^3 (first order relative to r0^2), until the digits of the
+/// difference end.
 #[test]
 fn without_a_preference_for_contact_the_score_is_a_second_derivative() {
     let (a, b) = (cloud(60, 8.0, &RADII, 3), cloud(30, 5.0, &RADII, 4));
@@ -102,8 +106,9 @@ fn without_a_preference_for_contact_the_score_is_a_second_derivative() {
     }
 }
 
-/// The mean over all translations is the mode at frequency zero, sum_ij c_i d_j times the pair kernels' volumes over the box's: whatever
-/// the rotation, half-turns included. The volumes come from the kernel's definition, not from the engine's lifted modes.
+/// The mean over all translations is the mode at frequency zero, sum_ij c_i d_j times the pair kernels' volumes over
+/// the box's: whatever the rotation, half-turns included. The volumes come from the kernel's definition, not from the
+/// engine's lifted modes.
 #[test]
 fn the_grids_mean_is_the_same_for_all_rotations() {
     let (a, b) = (cloud(80, 9.0, &RADII, 5), cloud(40, 6.0, &RADII, 6));
@@ -151,22 +156,22 @@ fn volume(kernel: &knotdock_scoring::kernel::RankingKernel, sigma: f64) -> f64 {
     })
 }
 
-/// The ligand sees the lifted axis through its radii alone: with q distinct radii rank q is exact, even where the receptor has so many
-/// that the modes of the axis themselves are the basis; rank q - 1 is not.
+/// The ligand enters the lifted axis through its radii alone. With q distinct radii rank q is exact, and rank q - 1
+/// is not. That holds even where the receptor has so many radii that the modes of the axis themselves are the basis.
 #[test]
-fn as_many_fields_as_distinct_radii_are_exact() {
+fn as_many_components_as_distinct_radii_are_exact() {
     let many: Vec<f64> = (0..80).map(|i| 1.4 + f64::from(i) / 130.0).collect();
     let (a, b) = (cloud(80, 9.0, &many, 7), cloud(45, 6.0, &RADII, 8));
     let pair = Pair::<f64>::new(&a, &b, engine_options(1e-2));
     assert_eq!(*pair.plan.basis(), RadiusBasis::Modes);
-    let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
     let at = |rank: usize| {
-        let engine = CpuEngine::new(pair.plan.clone(), &folded, &b, rank);
+        let engine = CpuEngine::new(pair.plan.clone(), &spectra, &b, rank);
         let mut work = engine.workspace();
         engine.correlate(&some_rotation(), &mut work);
         work.grid
     };
-    let whole = at(folded.full_rank());
+    let whole = at(spectra.full_rank());
     let off = |grid: &[f64]| {
         let errors = grid.iter().zip(&whole).map(|(a, b)| (a - b).abs());
         errors.fold(0.0, f64::max) / largest(&whole)
@@ -174,7 +179,7 @@ fn as_many_fields_as_distinct_radii_are_exact() {
     let (two, three) = (off(&at(2)), off(&at(3)));
     println!(
         "rank 2: {two:.1e}, rank 3: {three:.1e} of {}",
-        folded.full_rank()
+        spectra.full_rank()
     );
     assert!(three < 1e-9 && two > 1e2 * three);
 }

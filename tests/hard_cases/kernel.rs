@@ -1,4 +1,5 @@
-//! Hard cases of the kernels: x -> 1 in psi, alpha towards 0 and infinity, the low-pass of a sharp ball, skins and lambdas at their ends.
+//! Hard cases of the kernels: x -> 1 in psi, alpha towards 0 and infinity, the low-pass of a sharp ball, skins and
+//! lambdas at their ends.
 //!
 //! Numbers of another program are printed by scripts/reference/hard_case_reference.py (mpmath, 34 digits).
 
@@ -9,7 +10,7 @@ use crate::scene::{Pair, RADII, cloud, engine_options, kernel_options, some_rota
 use knotdock_scoring::kernel::KernelError;
 use knotdock_scoring::kernel::{Bump, KernelOptions, RankingKernel, Trim};
 
-/// alpha, x, psi_alpha(x); 0 where psi is below all doubles.
+/// Rows of alpha, x, psi_alpha(x); 0 where psi is below all doubles.
 const BUMP: [(f64, f64, f64); 42] = [
     (0.0009765625, 0.5, 0.0),
     (0.0009765625, 0.875, 0.0),
@@ -55,7 +56,7 @@ const BUMP: [(f64, f64, f64); 42] = [
     (1.073741824e+9, 9.332636185032189e-302, 1.0),
 ];
 
-/// alpha, d, slice of radius sum 4 at resolution 4 and pass length 8.
+/// Rows of alpha, d, slice of radius sum 4 at resolution 4 and pass length 8.
 const LOW_PASSED: [(f64, f64, f64); 20] = [
     (0.125, 0.0, 0.0025552288182353847),
     (0.125, 1.0, 0.0021998884217551384),
@@ -79,7 +80,7 @@ const LOW_PASSED: [(f64, f64, f64); 20] = [
     (f64::INFINITY, 5.5, 0.038588994784373209),
 ];
 
-/// d, slice of radius sum 40 at resolution 4 and pass length 8, alpha infinite.
+/// Rows of d, slice of radius sum 40 at resolution 4 and pass length 8, alpha infinite.
 const SHARP: [(f64, f64); 18] = [
     (0.0, 0.99998406484530496),
     (15.0, 0.99908780562143086),
@@ -101,8 +102,9 @@ const SHARP: [(f64, f64); 18] = [
     (50.0, 0.0037974427473907962),
 ];
 
-/// psi = exp(1 / (1 - x^-alpha)) as printed loses 1 - x^-alpha to cancellation as x -> 1 or alpha -> 0, and overflows x^-alpha as
-/// x -> 0. Its exponent should err by a few roundings of itself, and so psi by |ln psi| times as many.
+/// As printed, psi = exp(1 / (1 - x^-alpha)) loses 1 - x^-alpha to cancellation as x -> 1 or alpha -> 0, and
+/// overflows x^-alpha as x -> 0. Its exponent should err by a few roundings of itself, and so psi by |ln psi| times
+/// as many.
 #[test]
 fn psi_keeps_its_digits_at_both_ends() {
     for (alpha, x, psi) in BUMP {
@@ -140,8 +142,9 @@ fn psi_falls_through_the_denormals_to_zero() {
     }
 }
 
-/// The ranking kernel's slice, a trapezoidal sum over a table, against the integral it stands for: bumps from nearly a point
-/// (alpha = 1/8) to a sharp ball. What the sum over frequencies leaves out, 4e-7 here, is part of the kernel's definition.
+/// The ranking kernel's slice, a trapezoidal sum over a table, against the integral it stands for: bumps from nearly
+/// a point (alpha = 1/8) to a sharp ball. What the sum over frequencies leaves out, 4e-7 here, is part of the
+/// kernel's definition.
 #[test]
 fn low_passed_slices_are_the_integral_they_stand_for() {
     for (alpha, distance, slice) in LOW_PASSED {
@@ -159,9 +162,9 @@ fn low_passed_slices_are_the_integral_they_stand_for() {
     }
 }
 
-/// Gibbs: a sharp ball cut sharply in frequency would overshoot by 9% at its edge whatever the cut, and ring through its inside like
-/// 1 / distance. The smooth low-pass overshoots as well, by 8%, yet two resolutions from the edge 2.3% is left of it, four from the edge
-/// 0.3%, and in the middle of the ball 2e-5.
+/// Gibbs: a sharp ball cut sharply in frequency would overshoot by 9% at its edge whatever the cut, and ring through
+/// its inside like 1 / distance. The smooth low-pass overshoots as well, by 8%, yet two resolutions from the edge
+/// 2.3% is left of it, four from the edge 0.3%, and in the middle of the ball 2e-5.
 #[test]
 fn a_sharp_ball_rings_near_its_edge_only() {
     let options = KernelOptions {
@@ -188,15 +191,16 @@ fn a_sharp_ball_rings_near_its_edge_only() {
     assert!(inside < 3e-3 && ring < 2.5e-2);
 }
 
-/// Skins from none to one wider than the bodies, lambda from 0 to 1e3, alpha from a point to a sharp ball: the fast path stays
-/// within its tolerance of the pair sum.
+/// Skins from none to one wider than the bodies, lambda from 0 to 1e3, alpha from a point to a sharp ball: the fast
+/// path stays within its tolerance of the pair sum.
 ///
-/// Its measure is the best score, as everywhere, where there is a reward to speak of. Without one (lambda up to 1, no skin) the best
-/// "score" is what the low-pass rings to, and the measure is the largest |G|. The pair sum's own tables are good to 1e-9 of the slices:
-/// for lambda = 1 and r0 = 1e-3 Å these cancel to r0^2 = 1e-6 of themselves, so that part stands in the bound.
+/// Its measure is the best score, as everywhere, where there is a reward to speak of. Without one (lambda up to 1, no
+/// skin) the best "score" is what the low-pass rings to, and the measure is the largest |G|. The pair sum's own
+/// tables are good to 1e-9 of the slices. For lambda = 1 and r0 = 1e-3 Å the slices cancel to r0^2 = 1e-6 of
+/// themselves, so the bound includes that part.
 ///
-/// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: the best score is a hundredth of the largest
-/// |G| there instead of a twentieth.
+/// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: there the best score is a
+/// hundredth of the largest |G| instead of a twentieth.
 #[test]
 fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
@@ -235,15 +239,17 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
             println!("{lambda} {offset} {alpha}: {error:.2e} of {best:.3e}, {largest:.3e}");
             assert!(
                 error <= tolerance * scale + 1e-9 * slices,
-                "lambda {lambda}, r0 {offset}, alpha {alpha} at {tolerance:e}: {error:e}, best {best:e}, largest {largest:e}"
+                "lambda {lambda}, r0 {offset}, alpha {alpha} at {tolerance:e}: {error:e}, best {best:e}, \
+                 largest {largest:e}"
             );
         }
     }
 }
 
-/// What no table can hold is refused by name. First, these ran until memory or patience ended: a pass length next to the
-/// resolution rings for 1e8 Å, and a table's size is that length over the resolution, its time the square; lambda = 1e200 had the
-/// score inf - inf. A pass length of half a per cent above took minutes, and so did a skin of some hundred resolutions.
+/// What no table can hold is refused by name. At first, these ran until memory or patience ended. A pass length next
+/// to the resolution rings for 1e8 Å. A table's size is that length over the resolution, and its time is the square.
+/// With lambda = 1e200 the score was inf - inf. A pass length of half a per cent above took minutes, and so did a
+/// skin of some hundred resolutions.
 #[test]
 fn kernels_that_nothing_can_hold_are_refused() {
     let good = kernel_options();

@@ -1,5 +1,5 @@
-//! Hard cases of the knots themselves: coincident and duplicate ones, one against 100,000, radii of a ratio of 1e6, coordinates at
-//! 1e6 Å, denormal numbers, input that cannot be served.
+//! Hard cases of the knots themselves: coincident and duplicate ones, one against 100,000, radii of a ratio of 1e6,
+//! coordinates at 1e6 Å, denormal numbers, input that must be refused.
 
 use crate::scene::{
     Pair, RADII, cloud, engine_options, kernel_for, kernel_options, knots, some_rotation,
@@ -26,8 +26,8 @@ fn touching() -> Pose {
     Pose::from_parts([0.3, -0.2, 0.8, 0.4], [9.0, -7.0, 5.0])
 }
 
-/// n knots on one place against m on another are n m times one pair, for the pair sum and for the fast path: a box without extent,
-/// bounding boxes that cannot be halved, windows all over each other.
+/// Knots on one place, n against m on another, score n m times one pair, by the pair sum and by the fast path. The
+/// box has no extent, bounding boxes cannot be halved, and all windows overlap.
 #[test]
 fn coincident_knots_are_one_knot_many_times() {
     let one = knots(vec![[3.0, -1.0, 2.0]], &[1.7]);
@@ -59,17 +59,17 @@ fn coincident_knots_are_one_knot_many_times() {
     }
 }
 
-/// An atom listed twice is an atom of weight 2, and a knot of weight 0 is none: for the fast path as for the pair sum (whose own test
-/// stands beside it).
+/// A duplicated atom is an atom of weight 2, and a knot of weight 0 is none: for the fast path as for the pair sum
+/// (whose own test stands beside it).
 #[test]
 fn duplicate_atoms_are_weights() {
     let (a, b) = (cloud(80, 9.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
-    let mut listed = a.clone();
+    let mut duplicated = a.clone();
     let mut weights = a.clone();
     for i in (0..a.len()).step_by(3) {
-        listed.centers.push(a.centers[i]);
-        listed.radii.push(a.radii[i]);
-        listed.weights.push(a.weights[i]);
+        duplicated.centers.push(a.centers[i]);
+        duplicated.radii.push(a.radii[i]);
+        duplicated.weights.push(a.weights[i]);
         weights.weights[i] *= 2.0;
     }
     // A weightless knot inside the box.
@@ -82,8 +82,8 @@ fn duplicate_atoms_are_weights() {
             .grid
     };
     for (first, second) in [
-        (grid(&listed, &b), grid(&weights, &b)),
-        (grid(&b, &listed), grid(&b, &weights)),
+        (grid(&duplicated, &b), grid(&weights, &b)),
+        (grid(&b, &duplicated), grid(&b, &weights)),
     ] {
         let largest = first.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         assert_eq!(first.len(), second.len());
@@ -93,8 +93,8 @@ fn duplicate_atoms_are_weights() {
     }
 }
 
-/// One knot against 100,000, each way round: a ligand (or receptor) without extent beside one 60 Å across, 100,000 windows in f32. The
-/// best score grows with the crowd, the tolerance holds against it.
+/// One knot against 100,000, each way round: a ligand (or receptor) without extent beside one 60 Å across, 100,000
+/// windows in f32. The best score grows with the crowd, the tolerance holds against it.
 #[test]
 fn one_knot_against_a_hundred_thousand() {
     let (one, crowd) = (
@@ -111,8 +111,8 @@ fn one_knot_against_a_hundred_thousand() {
     }
 }
 
-/// The pair sum with radii of a ratio of 1e6 against a plain loop over the kernels' definitions, low-passed and not, in f64: nothing is
-/// tabulated there, and all three sizes of pairs must come out, the smallest included.
+/// The pair sum with radii of a ratio of 1e6 against a plain loop over the kernels' definitions, low-passed and not,
+/// in f64. The loop tabulates nothing, and all three sizes of pairs must come out, the smallest included.
 #[test]
 fn radii_of_a_ratio_of_a_million_are_exact_in_the_pair_sum() {
     let radii = [1e-4, 1.0, 100.0];
@@ -195,8 +195,9 @@ fn engines_name_the_balls_that_they_cannot_resolve() {
     assert_eq!(plan.unresolved(&mixed), [0, 3, 4, 7, 8, 11]);
 }
 
-/// Files may put a molecule 1e6 Å from the origin. Coordinates here are multiples of 2^-20 Å and the way there is a power of two, so
-/// that no digit is lost on it: the fast path must give the same bits, since it recentres before it rounds to f32.
+/// Files may put a molecule 1e6 Å from the origin. Coordinates here are multiples of 2^-20 Å and the shift is a power
+/// of two, so that it loses no digit. The fast path must give the same bits, since it recentres before it rounds to
+/// f32.
 #[test]
 fn a_million_angstrom_away_the_grid_has_the_same_bits() {
     let dyadic = |knots: &Knots, shift: [f64; 3]| {
@@ -248,9 +249,10 @@ fn a_ligand_larger_than_its_receptor() {
     }
 }
 
-/// Denormal numbers: coordinates 1e-310 Å apart, radii of 1e-310 Å, weights that underflow in a product. Distances square to 0, weights
-/// vanish; no score may be anything but finite, and no gradient. First, radii of 1e-310 Å without a skin had the score NaN (the inverse
-/// of a table's length overflowed): such a kernel is refused now, by the pair sum as by the engines.
+/// Denormal numbers: coordinates at distances of 1e-310 Å, radii of 1e-310 Å, weights that underflow in a product.
+/// Distances square to 0, weights vanish; no score may be anything but finite, and no gradient. First, radii of
+/// 1e-310 Å without a skin had the score NaN (the inverse of a table's length overflowed): such a kernel is refused
+/// now, by the pair sum as by the engines.
 #[test]
 fn denormal_numbers_stay_finite() {
     let close = knots(
@@ -328,8 +330,9 @@ fn denormal_numbers_stay_finite() {
     }
 }
 
-/// Weights scale the score, bit for bit by powers of two, over the whole range that is served; beyond it they are refused. First, weights
-/// of 1e30 on both bodies gave a grid of infinities and NaN in f32, and weights of 1e-30 one of zeros.
+/// Weights scale the score, bit for bit by powers of two, over the whole range that is accepted; beyond it they are
+/// refused. First, weights of 1e30 on both bodies gave a grid of infinities and NaN in f32, and weights of 1e-30 one
+/// of zeros.
 #[test]
 fn weights_scale_the_score_or_are_refused() {
     let (a, b) = (cloud(60, 8.0, &RADII, 13), cloud(30, 5.0, &RADII, 14));
@@ -396,13 +399,13 @@ fn knots_that_are_none_are_refused_everywhere() {
     };
     for (index, knots) in bad.iter().enumerate() {
         for (a, b) in [(knots, &good), (&good, knots)] {
-            let told = match Plan::new(a, b, engine_options(1e-2)) {
+            let reported = match Plan::new(a, b, engine_options(1e-2)) {
                 Err(PlanError::Knots(error)) => error.to_string(),
                 other => panic!("{index}: {other:?}"),
             };
             assert!(
-                told.contains("knot 3") || index == 0 || index == 7,
-                "{told}"
+                reported.contains("knot 3") || index == 0 || index == 7,
+                "{reported}"
             );
             assert!(matches!(
                 UniformGridPlan::new(a, b, grid),
@@ -412,7 +415,7 @@ fn knots_that_are_none_are_refused_everywhere() {
             assert!(ProductScorer::new(&product, a, b).is_err());
         }
     }
-    // A stray atom far away asks for a box that no machine holds.
+    // A stray atom far away needs a box that no machine holds.
     let stray = with(&|knots| knots.centers[3][0] = 1e12);
     assert!(matches!(
         Plan::new(&stray, &good, engine_options(1e-2)),

@@ -1,5 +1,5 @@
-//! Hard cases of precision: which poses an f32 search can lose against f64 exact scores, tied peaks of symmetric pairs, and the same
-//! bits at twice the size.
+//! Hard cases of precision: which poses an f32 search can lose against f64 exact scores, tied peaks of symmetric
+//! pairs, and the same bits at twice the size.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
@@ -21,13 +21,13 @@ struct Losses {
     lost: usize,
 }
 
-/// Poses are voxels at several rotations. Exact scores are taken of the 1,500 best fast ones; the rest lie so far below that the
-/// error would have to be several times its measured size to bring one of them up (asserted).
+/// Poses are voxels at several rotations. Exact scores are taken of the 1,500 best fast ones. The others lie so far
+/// below that only an error of several times the measured size could bring one of them up (asserted).
 fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let pair = Pair::<f32>::new(a, b, engine_options(tolerance));
-    let folded = ReceptorSpectra::<f32>::new(&pair.plan, a, b, Quantity::Score);
-    let rank = rank.unwrap_or(folded.full_rank());
-    let engine = CpuEngine::new(pair.plan.clone(), &folded, b, rank);
+    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, a, b, Quantity::Score);
+    let rank = rank.unwrap_or(spectra.full_rank());
+    let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, rank);
     let mut work = engine.workspace();
     let mut fast: Vec<(f32, usize, usize)> = Vec::new();
     let rotations: Vec<_> = (0..4)
@@ -66,10 +66,11 @@ fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     }
 }
 
-/// Which of the 100 best exact poses an f32 search can lose, as a margin in score: only such as score less than that above the
-/// 100th. No margin can exceed twice the error (a pose goes down by it, another comes up by it); the sum over grids, ranks and
-/// precision together. Measured, of the best score: at a tolerance of 1e-2 (docking's) the error was up to 6.8e-3 and the
-/// margin 2.5e-3, with one or two of the hundred lost; at 1e-3 the error was 8.5e-5 and none was lost.
+/// Which of the 100 best exact poses an f32 search can lose, as a margin in score: only such as score less than that
+/// above the 100th. No margin can exceed twice the error (a pose goes down by it, another comes up by it); the sum
+/// over grids, ranks and precision together. Measured, relative to the best score: at a tolerance of 1e-2 (docking's)
+/// the error was up to 6.8e-3 and the margin 2.5e-3, with one or two of the hundred lost. At 1e-3 the error was
+/// 8.5e-5 and none was lost.
 #[test]
 fn an_f32_search_loses_only_poses_at_the_edge_of_the_hundred() {
     for (tolerance, bound) in [(1e-2, 5e-3), (1e-3, 5e-4)] {
@@ -97,8 +98,9 @@ fn an_f32_search_loses_only_poses_at_the_edge_of_the_hundred() {
     }
 }
 
-/// Single precision itself: the same plan in f32 and f64, over all voxels, relative to the largest |G| (where the ligand lies inside the
-/// receptor) and to the best score, which is 20 times smaller and what is ranked.
+/// Single precision itself: the same plan in f32 and f64, over all voxels. Errors are relative to the largest |G|,
+/// where the ligand lies inside the receptor, and to the best score. The best score is 20 times smaller, and it is
+/// what ranks.
 #[test]
 fn single_precision_is_far_below_the_tolerance() {
     let (a, b) = (cloud(300, 14.0, &RADII, 31), cloud(90, 9.0, &RADII, 32));
@@ -124,9 +126,10 @@ fn single_precision_is_far_below_the_tolerance() {
     }
 }
 
-/// A receptor that a half-turn about z maps onto itself ties every pose with its mirror image: G(F t; F R) = G(t; R). The exact sum must
-/// tie them to rounding, and the field that refinement climbs to far below the tolerance, so that neither image can push the other out of
-/// the ranking. The grid itself ties nothing: its voxels are not mapped onto voxels, and only refinement brings both to their peak.
+/// A receptor that a half-turn about z maps onto itself ties every pose with its mirror image: G(F t; F R) = G(t; R).
+/// The exact sum must tie them to rounding, and the field that refinement climbs to far below the tolerance, so that
+/// neither image can push the other out of the ranking. The grid itself ties nothing: its voxels are not mapped onto
+/// voxels, and only refinement brings both to their peak.
 #[test]
 fn peaks_of_a_symmetric_receptor_are_tied() {
     let half = cloud(60, 9.0, &RADII, 41);
@@ -136,8 +139,8 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
     let a = Knots::new(centers, radii).unwrap();
     let b = cloud(40, 6.0, &RADII, 42);
     let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let folded = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
-    let field = PotentialGrid::new(&pair.plan, &folded, &b);
+    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&pair.plan, &spectra, &b);
     let work = pair.correlate(&some_rotation());
     let best = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
     let (mut peaks, mut worst) = (0, 0.0f64);
@@ -163,8 +166,8 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
     assert!(peaks > 20 && worst < 1e-3);
 }
 
-/// Twice every length is the same scene in another unit: the f32 grid must have the same bits, and the plan twice the lengths. A
-/// constant in Å anywhere between knots and scores would show.
+/// Twice every length is the same scene in another unit: the f32 grid must have the same bits, and the plan twice the
+/// lengths. A constant in Å anywhere between knots and scores would show.
 #[test]
 fn doubling_every_length_keeps_the_grids_bits() {
     let (a, b) = (cloud(80, 9.0, &RADII, 51), cloud(40, 6.0, &RADII, 52));

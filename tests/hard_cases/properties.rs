@@ -1,5 +1,9 @@
-//! What holds whatever the knots, radii, weights, offsets and poses: no NaN or infinity, the same score when the bodies change places
-//! under the inverse pose, no score through the periodic image, and the fast path within its tolerance of the pair sum.
+//! Properties of all knots, radii, weights, offsets and poses:
+//!
+//! - Nothing is NaN or infinite.
+//! - The score is the same when the bodies change places under the inverse pose.
+//! - Nothing scores through the periodic image.
+//! - The fast path is within its tolerance of the pair sum.
 
 use crate::scene::{Pair, engine_options};
 use knotdock_scoring::engine::{EngineOptions, Plan, ReceptorSpectra};
@@ -75,8 +79,9 @@ fn size(kernel: &RankingKernel, a: &Knots, b: &Knots) -> f64 {
     1.6 * (1.0 + kernel.options().lambda).powi(2) * pairs(a, b)
 }
 
-/// What the fast path's errors are measured by: all pairs in touch, each at the most that it can earn (or at a tenth of what it loses
-/// in overlap, where the kernel rewards nothing: with lambda = 0 an error of 3.5e-4 of the overlap was met at a tolerance of 1e-2).
+/// Scale of the fast path's errors: all pairs in touch, each at the most that it can earn. Where the kernel rewards
+/// nothing, it is a tenth of what a pair loses in overlap: with lambda = 0 an error of 3.5e-4 of the overlap was met
+/// at a tolerance of 1e-2.
 fn best(plan: &Plan, a: &Knots, b: &Knots) -> f64 {
     let widest = crate::scene::ends(a).1 + crate::scene::ends(b).1;
     let table = plan.kernel().distance_table(widest);
@@ -92,9 +97,15 @@ fn pairs(a: &Knots, b: &Knots) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
-    /// The pair sum: finite in score, slices, gradient; and the same when the bodies change places under the inverse pose.
+    /// The pair sum: finite in score, slices, gradient; and the same when the bodies change places under the inverse
+    /// pose.
     #[test]
     fn the_pair_sum_is_finite_and_symmetric(a in knots(), b in knots(), options in options(), place in pose()) {
         let plan = Plan::new(&a, &b, options).unwrap();
@@ -110,14 +121,15 @@ proptest! {
         prop_assert!((score.unfiltered - exchanged.unfiltered).abs() <= bound);
     }
 
-    /// The fast path, summed from its modes at any pose: finite, symmetric, and at the pair sum's score, to the tolerance of what
-    /// all pairs in touch could earn. Poses reach to the faces of small boxes, so that an image would show.
+    /// The fast path, summed from its modes at any pose: finite, symmetric, and at the pair sum's score, to the
+    /// tolerance of what all pairs in touch could earn. Poses reach to the faces of small boxes, so that an image
+    /// would show.
     #[test]
     fn the_fast_path_is_finite_and_symmetric(a in knots(), b in knots(), options in options(), place in pose()) {
         let summed = |a: &Knots, b: &Knots, pose: &Pose| {
             let plan = Arc::new(Plan::new(a, b, options).unwrap());
-            let folded = ReceptorSpectra::<f64>::new(&plan, a, b, Quantity::Score);
-            let whole = TruncatedCorrelation::new(&plan, &folded, b, &Selection::all(plan.modes()));
+            let spectra = ReceptorSpectra::<f64>::new(&plan, a, b, Quantity::Score);
+            let whole = TruncatedCorrelation::new(&plan, &spectra, b, &Selection::all(plan.modes()));
             let (value, gradient) = whole.gradient(pose, &mut whole.workspace());
             assert!(gradient.force.iter().chain(&gradient.torque).all(|x| x.is_finite()));
             value
@@ -131,10 +143,12 @@ proptest! {
         prop_assert!((exchanged - exact).abs() <= bound, "{exchanged} {exact} {bound}");
     }
 
-    /// Whole grids in f32: finite everywhere, and on every voxel at the faces of the box, halfway between receptor and image, no more
-    /// than the pair sum says.
+    /// Whole grids in f32: finite everywhere, and on every voxel at the faces of the box, halfway between receptor
+    /// and image, no more than the pair sum says.
     #[test]
-    fn grids_are_finite_and_nothing_scores_through_the_image(a in knots(), b in knots(), options in options(), place in pose()) {
+    fn grids_are_finite_and_nothing_scores_through_the_image(
+        a in knots(), b in knots(), options in options(), place in pose()
+    ) {
         let options = EngineOptions { tolerance: 1e-2, ..options };
         let pair = Pair::<f32>::new(&a, &b, options);
         let rotation = Pose::from_parts(place.0, [0.0; 3]).rotation;

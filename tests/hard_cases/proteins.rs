@@ -1,7 +1,9 @@
-//! Real molecules: the fast path on the example pair, mode by mode against the 4D direct transform and pose by pose against the pair sum.
+//! Real molecules: the fast path on the example pair, mode by mode against the 4D direct transform and pose by pose
+//! against the pair sum.
 //!
-//! Clouds of knots have no surface, no dense core and no waters' worth of holes; what the tables were tuned on could hide there. Both
-//! references are too slow for all modes and all voxels of a protein, so 2,000 modes and 200 poses are drawn.
+//! Clouds of knots have no surface, no dense core and no waters' worth of holes; what the tables were tuned on could
+//! hide there. Both references are too slow for all modes and all voxels of a protein, so 2,000 modes and 200 poses
+//! are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
 use knotdock_scoring::quantity::Quantity;
@@ -82,7 +84,8 @@ fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
     }
 }
 
-/// Largest error over the hundred best voxels and a hundred spread over all ranks, as a share of the best exact score, and that score.
+/// Largest error over the hundred best voxels and a hundred spread over all ranks, as a share of the best exact
+/// score, and that score.
 fn worst_pose<T: Real>(pair: &Pair<T>, grid: &[f64], rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let mut order: Vec<usize> = (0..grid.len()).collect();
     order.sort_by(|&x, &y| grid[y].total_cmp(&grid[x]));
@@ -126,7 +129,8 @@ fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
 
 /// Modes of G by the uncompressed 4D direct transform: sum over eta of K C rhoA conj(rhoB), over the box's volume.
 ///
-/// Knots of one radius turn alike along eta, so their sum over x is taken once; at some modes that is held to the plain 4D sum.
+/// Knots of one radius have the same phase along eta, so their sum over x is taken once. At some modes that is
+/// compared with the plain 4D sum.
 fn direct<T: Real>(
     pair: &Pair<T>,
     a: &Knots,

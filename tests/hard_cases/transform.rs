@@ -1,5 +1,5 @@
-//! Hard cases of the transforms: tiny and huge frequencies, bumps from a point to a sharp ball, sharply cut lens volumes, nothing to
-//! transform.
+//! Hard cases of the transforms: tiny and huge frequencies, bumps from a point to a sharp ball, sharply cut lens
+//! volumes, nothing to transform.
 //!
 //! Numbers of another program are printed by scripts/reference/hard_case_reference.py (mpmath, 34 digits).
 
@@ -17,7 +17,7 @@ use knotdock_structures::Knots;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// q, transform of the unit ball's indicator.
+/// Rows of q, transform of the unit ball's indicator.
 const BALL: [(f64, f64); 9] = [
     (8.6736173798840355e-19, 4.188790204786391),
     (9.5367431640625e-7, 4.188790204771351),
@@ -30,7 +30,7 @@ const BALL: [(f64, f64); 9] = [
     (1048576.0, -2.8950115500610143e-13),
 ];
 
-/// alpha, q, psi^(q).
+/// Rows of alpha, q, psi^(q).
 const TRANSFORM: [(f64, f64, f64); 20] = [
     (0.125, 8.6736173798840355e-19, 0.0015310139974556421),
     (0.125, 0.25, 0.0015065214968357525),
@@ -54,7 +54,8 @@ const TRANSFORM: [(f64, f64, f64); 20] = [
     (1024.0, 200.0, -2.1724228726191892e-6),
 ];
 
-/// sin z - z cos z keeps no digit below z = 1e-5, where a series serves; at q = 1e6 the sine's argument itself is good to 1e-9 only.
+/// Below z = 1e-5, sin z - z cos z keeps no digit, and a series replaces it. At q = 1e6 the sine's argument itself is
+/// good to 1e-9 only.
 #[test]
 fn the_balls_transform_at_tiny_and_huge_frequencies() {
     let transform = RadialTransform::new(Bump::new(f64::INFINITY).unwrap(), 1.0);
@@ -74,8 +75,9 @@ fn the_balls_transform_at_tiny_and_huge_frequencies() {
     }
 }
 
-/// alpha = 1/8 is nearly a point: all of its transform comes from a cusp at 0. alpha = 1,024 is nearly a sharp ball, with an edge
-/// of a thousandth. Quadrature must take in both, up to q = 200.
+/// Bumps from a point to a ball. At alpha = 1/8 the bump is nearly a point, and its whole transform comes from a cusp
+/// in the centre. At alpha = 1,024 it is nearly a sharp ball, with an edge of a thousandth. Quadrature must resolve
+/// both, up to q = 200.
 #[test]
 fn bumps_from_a_point_to_a_sharp_ball() {
     for (alpha, q, exact) in TRANSFORM {
@@ -87,9 +89,9 @@ fn bumps_from_a_point_to_a_sharp_ball() {
     }
 }
 
-/// Spheres as exact references: the lifted engine cuts the product kernel of two sharp balls at half the inverse spacing, which
-/// costs what the lens volume's spectrum, w^-4, holds beyond: the error falls like the spacing, and no Gibbs ringing stays behind,
-/// since the lens volume is continuous.
+/// Spheres as exact references. The lifted engine cuts the product kernel of two sharp balls at half the inverse
+/// spacing. So it loses what the lens volume's spectrum, w^-4, holds beyond, and the error falls like the spacing. No
+/// Gibbs ringing stays behind, since the lens volume is continuous.
 #[test]
 fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
     let ball = |radius: f64| Knots::new(vec![[0.0; 3]], vec![radius]).unwrap();
@@ -105,8 +107,8 @@ fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
             ..engine_options(1e-4)
         };
         let plan = Arc::new(Plan::product(&one, &other, options, Band::Whole).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &one, &other, Quantity::Slice(0));
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &other, 1);
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &one, &other, Quantity::Slice(0));
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &other, 1);
         let mut work = engine.workspace();
         engine.correlate(&Pose::identity().rotation, &mut work);
         let mut worst = 0.0f64;
@@ -121,8 +123,8 @@ fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
     }
 }
 
-/// Weights that are all zero, and a body whose weights cancel on one place: the grid is zero, not NaN, though the lifted axis has
-/// nothing to factor there.
+/// Weights that are all zero, and a body whose weights cancel on one place: the grid is zero, not NaN, though the
+/// lifted axis has nothing to factor there.
 #[test]
 fn nothing_to_transform_scores_nothing() {
     let (a, b) = (cloud(40, 8.0, &RADII, 1), cloud(20, 5.0, &RADII, 2));

@@ -1,8 +1,9 @@
 //! Hard cases of the periodic box: no pose may score through the receptor's image, or a ligand's, beyond the tolerance.
 //!
-//! The box holds the receptor, the ligand's diameter, and the kernel's effective reach on either side. Once, designs of such engines
-//! count the reach only once: a ligand in the gap between receptor and image then scores with both. And the effective reach is one pair's:
-//! beyond it the tails of many pairs may add up in step, most so of two plates, whose knots all lie at the same distance.
+//! The box holds the receptor, the ligand's diameter, and the kernel's effective reach on either side. Once, designs
+//! of such engines count the reach only once: a ligand in the gap between receptor and image then scores with both.
+//! And the effective reach is one pair's: beyond it the tails of many pairs may add up in step, most so of two
+//! plates, whose knots all lie at the same distance.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
 use knotdock_scoring::engine::ReceptorSpectra;
@@ -15,7 +16,7 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-/// A lattice of so many knots per axis, a protein's distance apart.
+/// A lattice of so many knots per axis, spaced like a protein's atoms.
 fn lattice(counts: [usize; 3]) -> Knots {
     let mut centers = Vec::new();
     for x in 0..counts[0] {
@@ -28,8 +29,8 @@ fn lattice(counts: [usize; 3]) -> Knots {
     knots(centers, &RADII)
 }
 
-/// Worst |fast - exact| over all voxels of the outermost layer on `axis`, where ligand, receptor and image are closest to each other, and
-/// over every 31st voxel of the rest, relative to the best exact score seen.
+/// Worst |fast - exact| relative to the best exact score seen. It is over all voxels of the outermost layer on
+/// `axis`, where ligand, receptor and image are closest to each other, and over every 31st voxel of the rest.
 fn worst(pair: &Pair<f32>, rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let work = pair.correlate(&rotation);
     let half = pair.plan.modes().lengths.map(|length| 0.5 * length);
@@ -57,8 +58,9 @@ fn worst(pair: &Pair<f32>, rotation: UnitQuaternion<f64>) -> (f64, f64) {
     (share(true), share(false))
 }
 
-/// The ligand sandwiched between the receptor and its image: rods, plates and balls whose ends or faces point across the gap, and one that
-/// lies along it. At the faces of the box the exact sum, which has no image, says what is left of the true receptor.
+/// The ligand sandwiched between the receptor and its image: rods, plates and balls whose ends or faces point across
+/// the gap, and one that lies along it. At the faces of the box the exact sum, which has no image, says what is left
+/// of the true receptor.
 #[test]
 fn a_ligand_between_receptor_and_image_scores_with_neither() {
     let quarter = std::f64::consts::FRAC_PI_4;
@@ -97,13 +99,14 @@ fn a_ligand_between_receptor_and_image_scores_with_neither() {
     }
 }
 
-/// A pose a box length away is far from everything: the field that refinement climbs must not read the receptor's image there.
+/// A pose a box length away is far from everything: the field that refinement climbs must not read the receptor's
+/// image there.
 #[test]
 fn the_field_ends_with_the_box() {
     let (a, b) = (cloud(120, 10.0, &RADII, 3), cloud(50, 7.0, &RADII, 4));
     let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let folded = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
-    let field = PotentialGrid::new(&pair.plan, &folded, &b);
+    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let field = PotentialGrid::new(&pair.plan, &spectra, &b);
     let rotation = UnitQuaternion::identity();
     let work = pair.correlate(&rotation);
     let (best, score) = work
@@ -132,10 +135,11 @@ fn the_field_ends_with_the_box() {
     }
 }
 
-/// A ligand far wider than receptor and kernel on a grid of coarse cells: the ligand's own spread block must fit into the box. First it
-/// was the receptor's alone that was seen to, and where the window is wider than the kernel reaches (here 9 cells of 8 Å; or a kernel that
-/// is 0 everywhere, as for lambda = 1 without a skin) knots at the ligand's ends were spread outside the block: a panic in debug
-/// builds, wrong places in others. The direct sum over the same modes says what the grid should hold.
+/// A ligand far wider than receptor and kernel on a grid of coarse cells: the ligand's own spread block must fit into
+/// the box. At first only the receptor's block was fitted. The window can be wider than the kernel reaches: here it
+/// is 9 cells of 8 Å, and a kernel can be 0 everywhere, as for lambda = 1 without a skin. Knots at the ligand's ends
+/// were then spread outside the block: a panic in debug builds, wrong places in others. The direct sum over the same
+/// modes says what the grid should hold.
 #[test]
 fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
     let (a, b) = (
@@ -148,9 +152,9 @@ fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
         options.kernel.lambda = lambda;
         options.kernel.offset = offset;
         let pair = Pair::<f64>::new(&a, &b, options);
-        let folded = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
+        let spectra = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
         let direct =
-            TruncatedCorrelation::new(&pair.plan, &folded, &b, &Selection::all(pair.plan.modes()));
+            TruncatedCorrelation::new(&pair.plan, &spectra, &b, &Selection::all(pair.plan.modes()));
         let mut work = direct.workspace();
         let rotation = some_rotation();
         let grid = pair.correlate(&rotation).grid;

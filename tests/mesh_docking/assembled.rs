@@ -1,4 +1,5 @@
-//! Each pair, its ligand turned and taken away, is put together again by `knotdock dock`: rank 1 is right to one grid step and 5 degrees.
+//! Each pair, its ligand turned and taken away, is put together again by `knotdock dock`: rank 1 is right to one grid
+//! step and 5 degrees.
 
 use super::parts::Pair;
 use super::run::{Place, dock, rank_one, scored_poses};
@@ -25,12 +26,12 @@ fn docked(place: &Place, more: &[&str]) -> Value {
     dock(place, &[&arguments, more].concat())
 }
 
-/// Docks a pair and holds rank 1 to the answer.
+/// Docks a pair and compares rank 1 with the known pose.
 fn put_together((pair, clearance): (Pair, f64)) {
     let place = Place::of(&pair);
     let run = docked(&place, &[]);
     let run = &run["run"];
-    // The clearance is what the sampling asks for: twice the sum of eps.
+    // The clearance is what the sampling needs: twice the sum of eps.
     let epsilon = |side: &str| run["inputs"][side]["sampling"]["epsilon"].as_f64().unwrap();
     let needed = 2.0 * (epsilon("receptor") + epsilon("ligand"));
     assert!(
@@ -41,7 +42,8 @@ fn put_together((pair, clearance): (Pair, f64)) {
     let pose = rank_one(&place.path("run/poses.csv"));
     let (distance, degrees) = error(&pair, &pose);
     println!(
-        "{}: clearance {clearance:.4}; rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and {degrees:.2} degrees; {} and {} balls, {:.1} s",
+        "{}: clearance {clearance:.4}; rank 1 is off by {distance:.4} ({:.2} grid steps of {step:.4}) and \
+         {degrees:.2} degrees; {} and {} balls, {:.1} s",
         pair.name,
         distance / step,
         run["inputs"]["receptor"]["sampling"]["balls"],
@@ -66,17 +68,18 @@ fn linked_halves_of_a_torus_close() {
 }
 
 #[test]
-fn a_broken_block_is_mended() {
+fn a_broken_block_is_put_together() {
     put_together(broken());
 }
 
-/// What fitted weights do to the summed bumps and to scores, as the table of docs/mesh_docking.md: fitted ones integrate to the volume within a
-/// tenth, and with either the first pose is right.
+/// What fitted weights do to the summed bumps and to scores, as the table of docs/mesh_docking.md: fitted ones
+/// integrate to the volume within a tenth, and with either the first pose is right.
 #[test]
 #[ignore = "six dockings for a table"]
 fn weights_and_scores() {
     println!(
-        "| pair | weights | rms off one | integral / volume | score at rank 1 | best wrong cluster's share of it | off by, grid steps | degrees |"
+        "| pair | weights | rms off one | integral / volume | score at rank 1 | best wrong cluster's share of it | \
+         off by, grid steps | degrees |"
     );
     for (pair, _) in [peg(), torus(), broken()] {
         let place = Place::of(&pair);

@@ -43,7 +43,8 @@ fn mesh_volume(part: &Part) -> f64 {
         .volume()
 }
 
-/// About the right pose the exact sum falls whichever way the ligand is moved by an offset, further on by one and a half, or turned by 8 degrees.
+/// About the right pose the exact sum falls whichever way the ligand is moved by an offset, further on by one and a
+/// half, or turned by 8 degrees.
 #[test]
 fn the_right_pose_is_the_top_of_the_landscape() {
     for (pair, clearance) in [peg(), torus(), broken()] {
@@ -100,8 +101,8 @@ fn weights_are_volumes() {
     }
 }
 
-/// What the lengths of [`knotdock::mesh`] rest on: two flat faces score most a gap of one offset apart, above half of that from
-/// 0.65 to 1.55 offsets, and below zero under 0.3.
+/// Basis of the lengths of [`knotdock::mesh`]: two flat faces score most at a gap of one offset, above half of that
+/// from 0.65 to 1.55 offsets, and below zero under 0.3.
 #[test]
 fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
     let r0 = 0.037;

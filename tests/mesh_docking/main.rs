@@ -1,4 +1,5 @@
-//! Docking of meshes: three pairs of parts that fit together, put together again; what comes of it in files; and what is refused.
+//! Docking of meshes: three pairs of parts that fit are put together again. Also tested are the files written, and
+//! what is refused.
 
 #[path = "../../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // The example writes files, which the tests do by themselves.

@@ -84,7 +84,7 @@ pub fn rank_one(path: &Path) -> Pose {
     scored_poses(path).swap_remove(0).0
 }
 
-/// Few rotations on a coarse grid: what is asked here does not depend on where the parts end up.
+/// Few rotations on a coarse grid: these tests do not depend on where the parts end up.
 const QUICK: [&str; 8] = [
     "receptor.stl",
     "ligand.stl",
@@ -133,8 +133,8 @@ fn threads_change_no_byte_and_a_run_repeats_itself() {
     }
 }
 
-/// Of one scene in another unit every length is so many times as long, and nothing else changes: no constant is in Å. By a power of two
-/// not a digit does.
+/// Of one scene in another unit every length is so many times as long, and nothing else changes: no constant is in Å.
+/// By a power of two not a digit does.
 #[test]
 fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
     let pair = broken_block(0.05);

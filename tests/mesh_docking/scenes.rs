@@ -6,8 +6,8 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::{Solid, from_triangles};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A pair with a clearance of 2 (`eps_A` + `eps_B`) and 1% more for the default grid, whose eps is sqrt(3) / 2 of its spacing. The grid is that of
-/// the bounding box as the part comes, so the ligand is measured [`away`].
+/// A pair with a clearance of 2 (`eps_A` + `eps_B`) and 1% more for the default grid, whose eps is sqrt(3) / 2 of its
+/// spacing. The grid is that of the bounding box as the part comes, so the ligand is measured [`away`].
 fn with_least_clearance(pair: fn(f64) -> Pair) -> (Pair, f64) {
     let extent = |points: &mut dyn Iterator<Item = [f64; 3]>| -> f64 {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -59,7 +59,8 @@ pub fn away() -> Pose {
     Pose::from_parts([0.4, 0.5, -0.6, 0.35], [3.0, -2.0, 1.5])
 }
 
-/// Error of a pose that should undo [`away`], in the unit of the parts and in degrees: the least over the symmetries of both parts.
+/// Error of a pose that should undo [`away`], in the unit of the parts and in degrees: the least over the symmetries
+/// of both parts.
 ///
 /// The distance is that of the middle of the ligand's vertices.
 pub fn error(pair: &Pair, pose: &Pose) -> (f64, f64) {

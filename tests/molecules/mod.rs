@@ -11,7 +11,7 @@ pub struct Helix {
 }
 
 /// Cylinder coordinates (radius in Å, angle in degrees, height in Å) of a residue's atoms about the helix axis, rounded
-/// from Arnott & Dover, J. Mol. Biol. 30 (1967) 209: no more is asked of them than to look like a helix.
+/// from Arnott & Dover, J. Mol. Biol. 30 (1967) 209. They only have to look like a helix.
 const ATOMS: [(&str, f64, f64, f64); 5] = [
     ("N", 1.55, -27.8, -0.87),
     ("CA", 2.29, 0.0, 0.0),

@@ -12,7 +12,7 @@ pub fn succeed<'a>(folder: &Path, arguments: impl IntoIterator<Item = &'a str>) 
         .args(arguments)
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{reported}");
     output
 }

@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Trypsin with the inhibitor of its neighbour in a ring of two: each then holds the other's inhibitor, as the complex has it, and no fit is as good.
+/// Trypsin with the inhibitor of its neighbour in a ring of two: each then holds the other's inhibitor, as the
+/// complex has it, and no fit is as good.
 #[test]
 fn a_ring_that_is_known_to_fit_is_found_first() {
     let folder = tempfile::tempdir().unwrap();
@@ -65,7 +66,8 @@ fn gyration(molecule: &Molecule) -> f64 {
         .sqrt()
 }
 
-/// Every row closes into a ring and repeats no better one of its cluster, and its parts are the exact sums of neighbours and of the others at the printed pose.
+/// Every row closes into a ring and repeats no better one of its cluster, and its parts are the exact sums of
+/// neighbours and of the others at the printed pose.
 #[test]
 fn rows_are_rings_and_score_as_their_pairs_do() {
     let folder = tempfile::tempdir().unwrap();
@@ -78,19 +80,19 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
         let pose = format!("--pose={w},{x},{y},{z},{a},{b},{c}");
         let options = ["score", &file, &file, &pose, "--effects", "shape", "--json"];
         let output = succeed(folder.path(), options);
-        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-        told["exact"].as_f64().unwrap()
+        let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
+        reported["exact"].as_f64().unwrap()
     };
     for name in ["C2", "C3", "C4", "C5"] {
-        let (told, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
-        assert_eq!(told["run"]["options"]["search"]["symmetry"], name);
-        assert_eq!(told["run"]["options"]["search"]["rotations"], 40);
+        let (reported, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
+        assert_eq!(reported["run"]["options"]["search"]["symmetry"], name);
+        assert_eq!(reported["run"]["options"]["search"]["rotations"], 40);
         assert!(rows.len() > 20);
         for row in &rows {
             assert!(symmetry(name).ring(&pose(row)).is_some(), "{name}");
         }
         // A turn of a copy by twice the axes' covering radius, about its middle, and a shift by the grid's spacing.
-        let plan = &told["run"]["plan"];
+        let plan = &reported["run"]["plan"];
         let turn = 2.0
             * plan["covering_radius_degrees"]
                 .as_f64()
@@ -104,9 +106,9 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
             let of_cluster =
                 |other: &&Row| other["cluster"] == row["cluster"] && other["refined"] == "true";
             for better in rows[..index].iter().filter(of_cluster) {
-                let apart = |pose: Pose| rmsd(&alphas, &self::pose(better), &pose);
-                let apart = apart(pose(row)).min(apart(pose(row).inverse()));
-                assert!(apart > step, "{name}: {apart} of {step} Å");
+                let distance = |pose: Pose| rmsd(&alphas, &self::pose(better), &pose);
+                let distance = distance(pose(row)).min(distance(pose(row).inverse()));
+                assert!(distance > step, "{name}: {distance} of {step} Å");
             }
         }
         for row in &rows[..3] {
@@ -132,12 +134,13 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
     }
 }
 
-/// The files hold every copy, each where the pose takes the one before it; they are the same for any number of threads, from the record, and written later.
+/// The files hold every copy, each where the pose takes the one before it; they are the same for any number of
+/// threads, from the record, and written later.
 #[test]
 fn all_copies_are_written_and_runs_repeat() {
     let folder = tempfile::tempdir().unwrap();
     let at = |path: &str| folder.path().join(path);
-    let (told, rows) = small(folder.path(), "C5", &["--threads", "1"]);
+    let (reported, rows) = small(folder.path(), "C5", &["--threads", "1"]);
     let first = fs::read(at("run/top/rank_0002.pdb")).unwrap();
     let table = fs::read(at("run/poses.csv")).unwrap();
     let ring = molecule(at("run/top/rank_0002.pdb").to_str().unwrap());
@@ -154,7 +157,11 @@ fn all_copies_are_written_and_runs_repeat() {
             assert!(off.norm() < 3e-3, "copy {copy}, atom {atom}: {off}");
         }
     }
-    let partners: Vec<&Value> = told["run"]["chains"].as_array().unwrap().iter().collect();
+    let partners: Vec<&Value> = reported["run"]["chains"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .collect();
     let names: Vec<&str> = partners
         .iter()
         .map(|c| c["partner"].as_str().unwrap())
@@ -183,29 +190,30 @@ fn all_copies_are_written_and_runs_repeat() {
     let shift = header.split(',').position(|name| name == "tz").unwrap();
     fields[shift] = "99";
     fs::write(at("run/poses.csv"), text.replace(row, &fields.join(","))).unwrap();
-    let told = refused(folder.path(), "export run --rank 1 -o never");
+    let reported = refused(folder.path(), "export run --rank 1 -o never");
     assert!(!at("never").exists());
-    assert!(told.contains("no ring of C5"));
+    assert!(reported.contains("no ring of C5"));
 }
 
 /// Residues that are named are those of every copy, and poses that touch them rank first.
 #[test]
 fn residues_are_named_for_all_copies() {
     let folder = tempfile::tempdir().unwrap();
-    let (told, rows) = small(folder.path(), "C3", &["--no-cluster"]);
-    assert!(told["run"]["options"]["restraints"]["active_ligand"].is_null());
+    let (reported, rows) = small(folder.path(), "C3", &["--no-cluster"]);
+    assert!(reported["run"]["options"]["restraints"]["active_ligand"].is_null());
     assert!(rows.iter().all(|row| row["active_residues"].is_empty()));
     let molecule = example("ligand_unbound");
-    let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 --block-receptor B:20 -o run --force --json";
+    let options = "--rotations 40 --poses 60 --effects shape,restraint --active-receptor B:5,B:29 \
+        --block-receptor B:20 -o run --force --json";
     let mut arguments = vec!["dock", &molecule, "--symmetry", "C3"];
     arguments.extend(options.split(' '));
     let output = succeed(folder.path(), arguments);
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
     for (side, other) in [
         ("active_receptor", "active_ligand"),
         ("block_receptor", "block_ligand"),
     ] {
-        let options = &told["run"]["options"]["restraints"];
+        let options = &reported["run"]["options"]["restraints"];
         assert!(!options[side].is_null());
         assert_eq!(options[side], options[other]);
     }
@@ -268,8 +276,8 @@ fn what_no_ring_can_have_is_refused() {
         ("a.obj --symmetry C3", "this is a mesh"),
         ("a.pdb", "LIGAND"),
     ] {
-        let told = refused(folder.path(), &format!("dock {options}"));
-        assert!(told.contains(said), "{options}: {told}");
+        let reported = refused(folder.path(), &format!("dock {options}"));
+        assert!(reported.contains(said), "{options}: {reported}");
     }
 }
 
@@ -293,10 +301,10 @@ fn the_example_s_dimer_is_put_together_again() {
         "--json",
     ]);
     let output = succeed(folder.path(), arguments);
-    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(told["best"][0]["irmsd"].as_f64().unwrap() < 1.0);
+    let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(reported["best"][0]["irmsd"].as_f64().unwrap() < 1.0);
     let on = |effect: &Value| effect["on"] == true;
-    let effects = told["run"]["effects"].as_array().unwrap();
+    let effects = reported["run"]["effects"].as_array().unwrap();
     assert_eq!(effects.iter().filter(|effect| on(effect)).count(), 3);
     let words = String::from_utf8(output.stderr).unwrap();
     assert!(words.contains("Each copy of C2") && words.contains("300 axes of C2"));

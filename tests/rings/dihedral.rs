@@ -10,7 +10,7 @@ fn turn(axis: &Unit<Vector3<f64>>, angle: f64, point: Vector3<f64>) -> Pose {
     Pose::about(UnitQuaternion::from_axis_angle(axis, angle), point, point)
 }
 
-/// Copies of a molecule at some poses, chains of each named apart.
+/// Copies of a molecule at some poses, each with chain names of its own.
 fn copies(molecule: &Molecule, poses: &[Pose]) -> Molecule {
     let copy = |(pose, names): (&Pose, [char; 2])| {
         let mut copy = molecule.map_positions(|position| pose.apply(position));
@@ -25,14 +25,16 @@ fn copies(molecule: &Molecule, poses: &[Pose]) -> Molecule {
     Molecule::new(atoms, Format::Pdb)
 }
 
-/// A ring of three trypsins, each with the inhibitor that one of a second ring binds: face to face they hold each other's, and nothing fits as well.
+/// A ring of three trypsins, each with the inhibitor that one of a second ring binds: face to face they hold each
+/// other's, and nothing fits as well.
 #[test]
 fn two_rings_that_are_known_to_fit_are_found_first() {
     let folder = tempfile::tempdir().unwrap();
     let [trypsin, inhibitor] =
         ["receptor_bound", "ligand_bound"].map(|name| molecule(&example(name)));
     let out = (center(&inhibitor) - center(&trypsin)).normalize();
-    // As in the ring of two, half a turn about an axis behind the inhibitor takes one molecule to the other; the ring's own axis crosses it far aside.
+    // As in the ring of two, half a turn about an axis behind the inhibitor takes one molecule to the other; the
+    // ring's own axis crosses it far aside.
     let across = Unit::new_normalize(out.cross(&Vector3::new(0.3, 0.5, -0.8)));
     let behind = center(&inhibitor) + 14.0 * out;
     let half = turn(&across, PI, behind);
@@ -40,7 +42,7 @@ fn two_rings_that_are_known_to_fit_are_found_first() {
     let partner = inhibitor.map_positions(|position| half.inverse().apply(position));
     both.atoms.extend(partner.atoms);
     let (axis, crossing) = (Unit::new_normalize(out), behind + 40.0 * *across);
-    let turns = [0.0, 1.0, 2.0].map(|fold| turn(&axis, fold * TAU / 3.0, crossing));
+    let turns = [0.0, 1.0, 2.0].map(|third| turn(&axis, third * TAU / 3.0, crossing));
     let ring = copies(&both, &turns);
     let mut file = fs::File::create(folder.path().join("ring.pdb")).unwrap();
     write_molecule(&mut file, Format::Pdb, &ring, &[]).unwrap();
@@ -56,8 +58,9 @@ fn two_rings_that_are_known_to_fit_are_found_first() {
     assert!(number(&rows[0], "search_score") > 1.2 * number(&rows[1], "search_score"));
 }
 
-/// From a single molecule in two steps: every row is half a turn about an axis that crosses the ring's at a right angle, scores as such a pair does, and the
-/// files hold both rings; the same for any number of threads, and from the record.
+/// From a single molecule in two steps. Every row is half a turn about an axis that crosses the ring's at a right
+/// angle, and scores as such a pair does. The files hold both rings. Results are the same for any number of threads,
+/// and from the record.
 #[test]
 fn rows_lay_two_rings_face_to_face() {
     let folder = tempfile::tempdir().unwrap();
@@ -77,7 +80,7 @@ fn rows_lay_two_rings_face_to_face() {
     let ring = molecule(at(file).to_str().unwrap());
     let axis = RingAxis::of(&ring.copies(3).unwrap()).unwrap();
     let third = axis.turns().next().unwrap();
-    let apart = |a: &Pose, b: &Pose| a.angle_to(b) + (a.translation - b.translation).norm();
+    let distance = |a: &Pose, b: &Pose| a.angle_to(b) + (a.translation - b.translation).norm();
     let rows = rows(&at("run"));
     assert!(rows.len() > 10);
     for row in &rows {
@@ -85,7 +88,7 @@ fn rows_lay_two_rings_face_to_face() {
         assert!(symmetry("D3").ring(&pose).is_some());
         // Across the axis: it turns the ring's own turns about.
         let turned = pose.after(&third).after(&pose);
-        assert!(apart(&turned, &third.inverse()) < 1e-6);
+        assert!(distance(&turned, &third.inverse()) < 1e-6);
         assert_eq!(
             (row["other_copies"].as_str(), row["refined"].as_str()),
             ("", "true")
@@ -95,9 +98,9 @@ fn rows_lay_two_rings_face_to_face() {
     let [a, b, c]: [f64; 3] = pose(&rows[0]).translation.into();
     let place = format!("--pose={w},{x},{y},{z},{a},{b},{c}");
     let options = ["score", file, file, &place, "--effects", "shape", "--json"];
-    let told: Value = serde_json::from_slice(&succeed(folder.path(), options).stdout).unwrap();
+    let reported: Value = serde_json::from_slice(&succeed(folder.path(), options).stdout).unwrap();
     let (exact, own) = (
-        told["exact"].as_f64().unwrap(),
+        reported["exact"].as_f64().unwrap(),
         number(&rows[0], "search_score"),
     );
     assert!((exact - own).abs() < 1e-6 * own.abs());
@@ -142,12 +145,12 @@ fn what_is_no_ring_has_no_second_one() {
         ("a.pdb --symmetry D1", "no symmetry"),
         ("dimer.pdb --symmetry D2 --engine gpu", "engine is gpu"),
     ] {
-        let told = refused(folder.path(), &format!("dock {options}"));
-        assert!(told.contains(said), "{options}: {told}");
+        let reported = refused(folder.path(), &format!("dock {options}"));
+        assert!(reported.contains(said), "{options}: {reported}");
     }
-    let told = refused(folder.path(), "dock a.pdb --symmetry D2 -o never");
+    let reported = refused(folder.path(), "dock a.pdb --symmetry D2 -o never");
     for part in ["a.pdb", "--symmetry C2 first"] {
-        assert!(told.contains(part), "{told}");
+        assert!(reported.contains(part), "{reported}");
     }
     assert!(!folder.path().join("never").exists());
 }

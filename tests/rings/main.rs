@@ -1,4 +1,7 @@
-//! Rings: known ones are found again, poses make rings to rounding, copies are written in their places, and what a ring cannot have is refused.
+//! Rings of copies of a molecule.
+//!
+//! Known ones are found again, poses make rings to rounding, and copies are written in their places. Options that a
+//! ring cannot have are refused.
 
 mod cyclic;
 mod dihedral;
@@ -69,14 +72,14 @@ fn center(molecule: &Molecule) -> Vector3<f64> {
     positions.sum::<Vector3<f64>>() / molecule.atoms.len() as f64
 }
 
-/// What is said of a command that is bad input.
+/// The standard error of a command that is bad input.
 fn refused(folder: &Path, command: &str) -> String {
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder)
         .args(command.split(' '))
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{command}: {told}");
-    told
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{command}: {reported}");
+    reported
 }

@@ -1,8 +1,8 @@
 //! The graphics processor that tests run on, if there is one.
 //!
-//! Without an adapter nothing can be tried, and each test says so and ends; with `KNOTDOCK_NEEDS_GPU` set it fails
-//! instead. Any adapter serves, the program that plays one too (Debian's mesa-vulkan-drivers), which `.ci/run` installs
-//! where it may.
+//! Without an adapter nothing can be tested, and each test prints so and ends. With `KNOTDOCK_NEEDS_GPU` set it fails
+//! instead. Any adapter will do, also one in software (Debian's mesa-vulkan-drivers), which `.ci/run` installs where it
+//! may.
 
 use knotdock_scoring::engine::gpu::GpuDevice;
 

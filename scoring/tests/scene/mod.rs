@@ -1,4 +1,4 @@
-//! Scenes for tests: clouds of knots, options, and the fast path held to the exact pair sum. One set for all test
+//! Scenes for tests: clouds of knots, options, and the fast path compared with the exact pair sum. One set for all test
 //! files, the root package's included.
 
 // Every test file is a program of its own and uses a part of this.

@@ -214,7 +214,7 @@ impl Part {
         self.triangles.push(triangle);
     }
 
-    /// A planar quadrilateral, anticlockwise as listed when `upward`.
+    /// A planar quadrilateral, anticlockwise in the order given when `upward`.
     fn quad(&mut self, [a, b, c, d]: [[f64; 3]; 4], upward: bool) {
         if upward {
             self.triangle([a, b, c]);

@@ -107,7 +107,8 @@ impl Surface {
 
     pub fn ply_text(&self) -> String {
         let mut text = format!(
-            "ply\nformat ascii 1.0\ncomment test\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+            "ply\nformat ascii 1.0\ncomment test\nelement vertex {}\nproperty double x\nproperty double y\n\
+             property double z\n\
              element face {}\nproperty list uchar int vertex_indices\nend_header\n",
             self.positions.len(),
             self.triangles.len()
@@ -129,7 +130,8 @@ impl Surface {
             bytes
         };
         let mut bytes = format!(
-            "ply\nformat binary_{}_endian 1.0\nelement vertex {}\nproperty float confidence\nproperty double x\nproperty double y\n\
+            "ply\nformat binary_{}_endian 1.0\nelement vertex {}\nproperty float confidence\nproperty double x\n\
+             property double y\n\
              property double z\nelement face {}\nproperty list uchar uint vertex_index\nend_header\n",
             if big_endian { "big" } else { "little" },
             self.positions.len(),
