@@ -145,7 +145,7 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
         "use `--force`, which replaces an earlier run in the directory",
     ),
     suggestion(
-        &["repeat", "restore"],
+        &["repeat", "restore", "from"],
         "use `--rerun RUN.JSON`, which repeats the run that wrote that file",
     ),
     suggestion(
