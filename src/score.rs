@@ -129,21 +129,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
     let plan = plan(scene, options)?;
     let scorer = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())?;
     let exact = scorer.score(pose);
-    let quantities = [
-        Quantity::Score,
-        Quantity::SliceByOffset(0),
-        Quantity::SliceByOffset(1),
-        Quantity::SliceByOffset(2),
-    ];
-    let all = Selection::all(plan.modes());
-    let whole: Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> = quantities
-        .into_par_iter()
-        .map(|quantity| {
-            let spectra = ReceptorSpectra::<f64>::new(&plan, receptor, ligand, quantity);
-            let correlation = TruncatedCorrelation::new(&plan, &spectra, ligand, &all);
-            (spectra, correlation)
-        })
-        .collect();
+    let whole = correlations(&plan, receptor, ligand);
     let [(spectra, first), by_offset @ ..] = whole.as_slice() else {
         return Err(SearchError::NoPose);
     };
@@ -204,6 +190,29 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
             exact_slices,
         },
     })
+}
+
+/// Spectra and correlations, from all modes, of the score and of the slices by offset.
+fn correlations(
+    plan: &Plan,
+    receptor: &Knots,
+    ligand: &Knots,
+) -> Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> {
+    let quantities = [
+        Quantity::Score,
+        Quantity::SliceByOffset(0),
+        Quantity::SliceByOffset(1),
+        Quantity::SliceByOffset(2),
+    ];
+    let all = Selection::all(plan.modes());
+    quantities
+        .into_par_iter()
+        .map(|quantity| {
+            let spectra = ReceptorSpectra::<f64>::new(plan, receptor, ligand, quantity);
+            let correlation = TruncatedCorrelation::new(plan, &spectra, ligand, &all);
+            (spectra, correlation)
+        })
+        .collect()
 }
 
 /// The plan whose modes are accurate enough for a ladder.

@@ -131,6 +131,32 @@ fn table(rows: &[(u32, Row)]) -> Table {
 }
 
 fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> {
+    let across = || Axis::two("modes kept, m'");
+    let [errors, times] = curves(correlations, rows);
+    vec![
+        Panel {
+            title: "Error of m' dominant modes".to_owned(),
+            across: across(),
+            up: Axis::ten("rms (dashed: largest), share of peak"),
+            series: errors,
+        },
+        Panel {
+            title: "Product and inverse FFT over m' modes".to_owned(),
+            across: across(),
+            up: Axis::ten("processor time, ms"),
+            series: times,
+        },
+        Panel {
+            title: "The whole correlation".to_owned(),
+            across: Axis::two("grid points, m"),
+            up: Axis::ten("processor time, ms"),
+            series: step_times(correlations),
+        },
+    ]
+}
+
+/// Error and processor time over m', by grid.
+fn curves(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> [Vec<Series>; 2] {
     let curve = |whole: &Whole, style, name: &str, value: &dyn Fn(&Row) -> f64| Series {
         name: name.to_owned(),
         colour: colour_of_grid(whole.grid().per_axis),
@@ -144,7 +170,6 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
             .filter(|point| point[1] > 1e-9)
             .collect(),
     };
-    let across = || Axis::two("modes kept, m'");
     let mut errors = Vec::new();
     let mut times = Vec::new();
     for (_, whole) in correlations {
@@ -157,6 +182,11 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
             1e3 * row.seconds.iter().sum::<f64>()
         }));
     }
+    [errors, times]
+}
+
+/// Processor time of each step over the grid's size, beside the paper's.
+fn step_times(correlations: &[(&Scene, &Whole)]) -> Vec<Series> {
     let step = |name: &str, colour, style, value: &dyn Fn(&Whole) -> f64| Series {
         name: name.to_owned(),
         colour,
@@ -178,7 +208,7 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
         |name: &str, colour, value: &dyn Fn(&Whole) -> f64| step(name, colour, Style::Line, value);
     const RED: Colour = [0xcc, 0x33, 0x11];
     const BROWN: Colour = [0x8b, 0x5a, 0x2b];
-    let steps = vec![
+    vec![
         paper("paper: FFTs and product, K20c", RED, [2f64.powi(21), 80.0]),
         paper("paper: pairwise, 32 cores", BROWN, [2f64.powi(18), 104.0]),
         line("rasterise both", [0x99; 3], &|whole| whole.rasterising),
@@ -189,25 +219,5 @@ fn panels(correlations: &[(&Scene, &Whole)], rows: &[(u32, Row)]) -> Vec<Panel> 
             whole.pairwise
         }),
         line("FFTs and product", RED, &Whole::total),
-    ];
-    vec![
-        Panel {
-            title: "Error of m' dominant modes".to_owned(),
-            across: across(),
-            up: Axis::ten("rms (dashed: largest), share of peak"),
-            series: errors,
-        },
-        Panel {
-            title: "Product and inverse FFT over m' modes".to_owned(),
-            across: across(),
-            up: Axis::ten("processor time, ms"),
-            series: times,
-        },
-        Panel {
-            title: "The whole correlation".to_owned(),
-            across: Axis::two("grid points, m"),
-            up: Axis::ten("processor time, ms"),
-            series: steps,
-        },
     ]
 }

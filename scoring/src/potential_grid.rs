@@ -12,14 +12,17 @@ use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
-use crate::transform::modes::place;
+use crate::transform::modes::{ModeSet, place};
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use crate::transform::{Real, fast_size};
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
+use realfft::ComplexToReal;
+use rustfft::Fft;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Fine grid points per mode: the window's slope needs more room than its value.
 const OVERSAMPLING: f64 = 1.5;
@@ -60,80 +63,16 @@ impl PotentialGrid {
     pub fn new<T: Real>(plan: &Plan, spectra: &ReceptorSpectra<T>, ligand: &Knots) -> Self {
         let modes = plan.modes();
         let size = fine_size(plan);
-        let [mx, my, mz] = size;
-        let half = mz / 2 + 1;
-        let stride = mz + LANES;
         let oversampling = (0..3)
             .map(|axis| size[axis] as f64 / modes.size[axis] as f64)
             .fold(f64::INFINITY, f64::min);
         let kernel = SpreadingKernel::<f32>::new(WIDTH, oversampling);
-        let factors: [Vec<f64>; 3] = [0, 1, 2].map(|axis| {
-            (0..=modes.size[axis] as i32 / 2)
-                .map(|k| 1.0 / kernel.transform(f64::from(k) / size[axis] as f64))
-                .collect()
-        });
-        let along_x = f32::inverse_fft(mx);
-        let along_y = f32::inverse_fft(my);
-        let along_z = f32::inverse_real_fft(mz);
-        let zero = Complex::new(0.0f32, 0.0);
-        let mut spectrum = vec![zero; mx * my * half];
-        let mut line = vec![zero; mx.max(my)];
-        let mut row = vec![0.0f32; mz];
+        let mut sampler = Sampler::new(plan, &kernel);
         let seen = combinations(spectra, ligand.len());
         let grids = seen
             .grids
             .iter()
-            .map(|functions| {
-                // [kz][ky][kx] for x, then [kz][x][y], then rows along z.
-                spectrum.fill(zero);
-                for column in &modes.columns {
-                    let outer = factors[1][column.ky.unsigned_abs() as usize]
-                        * factors[2][column.kz as usize]
-                        / modes.volume();
-                    for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
-                        let factor = (outer * factors[0][k.unsigned_abs() as usize]) as f32;
-                        let at =
-                            (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
-                        let source = functions.iter().fold(zero, |sum, &(function, weight)| {
-                            let value = spectra.spectra()[function][column.start + i];
-                            let single = |part: T| f32::of(part.wide());
-                            sum + Complex::new(single(value.re), single(value.im)).scale(weight)
-                        });
-                        spectrum[at] = source.scale(factor);
-                    }
-                }
-                along_x.process(&mut spectrum);
-                let mut grid = vec![0.0f32; mx * my * stride];
-                let mut turned = vec![zero; mx * my];
-                for plane in spectrum.chunks_exact_mut(mx * my) {
-                    for x in 0..mx {
-                        for y in 0..my {
-                            line[y] = plane[y * mx + x];
-                        }
-                        along_y.process(&mut line[..my]);
-                        turned[x * my..(x + 1) * my].copy_from_slice(&line[..my]);
-                    }
-                    plane.copy_from_slice(&turned);
-                }
-                let mut along = along_z.make_input_vec();
-                for xy in 0..mx * my {
-                    for (kz, value) in along.iter_mut().enumerate() {
-                        *value = spectrum[kz * mx * my + xy];
-                    }
-                    along[0].im = 0.0;
-                    along[half - 1].im = 0.0;
-                    let done = along_z.process(&mut along, &mut row);
-                    assert!(
-                        done.is_ok(),
-                        "lengths are the plan's, and the ends are real"
-                    );
-                    let out = &mut grid[xy * stride..(xy + 1) * stride];
-                    for (z, value) in out.iter_mut().enumerate() {
-                        *value = row[z % mz];
-                    }
-                }
-                grid
-            })
+            .map(|functions| sampler.sample(spectra, functions))
             .collect();
         let cells_per_length = [0, 1, 2].map(|axis| size[axis] as f64 / modes.lengths[axis]);
         let knots = seen
@@ -147,7 +86,7 @@ impl PotentialGrid {
             .collect();
         Self {
             size,
-            stride,
+            stride: size[2] + LANES,
             cells_per_length,
             center: [0, 1, 2].map(|axis| spectra.center()[axis] * cells_per_length[axis]),
             limit: plan.receptor_extent().map(|extent| extent + plan.reach()),
@@ -238,6 +177,119 @@ impl PotentialGrid {
             );
         }
         (score, force)
+    }
+}
+
+/// Transforms of spectra to potentials on the fine grid, and their buffers.
+struct Sampler<'a> {
+    modes: &'a ModeSet,
+    size: [usize; 3],
+    /// One over the window's transform, for each axis and wave number from 0 on.
+    factors: [Vec<f64>; 3],
+    along_x: Arc<dyn Fft<f32>>,
+    along_y: Arc<dyn Fft<f32>>,
+    along_z: Arc<dyn ComplexToReal<f32>>,
+    /// [kz][ky][kx] for x, then [kz][x][y], then rows along z.
+    spectrum: Vec<Complex<f32>>,
+}
+
+impl<'a> Sampler<'a> {
+    fn new(plan: &'a Plan, kernel: &SpreadingKernel<f32>) -> Self {
+        let modes = plan.modes();
+        let size = fine_size(plan);
+        let [mx, my, mz] = size;
+        Self {
+            modes,
+            size,
+            factors: [0, 1, 2].map(|axis| {
+                (0..=modes.size[axis] as i32 / 2)
+                    .map(|k| 1.0 / kernel.transform(f64::from(k) / size[axis] as f64))
+                    .collect()
+            }),
+            along_x: f32::inverse_fft(mx),
+            along_y: f32::inverse_fft(my),
+            along_z: f32::inverse_real_fft(mz),
+            spectrum: vec![Complex::new(0.0, 0.0); mx * my * (mz / 2 + 1)],
+        }
+    }
+
+    /// The grid of the weighted sum of some functions, rows padded to the stride.
+    fn sample<T: Real>(
+        &mut self,
+        spectra: &ReceptorSpectra<T>,
+        functions: &[(usize, f32)],
+    ) -> Vec<f32> {
+        self.fill(spectra, functions);
+        self.along_x.process(&mut self.spectrum);
+        self.transform_y();
+        self.transform_z()
+    }
+
+    /// Fills the spectrum with the weighted sum, divided by the window's transform.
+    fn fill<T: Real>(&mut self, spectra: &ReceptorSpectra<T>, functions: &[(usize, f32)]) {
+        let Self { modes, factors, .. } = self;
+        let [mx, my, _] = self.size;
+        let zero = Complex::new(0.0f32, 0.0);
+        self.spectrum.fill(zero);
+        for column in &modes.columns {
+            let outer = factors[1][column.ky.unsigned_abs() as usize]
+                * factors[2][column.kz as usize]
+                / modes.volume();
+            for (i, k) in (-column.kx_max..=column.kx_max).enumerate() {
+                let factor = (outer * factors[0][k.unsigned_abs() as usize]) as f32;
+                let at = (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
+                let source = functions.iter().fold(zero, |sum, &(function, weight)| {
+                    let value = spectra.spectra()[function][column.start + i];
+                    let single = |part: T| f32::of(part.wide());
+                    sum + Complex::new(single(value.re), single(value.im)).scale(weight)
+                });
+                self.spectrum[at] = source.scale(factor);
+            }
+        }
+    }
+
+    /// Transforms along y, and exchanges x and y.
+    fn transform_y(&mut self) {
+        let [mx, my, _] = self.size;
+        let zero = Complex::new(0.0f32, 0.0);
+        let mut line = vec![zero; my];
+        let mut turned = vec![zero; mx * my];
+        for plane in self.spectrum.chunks_exact_mut(mx * my) {
+            for x in 0..mx {
+                for y in 0..my {
+                    line[y] = plane[y * mx + x];
+                }
+                self.along_y.process(&mut line);
+                turned[x * my..(x + 1) * my].copy_from_slice(&line);
+            }
+            plane.copy_from_slice(&turned);
+        }
+    }
+
+    /// Transforms along z into rows that repeat their start.
+    fn transform_z(&self) -> Vec<f32> {
+        let [mx, my, mz] = self.size;
+        let stride = mz + LANES;
+        let mut grid = vec![0.0f32; mx * my * stride];
+        let mut row = vec![0.0f32; mz];
+        let mut along = self.along_z.make_input_vec();
+        for xy in 0..mx * my {
+            for (kz, value) in along.iter_mut().enumerate() {
+                *value = self.spectrum[kz * mx * my + xy];
+            }
+            along[0].im = 0.0;
+            along[mz / 2].im = 0.0;
+            let done = self.along_z.process(&mut along, &mut row);
+            assert!(
+                done.is_ok(),
+                "lengths are the plan's, and the ends are real"
+            );
+            let out = &mut grid[xy * stride..(xy + 1) * stride];
+            for (z, value) in out.iter_mut().enumerate() {
+                *value = row[z % mz];
+            }
+        }
+        grid
     }
 }
 

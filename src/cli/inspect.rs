@@ -11,7 +11,7 @@ use knotdock::rank::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    Format, InputSpec, LabelReport, Termini, UnresolvedResidues, fits,
+    Format, InputSpec, LabelReport, Molecule, Termini, UnresolvedResidues, fits,
 };
 use serde_json::{Map, Value, json};
 
@@ -55,25 +55,7 @@ impl Inspect {
         let reading = options.input.reading();
         let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
-        if let Some(file) = &self.atoms {
-            check_output(file, [structure.as_path()], self.force)?;
-        }
-        let format = match &self.write {
-            Some(file) => {
-                check_output(file, [structure.as_path()], self.force)?;
-                if self
-                    .atoms
-                    .as_ref()
-                    .is_some_and(|atoms| is_same(atoms, file))
-                {
-                    return Err(Failure::input("--atoms and --write name one file")
-                        .at(file)
-                        .remedy("give each a name of its own"));
-                }
-                Some(written_format(file)?)
-            }
-            None => None,
-        };
+        let format = self.checked_outputs(&structure)?;
         let (input, listed) = if self.atoms.is_some() {
             let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
             (input, Some(listed))
@@ -89,30 +71,12 @@ impl Inspect {
                     .remedy("give the file a name that ends in .cif")
             })?;
         }
-        let labels = molecule.labels(ph);
-        let area: f64 = molecule
-            .accessible_areas(surface_points(molecule.atoms.len()))
-            .iter()
-            .sum();
-        let findings = PRIORS.map(|prior| prior.findings(molecule));
-        let unresolved = molecule.unresolved_residues();
-        let termini = molecule.termini();
-        let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
-        let counts = counts.map_err(Failure::input)?;
-        let labels = labels.report;
-        let volume = union_volume(&molecule.knots().map_err(Failure::input)?);
+        let found = Inspection::of(molecule, ph)?;
         console.say(format!(
             "{}\n{}\n{}",
             molecule.report,
-            labels_text(
-                &labels,
-                (&unresolved, &termini),
-                ph,
-                area,
-                volume,
-                &findings
-            ),
-            counts_text(&counts)
+            labels_text(&found, ph),
+            counts_text(&found.counts)
         ));
         if let (Some(path), Some(listed)) = (&self.atoms, listed) {
             atom_table::write(path, &listed)?;
@@ -126,24 +90,90 @@ impl Inspect {
                 path.display()
             ));
         }
+        console.result(&found.entries(&input)?)?;
+        Ok(())
+    }
+
+    /// Refuses files to write that are there or coincide; returns the format of `--write`.
+    fn checked_outputs(&self, structure: &Path) -> Result<Option<Format>, Failure> {
+        if let Some(file) = &self.atoms {
+            check_output(file, [structure], self.force)?;
+        }
+        let Some(file) = &self.write else {
+            return Ok(None);
+        };
+        check_output(file, [structure], self.force)?;
+        if self
+            .atoms
+            .as_ref()
+            .is_some_and(|atoms| is_same(atoms, file))
+        {
+            return Err(Failure::input("--atoms and --write name one file")
+                .at(file)
+                .remedy("give each a name of its own"));
+        }
+        Ok(Some(written_format(file)?))
+    }
+}
+
+/// What is found of a molecule.
+struct Inspection {
+    labels: LabelReport,
+    unresolved: UnresolvedResidues,
+    termini: Termini,
+    /// Numbers of parts that pose terms read.
+    counts: Vec<(&'static TermDefinition, usize)>,
+    /// Solvent-accessible surface, Å².
+    area: f64,
+    /// Volume of the atoms' balls, Å³.
+    volume: Volume,
+    /// What each prior finds, in the order of [`PRIORS`].
+    findings: Vec<Findings>,
+}
+
+impl Inspection {
+    /// Inspects a molecule at a pH.
+    fn of(molecule: &Molecule, ph: f64) -> Result<Self, Failure> {
+        let labels = molecule.labels(ph);
+        let area = molecule
+            .accessible_areas(surface_points(molecule.atoms.len()))
+            .iter()
+            .sum();
+        let findings = PRIORS.iter().map(|prior| prior.findings(molecule));
+        let findings = findings.collect();
+        let unresolved = molecule.unresolved_residues();
+        let termini = molecule.termini();
+        let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
+        Ok(Self {
+            counts: counts.map_err(Failure::input)?,
+            volume: union_volume(&molecule.knots().map_err(Failure::input)?),
+            labels: labels.report,
+            unresolved,
+            termini,
+            area,
+            findings,
+        })
+    }
+
+    /// The entries of the result.
+    fn entries(self, input: &Input) -> Result<Value, Failure> {
         let mut entries = Map::new();
         entries.insert("input".to_owned(), json!(input.entry()?));
-        entries.insert("labels".to_owned(), json!(labels));
-        for (prior, found) in PRIORS.iter().zip(findings) {
+        entries.insert("labels".to_owned(), json!(self.labels));
+        for (prior, found) in PRIORS.iter().zip(self.findings) {
             entries.insert(prior.entry_name().to_owned(), found.entry);
         }
         for (name, entry) in [
-            ("unresolved_residues", json!(unresolved)),
-            ("terminus_residues", json!(termini)),
-            ("pose_terms", Value::Object(counts_entry(&counts))),
-            ("accessible_area", json!(area)),
-            ("volume", json!(volume.value)),
-            ("volume_error", json!(volume.error)),
+            ("unresolved_residues", json!(self.unresolved)),
+            ("terminus_residues", json!(self.termini)),
+            ("pose_terms", Value::Object(counts_entry(&self.counts))),
+            ("accessible_area", json!(self.area)),
+            ("volume", json!(self.volume.value)),
+            ("volume_error", json!(self.volume.error)),
         ] {
             entries.insert(name.to_owned(), entry);
         }
-        console.result(&Value::Object(entries))?;
-        Ok(())
+        Ok(Value::Object(entries))
     }
 }
 
@@ -173,14 +203,16 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
 }
 
 /// Labels, flexible regions, surface and findings in words.
-fn labels_text(
-    labels: &LabelReport,
-    (unresolved, termini): (&UnresolvedResidues, &Termini),
-    ph: f64,
-    area: f64,
-    volume: Volume,
-    findings: &[Findings],
-) -> String {
+fn labels_text(found: &Inspection, ph: f64) -> String {
+    let Inspection {
+        labels,
+        unresolved,
+        termini,
+        area,
+        volume,
+        findings,
+        ..
+    } = found;
     let names = |unknown: &std::collections::BTreeMap<String, usize>| {
         let names = unknown
             .iter()

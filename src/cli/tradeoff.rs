@@ -68,21 +68,7 @@ impl TradeoffCommand {
         }
         let pair = [&self.receptor, &self.ligand];
         let mut request = Request::read(pair, self.native.read()?, given)?;
-        if request.options.search.engine == EngineChoice::Gpu {
-            let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
-            return Err(Failure::input(error).remedy("leave out --engine gpu"));
-        }
-        let other = if request.bodies.are_meshes() {
-            Scope::Molecules
-        } else {
-            Scope::Meshes
-        };
-        let named = self.parameters.as_deref().unwrap_or_default();
-        if let Some(idle) = named.iter().find(|one| one.scope() == other) {
-            let name = idle.name();
-            let error = format!("the option {name} has no effect on such inputs");
-            return Err(Failure::input(error).remedy("name other parameters"));
-        }
+        check(&request, self.parameters.as_deref().unwrap_or_default())?;
         let parameters = self.parameters.unwrap_or_else(Parameter::all);
         request.options.machine = settled(&request.options.machine);
         let directory = self.output.unwrap_or_else(|| {
@@ -124,14 +110,7 @@ impl TradeoffCommand {
             machine,
         })
         .map_err(Failure::other)?;
-        let svg = plot(&tradeoff).map_err(Failure::other)?;
-        let folder = staging.folder();
-        write_whole(&folder.join("tradeoff.svg"), |file| {
-            file.write_all(svg.as_bytes())
-        })?;
-        write_table(&tradeoff, &folder.join("tradeoff.csv"))?;
-        record.write(&folder.join("tradeoff.json"))?;
-        staging.commit()?;
+        write(staging, &tradeoff, &record)?;
 
         console.say(format!("\n{}", table(&tradeoff)));
         if let Some(advice) = &advice {
@@ -148,6 +127,38 @@ impl TradeoffCommand {
         }))?;
         Ok(())
     }
+}
+
+/// Refuses a search on a graphics processor, and parameters without effect on the inputs.
+fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
+    if request.options.search.engine == EngineChoice::Gpu {
+        let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
+        return Err(Failure::input(error).remedy("leave out --engine gpu"));
+    }
+    let other = if request.bodies.are_meshes() {
+        Scope::Molecules
+    } else {
+        Scope::Meshes
+    };
+    if let Some(idle) = parameters.iter().find(|one| one.scope() == other) {
+        let name = idle.name();
+        let error = format!("the option {name} has no effect on such inputs");
+        return Err(Failure::input(error).remedy("name other parameters"));
+    }
+    Ok(())
+}
+
+/// Writes the files of a sweep.
+fn write(staging: Staging, tradeoff: &Tradeoff, record: &TradeoffRecord) -> Result<(), Failure> {
+    let svg = plot(tradeoff).map_err(Failure::other)?;
+    let folder = staging.folder();
+    write_whole(&folder.join("tradeoff.svg"), |file| {
+        file.write_all(svg.as_bytes())
+    })?;
+    write_table(tradeoff, &folder.join("tradeoff.csv"))?;
+    record.write(&folder.join("tradeoff.json"))?;
+    staging.commit()?;
+    Ok(())
 }
 
 /// A failure of the default or the reference: of the request where it could not be planned.

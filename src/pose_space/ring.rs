@@ -149,11 +149,12 @@ mod tests {
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
     }
 
-    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
-    /// shift along it gains anything by the exact sum.
-    #[test]
-    fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
-        let turn = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+    fn turn(angle: f64) -> UnitQuaternion<f64> {
+        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle)
+    }
+
+    /// A ring of two strands.
+    fn two_strands() -> Molecule {
         let strand = |chain: &str, angle: f64| {
             let tilt = UnitQuaternion::new(Vector3::new(0.2, -0.5, 0.3));
             let place = |x| turn(angle) * (tilt * x + Vector3::new(2.0, 6.0, 1.0));
@@ -167,7 +168,14 @@ mod tests {
         let atoms = [strand("A", 0.0), strand("B", PI)].concat();
         let ring = Molecule::new(atoms, Format::Pdb);
         // Off the file's origin.
-        let ring = ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0]);
+        ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0])
+    }
+
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
+    /// shift along it gains anything by the exact sum.
+    #[test]
+    fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
+        let ring = two_strands();
         let options = DockOptions::default().changed(|options| {
             options.search.symmetry = Some("D2".parse().unwrap());
             options.search.rotations = 12;

@@ -47,50 +47,9 @@ impl<T: Real> ReceptorSpectra<T> {
     /// Where the plan was made for other knots.
     pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
         assert!(plan.holds_ligand(ligand), "the plan is of another ligand");
-        let modes = plan.modes();
-        let (receptor_size, ligand_size) = plan.basis().sizes(plan.axis());
-        let fine = plan.fine();
-        let extent = [0, 1, 2].map(|axis| {
-            plan.receptor_extent()[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5
-        });
-        let knots = Receptor {
-            forward: Forward::<T>::new(Arc::clone(modes), fine, plan.width(), extent, 1),
-            points: receptor
-                .centers
-                .iter()
-                .map(|&x| (Vector3::from(x) - plan.receptor_center()).into())
-                .collect(),
-            modes: Arc::clone(modes),
-        };
-        let mut work = knots.forward.workspace();
-        let zero = Complex::new(T::zero(), T::zero());
-        let mut spectra = vec![vec![zero; modes.count]; ligand_size];
-        let mut field = vec![zero; modes.count];
-        for a in 0..receptor_size {
-            let mut inside = Vec::new();
-            let mut weights = Vec::new();
-            for (i, &radius) in receptor.radii.iter().enumerate() {
-                let value =
-                    plan.basis().receptor_value(plan.axis(), a, radius) * receptor.weights[i];
-                if value != 0.0 {
-                    inside.push(knots.points[i]);
-                    weights.push(T::of(value));
-                }
-            }
-            knots
-                .forward
-                .transform(&inside, &weights, &mut work, &mut field);
-            for (b, spectrum) in spectra.iter_mut().enumerate() {
-                let Some(table) = plan.coupling(fold, (a, b)) else {
-                    continue;
-                };
-                modes.for_each(|mode, w, _| {
-                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-                    let factor = T::of(table.value(length)[0]);
-                    spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
-                });
-            }
-        }
+        let knots = Receptor::<T>::new(plan, receptor);
+        let mut spectra = knots.shape_functions(plan, receptor, fold);
+        let ligand_size = spectra.len();
         let mut columns: Vec<Vec<f64>> = (0..ligand_size)
             .map(|b| {
                 let value = |j: usize| plan.basis().ligand_value(plan.axis(), b, ligand.radii[j]);
@@ -105,17 +64,8 @@ impl<T: Real> ReceptorSpectra<T> {
             _ => &[],
         };
         for ActiveTerm { term, kernel } in terms {
-            let table = kernel.spectrum_table(modes.cut);
-            let classes = term.matrix.first().map_or(0, Vec::len);
-            let functions: Vec<ClassFunction<T>> = (0..classes)
-                .into_par_iter()
-                .map_init(
-                    || knots.forward.workspace(),
-                    |work, class| knots.class_function(term, &table, class, work),
-                )
-                .flatten()
-                .collect();
-            for ClassFunction { spectrum, column } in functions {
+            let table = kernel.spectrum_table(plan.modes().cut);
+            for ClassFunction { spectrum, column } in knots.term_functions(term, &table) {
                 spectra.push(spectrum);
                 columns.push(column);
                 effects.push(term.effect);
@@ -255,6 +205,76 @@ struct Receptor<T: Real> {
 }
 
 impl<T: Real> Receptor<T> {
+    fn new(plan: &Plan, receptor: &Knots) -> Self {
+        let modes = plan.modes();
+        let fine = plan.fine();
+        let extent = [0, 1, 2].map(|axis| {
+            plan.receptor_extent()[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5
+        });
+        Self {
+            forward: Forward::<T>::new(Arc::clone(modes), fine, plan.width(), extent, 1),
+            points: receptor
+                .centers
+                .iter()
+                .map(|&x| (Vector3::from(x) - plan.receptor_center()).into())
+                .collect(),
+            modes: Arc::clone(modes),
+        }
+    }
+
+    /// The functions of the lifted axis through its kernel: `[ligand basis function][mode]`.
+    fn shape_functions(
+        &self,
+        plan: &Plan,
+        receptor: &Knots,
+        fold: Quantity,
+    ) -> Vec<Vec<Complex<T>>> {
+        let (receptor_size, ligand_size) = plan.basis().sizes(plan.axis());
+        let modes = &self.modes;
+        let mut work = self.forward.workspace();
+        let zero = Complex::new(T::zero(), T::zero());
+        let mut spectra = vec![vec![zero; modes.count]; ligand_size];
+        let mut field = vec![zero; modes.count];
+        for a in 0..receptor_size {
+            let mut inside = Vec::new();
+            let mut weights = Vec::new();
+            for (i, &radius) in receptor.radii.iter().enumerate() {
+                let value =
+                    plan.basis().receptor_value(plan.axis(), a, radius) * receptor.weights[i];
+                if value != 0.0 {
+                    inside.push(self.points[i]);
+                    weights.push(T::of(value));
+                }
+            }
+            self.forward
+                .transform(&inside, &weights, &mut work, &mut field);
+            for (b, spectrum) in spectra.iter_mut().enumerate() {
+                let Some(table) = plan.coupling(fold, (a, b)) else {
+                    continue;
+                };
+                modes.for_each(|mode, w, _| {
+                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+                    let factor = T::of(table.value(length)[0]);
+                    spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
+                });
+            }
+        }
+        spectra
+    }
+
+    /// The functions of a term, one for every class that both sides feel; `table` is the term's kernel by wave number.
+    fn term_functions(&self, term: &Term, table: &Table<1>) -> Vec<ClassFunction<T>> {
+        let classes = term.matrix.first().map_or(0, Vec::len);
+        (0..classes)
+            .into_par_iter()
+            .map_init(
+                || self.forward.workspace(),
+                |work, class| self.class_function(term, table, class, work),
+            )
+            .flatten()
+            .collect()
+    }
+
     /// The function of one class; `table` is the term's kernel by wave number. `None` where no knot of the ligand is of
     /// the class, or none of the receptor means anything to it.
     fn class_function(

@@ -190,18 +190,14 @@ fn poses(count: usize, spread: f64) -> Vec<Pose> {
         .collect()
 }
 
-/// Score alone, score from slices, and a double loop over the kernel's own distance tables, which have other panels,
-/// must agree to 1e-9 of the best score, and so must the gradient's. Hard cases: coincident knots, whose distance is 0;
-/// knots at distances of 1e6 Å; more knots within reach than are collected at a time. Also radii of a ratio of 1e6,
-/// whose tables reach far beyond the panels of small pairs.
-#[test]
-fn score_alone_slices_and_plain_loop_agree() {
+/// Pairs of clouds by name, with how far apart their poses are, Å.
+fn hard_cases() -> [(&'static str, Knots, Knots, f64); 5] {
     let mut far = cloud(50, 12.0, 11);
     let shifted: Vec<[f64; 3]> = far.centers.iter().map(|x| x.map(|x| x + 1e6)).collect();
     far.centers.extend(shifted);
     let far = knots(far.centers, &[1.5, 1.9]);
     let protein = [1.5, 1.65, 1.9];
-    let cases = [
+    [
         ("clouds", cloud(400, 25.0, 8), cloud(90, 14.0, 9), 20.0),
         (
             "coincident",
@@ -217,8 +213,47 @@ fn score_alone_slices_and_plain_loop_agree() {
             knots(cloud(30, 80.0, 16).centers, &[1e-4, 100.0]),
             150.0,
         ),
-    ];
-    for (name, receptor, ligand, spread) in cases {
+    ]
+}
+
+/// Scores by a double loop over the kernel's distance tables.
+fn plain_scores(
+    kernel: &RankingKernel,
+    receptor: &Knots,
+    ligand: &Knots,
+    poses: &[Pose],
+) -> Vec<f64> {
+    let (receptor_radii, receptor_class) = receptor.radius_classes();
+    let (ligand_radii, ligand_class) = ligand.radius_classes();
+    let tables: Vec<Vec<_>> = ligand_radii
+        .iter()
+        .map(|s| {
+            receptor_radii
+                .iter()
+                .map(|r| kernel.distance_table(r + s))
+                .collect()
+        })
+        .collect();
+    let plain = |pose: &Pose| {
+        let mut sum = 0.0;
+        for (y, &s) in ligand.centers.iter().zip(&ligand_class) {
+            let y = Vector3::from(pose.apply(*y));
+            for (x, &r) in receptor.centers.iter().zip(&receptor_class) {
+                sum += tables[s][r].value((y - Vector3::from(*x)).norm())[3];
+            }
+        }
+        sum
+    };
+    poses.iter().map(plain).collect()
+}
+
+/// Score alone, score from slices, and a double loop over the kernel's own distance tables, which have other panels,
+/// must agree to 1e-9 of the best score, and so must the gradient's. Hard cases: coincident knots, whose distance is 0;
+/// knots at distances of 1e6 Å; more knots within reach than are collected at a time. Also radii of a ratio of 1e6,
+/// whose tables reach far beyond the panels of small pairs.
+#[test]
+fn score_alone_slices_and_plain_loop_agree() {
+    for (name, receptor, ligand, spread) in hard_cases() {
         let ends = |knots: &Knots| {
             let low = knots.radii.iter().copied().fold(f64::INFINITY, f64::min);
             (low, knots.radii.iter().copied().fold(0.0, f64::max))
@@ -227,29 +262,8 @@ fn score_alone_slices_and_plain_loop_agree() {
         let kernel =
             RankingKernel::new(*kernel().options(), r_low + s_low, r_high + s_high, 1.0).unwrap();
         let scorer = ExactScorer::new(&kernel, &receptor, &ligand).unwrap();
-        let (receptor_radii, receptor_class) = receptor.radius_classes();
-        let (ligand_radii, ligand_class) = ligand.radius_classes();
-        let tables: Vec<Vec<_>> = ligand_radii
-            .iter()
-            .map(|s| {
-                receptor_radii
-                    .iter()
-                    .map(|r| kernel.distance_table(r + s))
-                    .collect()
-            })
-            .collect();
-        let plain = |pose: &Pose| {
-            let mut sum = 0.0;
-            for (y, &s) in ligand.centers.iter().zip(&ligand_class) {
-                let y = Vector3::from(pose.apply(*y));
-                for (x, &r) in receptor.centers.iter().zip(&receptor_class) {
-                    sum += tables[s][r].value((y - Vector3::from(*x)).norm())[3];
-                }
-            }
-            sum
-        };
         let poses = poses(12, spread);
-        let expected: Vec<f64> = poses.iter().map(plain).collect();
+        let expected: Vec<f64> = plain_scores(&kernel, &receptor, &ligand, &poses);
         // The best score stands for the scale; crowds that only overlap have none worth the name, there it is what a
         // pair can lose.
         let best = expected

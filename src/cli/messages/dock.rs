@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use knotdock::dock::flexible_regions::FlexibleRegions;
-use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::outcome::{DockOutcome, EffectCost};
 use knotdock::dock::plan::DockPlan;
 use knotdock::output::tables::report::counted;
 use knotdock::priors::active_residues::AssumedSite;
@@ -13,21 +13,7 @@ use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.
 pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
-    let effects = outcome
-        .effects
-        .iter()
-        .map(|cost| match (cost.on, cost.effect) {
-            (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
-            (true, Effect::Shape) => format!(
-                "Effect shape ({}): rank {}, {:.2} ms a rotation",
-                cost.reason, cost.rank, cost.milliseconds_per_rotation
-            ),
-            (true, effect) => format!(
-                "Effect {effect} ({}): without it the rank is lower by {} and a rotation takes {:.2} ms less",
-                cost.reason, cost.rank, cost.milliseconds_per_rotation.max(0.0)
-            ),
-        });
-    let mut lines: Vec<String> = effects.collect();
+    let mut lines: Vec<String> = outcome.effects.iter().map(effect_text).collect();
     if let Some(site) = plan.active_site() {
         lines.push(site_text(site));
     }
@@ -65,37 +51,66 @@ pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
             fine.rotations, fine.cells
         ));
     }
-    let names: Vec<&str> = outcome.poses.first().map_or(Vec::new(), |row| {
-        let acting = row.pose_terms.iter().filter(|(_, value)| value.is_some());
-        acting.map(|(term, _)| term.label).collect()
-    });
-    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
-    if let (false, Some(stage)) = (names.is_empty(), stage) {
-        lines.push(format!(
-            "Rescored by {} in {:.2} s",
-            joined(&names),
-            stage.wall_seconds
-        ));
-    }
-    let error = outcome.error;
-    if error.worst.is_finite() {
-        lines.push(format!(
-            "Fast path against the exact sum, over {}: {:.1e} of the best score rms, {:.1e} at worst",
-            counted(error.poses, "pose"),
-            error.rms,
-            error.worst
-        ));
-        lines.push(format!(
-            "The low-pass moved their shape scores by {:.0}% of the best on average",
-            100.0 * error.low_pass_share
-        ));
-    }
+    lines.extend(rescored_text(outcome));
+    lines.extend(error_text(outcome));
     lines.push(format!(
         "{} in {}",
         counted(outcome.poses_kept, "pose"),
         counted(outcome.clusters, "cluster")
     ));
     lines.join("\n")
+}
+
+/// The cost of an effect.
+fn effect_text(cost: &EffectCost) -> String {
+    match (cost.on, cost.effect) {
+        (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
+        (true, Effect::Shape) => format!(
+            "Effect shape ({}): rank {}, {:.2} ms a rotation",
+            cost.reason, cost.rank, cost.milliseconds_per_rotation
+        ),
+        (true, effect) => format!(
+            "Effect {effect} ({}): without it the rank is lower by {} and a rotation takes {:.2} ms less",
+            cost.reason,
+            cost.rank,
+            cost.milliseconds_per_rotation.max(0.0)
+        ),
+    }
+}
+
+/// The pose terms that rescored, and their time.
+fn rescored_text(outcome: &DockOutcome) -> Option<String> {
+    let names: Vec<&str> = outcome.poses.first().map_or(Vec::new(), |row| {
+        let acting = row.pose_terms.iter().filter(|(_, value)| value.is_some());
+        acting.map(|(term, _)| term.label).collect()
+    });
+    let stage = outcome.timing.iter().find(|stage| stage.name == "rescore");
+    let stage = stage.filter(|_| !names.is_empty())?;
+    Some(format!(
+        "Rescored by {} in {:.2} s",
+        joined(&names),
+        stage.wall_seconds
+    ))
+}
+
+/// The error of the fast path; no lines where errors have no scale.
+fn error_text(outcome: &DockOutcome) -> Vec<String> {
+    let error = outcome.error;
+    if !error.worst.is_finite() {
+        return Vec::new();
+    }
+    vec![
+        format!(
+            "Fast path against the exact sum, over {}: {:.1e} of the best score rms, {:.1e} at worst",
+            counted(error.poses, "pose"),
+            error.rms,
+            error.worst
+        ),
+        format!(
+            "The low-pass moved their shape scores by {:.0}% of the best on average",
+            100.0 * error.low_pass_share
+        ),
+    ]
 }
 
 /// Warning that the fast path was farther from the exact sum than the tolerance.

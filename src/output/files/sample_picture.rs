@@ -38,31 +38,80 @@ pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<(), F
     write_whole(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Across, up and toward the viewer: axes of the picture.
-fn axes(solid: &Solid) -> [usize; 3] {
-    let half = solid.half_sides();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| half[b].total_cmp(&half[a]));
-    let toward = order[2];
-    [(toward + 1) % 3, (toward + 2) % 3, toward]
+/// The axes and the scale of the picture.
+struct View {
+    /// Across, up and toward the viewer.
+    axes: [usize; 3],
+    /// Half of a panel's edge, in the solid's unit.
+    reach: f64,
+    /// SVG units in the solid's unit.
+    scale: f64,
+}
+
+impl View {
+    fn of(solid: &Solid) -> Self {
+        let half = solid.half_sides();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| half[b].total_cmp(&half[a]));
+        let toward = order[2];
+        let [across, up] = [(toward + 1) % 3, (toward + 2) % 3];
+        let reach = half[across].max(half[up]) * 1.1;
+        Self {
+            axes: [across, up, toward],
+            reach,
+            scale: PANEL / (2.0 * reach),
+        }
+    }
+
+    /// Place of a point, given across and up, in its panel.
+    fn place(&self, [across, up]: [f64; 2]) -> [f64; 2] {
+        let place = |value: f64| PANEL / 2.0 + self.scale * value;
+        [place(across), PANEL - place(up)]
+    }
+
+    /// Place of a ball's centre in its panel.
+    fn center(&self, ball: &Ball) -> [f64; 2] {
+        let [across, up, _] = self.axes;
+        self.place([ball.center[across], ball.center[up]])
+    }
 }
 
 fn picture(solid: &Solid, balls: &[Ball]) -> String {
-    let [across, up, toward] = axes(solid);
-    let half = solid.half_sides();
-    let reach = half[across].max(half[up]) * 1.1;
-    let scale = PANEL / (2.0 * reach);
-    let place = |value: f64| PANEL / 2.0 + scale * value;
+    let view = View::of(solid);
+    let fields = fields(solid, &view);
     let mut svg = Svg::new(4.0 * PANEL, PANEL + 24.0);
-    let mut panel = |index: usize, title: &str, content: &dyn Fn(&mut Svg)| {
-        svg.at([index as f64 * PANEL, 0.0], |svg| {
-            svg.text([PANEL / 2.0, PANEL + 16.0], title);
-            content(svg);
-        });
+    panel(&mut svg, 0, "depth: inside red, outside blue", |svg| {
+        draw_depth(svg, &fields);
+    });
+    let title = "skeletal density: the brighter the more";
+    panel(&mut svg, 1, title, |svg| draw_density(svg, &fields));
+    let title = "slice of the balls, and of the mesh";
+    panel(&mut svg, 2, title, |svg| {
+        draw_slice(svg, solid, balls, &view);
+    });
+    let title = if balls.len() > SHOWN {
+        format!("the {SHOWN} largest of {} balls", balls.len())
+    } else {
+        format!("{} balls", balls.len())
     };
+    panel(&mut svg, 3, &title, |svg| draw_balls(svg, balls, &view));
+    svg.finish()
+}
 
+/// Draws a panel above its title.
+fn panel(svg: &mut Svg, index: usize, title: &str, content: impl FnOnce(&mut Svg)) {
+    svg.at([index as f64 * PANEL, 0.0], |svg| {
+        svg.text([PANEL / 2.0, PANEL + 16.0], title);
+        content(svg);
+    });
+}
+
+/// Depth and skeletal density at the pixels of the slice, row by row from the lowest.
+fn fields(solid: &Solid, view: &View) -> Vec<(f64, f64)> {
+    let [across, up, _] = view.axes;
+    let reach = view.reach;
     let step = 2.0 * reach / PIXELS as f64;
-    let fields: Vec<(f64, f64)> = (0..PIXELS * PIXELS)
+    (0..PIXELS * PIXELS)
         .into_par_iter()
         .map(|pixel| {
             let mut point = [0.0; 3];
@@ -79,66 +128,68 @@ fn picture(solid: &Solid, balls: &[Ball]) -> String {
             };
             (depth, density)
         })
-        .collect();
+        .collect()
+}
+
+/// Draws the depth of each pixel.
+fn draw_depth(svg: &mut Svg, fields: &[(f64, f64)]) {
     let deepest = fields
         .iter()
         .map(|(depth, _)| depth.abs())
         .fold(0.0, f64::max);
+    pixels(svg, fields, |(depth, _)| {
+        let share = (depth.abs() / deepest).sqrt();
+        let fade = |full: f64| (255.0 - share * (255.0 - full)) as u8;
+        Some(if *depth > 0.0 {
+            [fade(190.0), fade(60.0), fade(20.0)]
+        } else {
+            [fade(40.0), fade(90.0), fade(170.0)]
+        })
+    });
+}
+
+/// Draws the skeletal density of each pixel inside.
+fn draw_density(svg: &mut Svg, fields: &[(f64, f64)]) {
     let densest = fields
         .iter()
         .map(|(_, density)| *density)
         .fold(0.0, f64::max);
-    panel(0, "depth: inside red, outside blue", &|svg| {
-        pixels(svg, &fields, |(depth, _)| {
-            let share = (depth.abs() / deepest).sqrt();
-            let fade = |full: f64| (255.0 - share * (255.0 - full)) as u8;
-            Some(if *depth > 0.0 {
-                [fade(190.0), fade(60.0), fade(20.0)]
-            } else {
-                [fade(40.0), fade(90.0), fade(170.0)]
-            })
-        });
+    pixels(svg, fields, |(depth, density)| {
+        let share = density / densest;
+        (*depth > 0.0).then_some([
+            (255.0 * share.sqrt()) as u8,
+            (235.0 * share) as u8,
+            (60.0 + 120.0 * (1.0 - share)) as u8,
+        ])
     });
-    panel(1, "skeletal density: the brighter the more", &|svg| {
-        pixels(svg, &fields, |(depth, density)| {
-            let share = density / densest;
-            (*depth > 0.0).then_some([
-                (255.0 * share.sqrt()) as u8,
-                (235.0 * share) as u8,
-                (60.0 + 120.0 * (1.0 - share)) as u8,
-            ])
-        });
-    });
-    let center = |ball: &Ball| [place(ball.center[across]), PANEL - place(ball.center[up])];
-    panel(2, "slice of the balls, and of the mesh", &|svg| {
-        for ball in balls {
-            let off = ball.center[toward];
-            let squared = ball.radius * ball.radius - off * off;
-            if squared > 0.0 {
-                svg.circle(center(ball), scale * squared.sqrt(), SLICED);
-            }
-        }
-        let segments = outline(solid, [across, up, toward]);
-        let placed = segments.map(|ends| ends.map(|[x, y]| [place(x), PANEL - place(y)]));
-        svg.segments(placed, "fill=\"none\" stroke=\"black\" stroke-width=\"1\"");
-    });
+}
 
+/// Draws the circles and the outline in which the slice meets balls and mesh.
+fn draw_slice(svg: &mut Svg, solid: &Solid, balls: &[Ball], view: &View) {
+    let [.., toward] = view.axes;
+    for ball in balls {
+        let off = ball.center[toward];
+        let squared = ball.radius * ball.radius - off * off;
+        if squared > 0.0 {
+            svg.circle(view.center(ball), view.scale * squared.sqrt(), SLICED);
+        }
+    }
+    let segments = outline(solid, view.axes);
+    let placed = segments.map(|ends| ends.map(|end| view.place(end)));
+    svg.segments(placed, "fill=\"none\" stroke=\"black\" stroke-width=\"1\"");
+}
+
+/// Draws the largest balls from outside, the nearest to the viewer last.
+fn draw_balls(svg: &mut Svg, balls: &[Ball], view: &View) {
+    let [.., toward] = view.axes;
     let mut shown: Vec<&Ball> = balls.iter().collect();
     shown.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     shown.truncate(SHOWN);
     shown.sort_by(|a, b| (a.center[toward] + a.radius).total_cmp(&(b.center[toward] + b.radius)));
-    let title = if balls.len() > SHOWN {
-        format!("the {SHOWN} largest of {} balls", balls.len())
-    } else {
-        format!("{} balls", balls.len())
-    };
-    panel(3, &title, &|svg| {
-        svg.ball_gradient("ball", "#fff4e0", "#b06030");
-        for ball in &shown {
-            svg.circle(center(ball), scale * ball.radius, SEEN);
-        }
-    });
-    svg.finish()
+    svg.ball_gradient("ball", "#fff4e0", "#b06030");
+    for ball in &shown {
+        svg.circle(view.center(ball), view.scale * ball.radius, SEEN);
+    }
 }
 
 /// Draws a field, the row of the lowest points last.

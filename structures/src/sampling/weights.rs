@@ -57,31 +57,7 @@ type Column = Vec<(u32, f32)>;
 /// Fits the weights of `balls`; `volume` is that of the solid, in its unit cubed. A ball that the nodes hardly see
 /// keeps weight one.
 pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> FittedWeights {
-    let columns: Vec<Column> = balls
-        .par_iter()
-        .map(|ball| {
-            let mut column = Column::new();
-            field
-                .grid
-                .visit_ball(ball.center, ball.radius, |node, squared| {
-                    let value = bump.value(squared.sqrt() / ball.radius) as f32;
-                    // On the surface itself the indicator is neither.
-                    if field.depth[node] != 0.0 && value > 0.0 {
-                        column.push((node as u32, value));
-                    }
-                });
-            column
-        })
-        .collect();
-    let squares: Vec<f64> = columns
-        .iter()
-        .map(|column| {
-            column
-                .iter()
-                .map(|(_, value)| f64::from(*value).powi(2))
-                .sum()
-        })
-        .collect();
+    let columns = columns(field, balls, bump);
     let mut weights = vec![1.0; balls.len()];
     // The indicator of the solid less the summed bumps, at each node.
     let mut left: Vec<f64> = field
@@ -100,31 +76,7 @@ pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> Fitte
         (sum / inside.len().max(1) as f64).sqrt()
     };
     let rms_unit = rms(&left);
-    let mut rounds = 0;
-    while rounds < ROUNDS {
-        rounds += 1;
-        let mut moved = 0.0f64;
-        for ((column, square), weight) in columns.iter().zip(&squares).zip(&mut weights) {
-            if *square < SEEN {
-                continue;
-            }
-            let pull: f64 = column
-                .iter()
-                .map(|&(node, value)| f64::from(value) * left[node as usize])
-                .sum();
-            let change = (pull / square).max(-*weight);
-            if change != 0.0 {
-                *weight += change;
-                moved = moved.max(change.abs());
-                for &(node, value) in column {
-                    left[node as usize] -= change * f64::from(value);
-                }
-            }
-        }
-        if moved < SETTLED {
-            break;
-        }
-    }
+    let rounds = descend(&columns, &mut weights, &mut left);
     let unit = bump.volume();
     let integral = |weights: &mut dyn Iterator<Item = f64>| -> f64 {
         balls
@@ -145,4 +97,63 @@ pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> Fitte
         rounds,
         weights,
     }
+}
+
+/// The bumps of the balls at the nodes, one column a ball.
+fn columns(field: &DepthField, balls: &[Ball], bump: Bump) -> Vec<Column> {
+    balls
+        .par_iter()
+        .map(|ball| {
+            let mut column = Column::new();
+            field
+                .grid
+                .visit_ball(ball.center, ball.radius, |node, squared| {
+                    let value = bump.value(squared.sqrt() / ball.radius) as f32;
+                    // On the surface itself the indicator is neither.
+                    if field.depth[node] != 0.0 && value > 0.0 {
+                        column.push((node as u32, value));
+                    }
+                });
+            column
+        })
+        .collect()
+}
+
+/// Coordinate descent of the weights; `left` is what the summed bumps leave of the indicator. Returns the rounds.
+fn descend(columns: &[Column], weights: &mut [f64], left: &mut [f64]) -> usize {
+    let squares: Vec<f64> = columns
+        .iter()
+        .map(|column| {
+            column
+                .iter()
+                .map(|(_, value)| f64::from(*value).powi(2))
+                .sum()
+        })
+        .collect();
+    let mut rounds = 0;
+    while rounds < ROUNDS {
+        rounds += 1;
+        let mut moved = 0.0f64;
+        for ((column, square), weight) in columns.iter().zip(&squares).zip(weights.iter_mut()) {
+            if *square < SEEN {
+                continue;
+            }
+            let pull: f64 = column
+                .iter()
+                .map(|&(node, value)| f64::from(value) * left[node as usize])
+                .sum();
+            let change = (pull / square).max(-*weight);
+            if change != 0.0 {
+                *weight += change;
+                moved = moved.max(change.abs());
+                for &(node, value) in column {
+                    left[node as usize] -= change * f64::from(value);
+                }
+            }
+        }
+        if moved < SETTLED {
+            break;
+        }
+    }
+    rounds
 }

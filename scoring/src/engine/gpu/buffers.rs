@@ -170,19 +170,7 @@ impl Buffers {
         sizes: &Sizes,
         batch: Batch,
     ) -> Result<Self, GpuError> {
-        let modes = &engine.plan().modes();
-        let columns: Vec<Column> = modes
-            .columns
-            .iter()
-            .zip(&engine.mirrors)
-            .map(|(column, &mirror)| Column {
-                fine_y: place(column.ky, sizes.fine[1]) as u32,
-                y: place(column.ky, sizes.grid[1]) as u32,
-                side: column.kx_max as u32,
-                start: column.start as u32,
-                mirror: modes.columns[mirror as usize].start as u32,
-            })
-            .collect();
+        let modes = engine.plan().modes();
         let mut planes: Vec<u32> = modes
             .planes
             .iter()
@@ -190,19 +178,6 @@ impl Buffers {
             .collect();
         planes.push(sizes.columns as u32);
         let units = units(engine);
-        let mut spectra = vec![[0f32; 2]; sizes.fields * modes.count];
-        for (index, column) in modes.columns.iter().enumerate() {
-            for (field, unit) in units.iter().enumerate() {
-                let start = sizes.fields * column.start + field * column.len();
-                let values = engine.spectrum(index, field);
-                for (to, from) in spectra[start..start + column.len()].iter_mut().zip(values) {
-                    *to = [
-                        (from.re.wide() * unit) as f32,
-                        (from.im.wide() * unit) as f32,
-                    ];
-                }
-            }
-        }
         let weights: Vec<f32> = engine
             .weights
             .iter()
@@ -248,9 +223,9 @@ impl Buffers {
         let Batch { turns, images } = batch;
         let (of_turn, of_image) = sizes.bytes();
         let buffers = Self {
-            columns: filled("columns", bytemuck::cast_slice(&columns)),
+            columns: filled("columns", bytemuck::cast_slice(&columns(engine, sizes))),
             planes: filled("planes", bytemuck::cast_slice(&planes)),
-            spectra: filled("spectra", bytemuck::cast_slice(&spectra)),
+            spectra: filled("spectra", bytemuck::cast_slice(&spectra(engine, &units))),
             knots: filled("knots", bytemuck::cast_slice(&knots)),
             weights: filled("weights", bytemuck::cast_slice(&weights)),
             window: filled("window", bytemuck::cast_slice(&window)),
@@ -269,6 +244,43 @@ impl Buffers {
         gpu.check()?;
         Ok(buffers)
     }
+}
+
+/// The columns of modes with their places on the grids.
+fn columns<T: Real>(engine: &CpuEngine<T>, sizes: &Sizes) -> Vec<Column> {
+    let modes = engine.plan().modes();
+    modes
+        .columns
+        .iter()
+        .zip(&engine.mirrors)
+        .map(|(column, &mirror)| Column {
+            fine_y: place(column.ky, sizes.fine[1]) as u32,
+            y: place(column.ky, sizes.grid[1]) as u32,
+            side: column.kx_max as u32,
+            start: column.start as u32,
+            mirror: modes.columns[mirror as usize].start as u32,
+        })
+        .collect()
+}
+
+/// The receptor's spectra in the units of the fields: `[column][field][mode of the column]`.
+fn spectra<T: Real>(engine: &CpuEngine<T>, units: &[f64]) -> Vec<[f32; 2]> {
+    let modes = engine.plan().modes();
+    let fields = engine.rank();
+    let mut spectra = vec![[0f32; 2]; fields * modes.count];
+    for (index, column) in modes.columns.iter().enumerate() {
+        for (field, unit) in units.iter().enumerate() {
+            let start = fields * column.start + field * column.len();
+            let values = engine.spectrum(index, field);
+            for (to, from) in spectra[start..start + column.len()].iter_mut().zip(values) {
+                *to = [
+                    (from.re.wide() * unit) as f32,
+                    (from.im.wide() * unit) as f32,
+                ];
+            }
+        }
+    }
+    spectra
 }
 
 /// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach

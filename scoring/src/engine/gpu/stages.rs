@@ -35,108 +35,22 @@ struct Recipe<'a> {
     code: &'static str,
     /// Which of the transforms, and which way; `None`: none.
     transform: Option<(usize, usize, Direction)>,
-    buffers: &'a [&'a wgpu::Buffer],
+    buffers: Vec<&'a wgpu::Buffer>,
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
 }
 
 impl Stages {
     /// Compiles the stages for a plan's sizes.
     pub fn new(gpu: &GpuDevice, sizes: &Sizes, buffers: &Buffers) -> Result<Self, GpuError> {
-        let [mx, my, mz] = sizes.fine;
-        let [nx, ny, nz] = sizes.grid;
-        let lengths = [mz, my, mx, nx, ny, nz];
-        let allowed = gpu.device.limits().max_compute_workgroup_storage_size as usize;
-        let mut lines: Lines = [1; 6];
-        for (lines, length) in lines.iter_mut().zip(lengths) {
-            // Two arrays of complex numbers; half of the memory, so that two workgroups share a core.
-            let most = allowed / 2 / (16 * length);
-            if 16 * length > allowed {
-                return Err(gpu.too_small(format!(
-                    "a line of {length} points takes {} bytes of workgroup memory, and there are {allowed}",
-                    16 * length
-                )));
-            }
-            *lines = most.clamp(1, MAX_LINES);
-        }
-        use Direction::{Forward, Inverse};
-        let b = buffers;
+        let lines = lines(gpu, sizes)?;
         let recipes = [
-            Recipe {
-                name: "spread",
-                code: include_str!("spread.wgsl"),
-                transform: None,
-                buffers: &[&b.knots, &b.weights, &b.window, &b.turns, &b.block],
-                groups: |sizes, _, turns, _| {
-                    let groups = (sizes.knots * sizes.window * sizes.window).div_ceil(WIDTH);
-                    [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
-                },
-            },
-            Recipe {
-                name: "forward z",
-                code: include_str!("forward_z.wgsl"),
-                transform: Some((0, mz, Forward)),
-                buffers: &[&b.block, &b.fine_rows],
-                groups: |sizes, lines, turns, _| {
-                    let [bx, by, _] = sizes.block;
-                    [(by / 2).div_ceil(lines[0]), bx, turns * sizes.fields]
-                },
-            },
-            Recipe {
-                name: "forward y",
-                code: include_str!("forward_y.wgsl"),
-                transform: Some((1, my, Forward)),
-                buffers: &[&b.columns, &b.planes, &b.fine_rows, &b.partial],
-                groups: |sizes, lines, turns, _| {
-                    let across = sizes.block[0].div_ceil(lines[1]);
-                    [across, sizes.depth, turns * sizes.fields]
-                },
-            },
-            Recipe {
-                name: "forward x",
-                code: include_str!("forward_x.wgsl"),
-                transform: Some((2, mx, Forward)),
-                buffers: &[&b.columns, &b.partial, &b.turned],
-                groups: |sizes, lines, turns, _| {
-                    [sizes.columns.div_ceil(lines[2]), turns * sizes.fields, 1]
-                },
-            },
-            Recipe {
-                name: "product",
-                code: include_str!("product.wgsl"),
-                transform: Some((3, nx, Inverse)),
-                buffers: &[&b.columns, &b.spectra, &b.turned, &b.images, &b.along],
-                groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines[3]), images, 1],
-            },
-            Recipe {
-                name: "inverse y",
-                code: include_str!("inverse_y.wgsl"),
-                transform: Some((4, ny, Inverse)),
-                buffers: &[&b.columns, &b.planes, &b.along, &b.rows],
-                groups: |sizes, lines, _, images| {
-                    [sizes.grid[0].div_ceil(lines[4]), sizes.depth, images]
-                },
-            },
-            Recipe {
-                name: "inverse z",
-                code: include_str!("inverse_z.wgsl"),
-                transform: Some((5, nz, Inverse)),
-                buffers: &[&b.rows, &b.grid, &b.row_best],
-                groups: |sizes, lines, _, images| {
-                    let [nx, ny, _] = sizes.grid;
-                    [(ny / 2).div_ceil(lines[5]), nx, images]
-                },
-            },
-            Recipe {
-                name: "peaks",
-                code: include_str!("peaks.wgsl"),
-                transform: None,
-                buffers: &[&b.grid, &b.row_best, &b.peaks],
-                groups: |_, _, _, images| [images, 1, 1],
-            },
+            forward_recipes(sizes, buffers),
+            inverse_recipes(sizes, buffers),
         ];
         let header = header(sizes);
         let stages = recipes
             .iter()
+            .flatten()
             .map(|recipe| recipe.compile(gpu, &header, &lines))
             .collect::<Result<_, _>>()?;
         gpu.check()?;
@@ -237,6 +151,113 @@ impl Recipe<'_> {
             groups: self.groups,
         })
     }
+}
+
+/// Lines that a workgroup of each transform takes, by its memory.
+fn lines(gpu: &GpuDevice, sizes: &Sizes) -> Result<Lines, GpuError> {
+    let [mx, my, mz] = sizes.fine;
+    let [nx, ny, nz] = sizes.grid;
+    let lengths = [mz, my, mx, nx, ny, nz];
+    let allowed = gpu.device.limits().max_compute_workgroup_storage_size as usize;
+    let mut lines: Lines = [1; 6];
+    for (lines, length) in lines.iter_mut().zip(lengths) {
+        // Two arrays of complex numbers; half of the memory, so that two workgroups share a core.
+        let most = allowed / 2 / (16 * length);
+        if 16 * length > allowed {
+            return Err(gpu.too_small(format!(
+                "a line of {length} points takes {} bytes of workgroup memory, and there are {allowed}",
+                16 * length
+            )));
+        }
+        *lines = most.clamp(1, MAX_LINES);
+    }
+    Ok(lines)
+}
+
+/// The stages from the ligand's knots to the modes of each turn.
+fn forward_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
+    let [mx, my, mz] = sizes.fine;
+    [
+        Recipe {
+            name: "spread",
+            code: include_str!("spread.wgsl"),
+            transform: None,
+            buffers: vec![&b.knots, &b.weights, &b.window, &b.turns, &b.block],
+            groups: |sizes, _, turns, _| {
+                let groups = (sizes.knots * sizes.window * sizes.window).div_ceil(WIDTH);
+                [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
+            },
+        },
+        Recipe {
+            name: "forward z",
+            code: include_str!("forward_z.wgsl"),
+            transform: Some((0, mz, Direction::Forward)),
+            buffers: vec![&b.block, &b.fine_rows],
+            groups: |sizes, lines, turns, _| {
+                let [bx, by, _] = sizes.block;
+                [(by / 2).div_ceil(lines[0]), bx, turns * sizes.fields]
+            },
+        },
+        Recipe {
+            name: "forward y",
+            code: include_str!("forward_y.wgsl"),
+            transform: Some((1, my, Direction::Forward)),
+            buffers: vec![&b.columns, &b.planes, &b.fine_rows, &b.partial],
+            groups: |sizes, lines, turns, _| {
+                let across = sizes.block[0].div_ceil(lines[1]);
+                [across, sizes.depth, turns * sizes.fields]
+            },
+        },
+        Recipe {
+            name: "forward x",
+            code: include_str!("forward_x.wgsl"),
+            transform: Some((2, mx, Direction::Forward)),
+            buffers: vec![&b.columns, &b.partial, &b.turned],
+            groups: |sizes, lines, turns, _| {
+                [sizes.columns.div_ceil(lines[2]), turns * sizes.fields, 1]
+            },
+        },
+    ]
+}
+
+/// The stages from the modes of each turn to the peaks of each image.
+fn inverse_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
+    let [nx, ny, nz] = sizes.grid;
+    [
+        Recipe {
+            name: "product",
+            code: include_str!("product.wgsl"),
+            transform: Some((3, nx, Direction::Inverse)),
+            buffers: vec![&b.columns, &b.spectra, &b.turned, &b.images, &b.along],
+            groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines[3]), images, 1],
+        },
+        Recipe {
+            name: "inverse y",
+            code: include_str!("inverse_y.wgsl"),
+            transform: Some((4, ny, Direction::Inverse)),
+            buffers: vec![&b.columns, &b.planes, &b.along, &b.rows],
+            groups: |sizes, lines, _, images| {
+                [sizes.grid[0].div_ceil(lines[4]), sizes.depth, images]
+            },
+        },
+        Recipe {
+            name: "inverse z",
+            code: include_str!("inverse_z.wgsl"),
+            transform: Some((5, nz, Direction::Inverse)),
+            buffers: vec![&b.rows, &b.grid, &b.row_best],
+            groups: |sizes, lines, _, images| {
+                let [nx, ny, _] = sizes.grid;
+                [(ny / 2).div_ceil(lines[5]), nx, images]
+            },
+        },
+        Recipe {
+            name: "peaks",
+            code: include_str!("peaks.wgsl"),
+            transform: None,
+            buffers: vec![&b.grid, &b.row_best, &b.peaks],
+            groups: |_, _, _, images| [images, 1, 1],
+        },
+    ]
 }
 
 /// The sizes as WGSL, and what all stages share.

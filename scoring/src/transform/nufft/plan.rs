@@ -63,6 +63,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         Self::cheapest(modes, tolerance, 0, &[oversampling])
     }
 
+    /// Plans with the grid and window of least cost among the oversampling factors.
     fn cheapest(
         modes: [usize; D],
         tolerance: f64,
@@ -70,92 +71,13 @@ impl<T: Real, const D: usize> Plan<T, D> {
         oversampling: &[f64],
     ) -> Result<Self, PlanError> {
         const { assert!(D == 3 || D == 4, "transforms have three or four axes") };
-        if let Some(axis) = modes.iter().position(|&n| n == 0) {
-            return Err(PlanError::NoModes { axis });
-        }
-        let least = if T::epsilon().wide() > 1e-10 {
-            1e-5
-        } else {
-            1e-12
-        };
-        // A tolerance of 1e-5 may arrive as the nearest f32.
-        if !(tolerance >= 0.999 * least && tolerance < 1.0) {
-            return Err(PlanError::Tolerance {
-                requested: tolerance,
-                least,
-            });
-        }
-        let mut choice: Option<(f64, [usize; D], usize, Quality)> = None;
-        let mut least = f64::INFINITY;
-        let mut fits = false;
-        let addressable = |sizes: &[usize; D]| {
-            let product = sizes
-                .iter()
-                .try_fold(1usize, |product, &n| product.checked_mul(n));
-            product.is_some_and(|product| product <= LARGEST_GRID)
-        };
-        // Before any search for good lengths, which would not end for absurd ones.
-        if !addressable(&modes) {
-            return Err(PlanError::TooLarge {
-                modes: modes.to_vec(),
-            });
-        }
-        for &factor in oversampling {
-            let target = modes.map(|n| {
-                if n == 1 {
-                    1
-                } else {
-                    fast_size((n as f64 * factor).ceil() as usize)
-                }
-            });
-            if !addressable(&target) {
-                continue;
-            }
-            fits = true;
-            for width in 2..=MAX_WIDTH {
-                // The window must not meet itself around the period.
-                let fine = target.map(|n| {
-                    if n == 1 {
-                        1
-                    } else if n < width {
-                        fast_size(width)
-                    } else {
-                        n
-                    }
-                });
-                let axes: Vec<(usize, usize)> = modes
-                    .into_iter()
-                    .zip(fine)
-                    .filter(|&(n, _)| n > 1)
-                    .collect();
-                let quality = best(width, &axes);
-                let rounding = T::epsilon().wide() * quality.rounding;
-                let error = quality.aliasing.hypot(rounding);
-                least = least.min(error / ALIASING_SHARE);
-                if error > ALIASING_SHARE * tolerance {
-                    continue;
-                }
-                let cost = cost(&modes, &fine, width, points);
-                if choice
-                    .as_ref()
-                    .is_none_or(|(cheapest, ..)| cost < *cheapest)
-                {
-                    choice = Some((cost, fine, width, quality));
-                }
-                break;
-            }
-        }
-        if !fits {
-            return Err(PlanError::TooLarge {
-                modes: modes.to_vec(),
-            });
-        }
-        let Some((_, fine, width, quality)) = choice else {
-            return Err(PlanError::Tolerance {
-                requested: tolerance,
-                least,
-            });
-        };
+        check::<T, D>(&modes, tolerance)?;
+        let Choice {
+            fine,
+            width,
+            quality,
+            ..
+        } = choose::<T, D>(&modes, tolerance, points, oversampling)?;
         let window = Window::new(width, quality.shape, 0.02 * tolerance * quality.edge);
         Ok(Self {
             modes,
@@ -164,17 +86,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 widths: fine.map(|n| if n == 1 { 1 } else { width }),
                 slab: SLAB,
             },
-            factors: std::array::from_fn(|axis| {
-                let (n, length) = (modes[axis], fine[axis]);
-                let factor = |index: usize| {
-                    if n == 1 {
-                        return T::one();
-                    }
-                    let k = index as f64 - (n / 2) as f64;
-                    T::of(1.0 / window.transform(k / length as f64))
-                };
-                (0..n).map(factor).collect()
-            }),
+            factors: std::array::from_fn(|axis| factors(&window, modes[axis], fine[axis])),
             to_modes: fine.map(T::forward_fft),
             to_grid: fine.map(T::inverse_fft),
             window,
@@ -200,6 +112,142 @@ impl<T: Real, const D: usize> Plan<T, D> {
     pub fn width(&self) -> usize {
         self.window.width
     }
+}
+
+/// A grid and a window that reach the tolerance.
+struct Choice<const D: usize> {
+    /// As of [`cost`].
+    cost: f64,
+    fine: [usize; D],
+    width: usize,
+    quality: Quality,
+}
+
+/// Refuses modes and tolerances for which there is no plan.
+fn check<T: Real, const D: usize>(modes: &[usize; D], tolerance: f64) -> Result<(), PlanError> {
+    if let Some(axis) = modes.iter().position(|&n| n == 0) {
+        return Err(PlanError::NoModes { axis });
+    }
+    let least = if T::epsilon().wide() > 1e-10 {
+        1e-5
+    } else {
+        1e-12
+    };
+    // A tolerance of 1e-5 may arrive as the nearest f32.
+    if !(tolerance >= 0.999 * least && tolerance < 1.0) {
+        return Err(PlanError::Tolerance {
+            requested: tolerance,
+            least,
+        });
+    }
+    Ok(())
+}
+
+/// Whether a grid of these sizes has few enough points.
+fn is_addressable(sizes: &[usize]) -> bool {
+    let product = sizes
+        .iter()
+        .try_fold(1usize, |product, &n| product.checked_mul(n));
+    product.is_some_and(|product| product <= LARGEST_GRID)
+}
+
+/// Chooses the cheapest grid and window that reach the tolerance.
+fn choose<T: Real, const D: usize>(
+    modes: &[usize; D],
+    tolerance: f64,
+    points: usize,
+    oversampling: &[f64],
+) -> Result<Choice<D>, PlanError> {
+    let too_large = || PlanError::TooLarge {
+        modes: modes.to_vec(),
+    };
+    // Before any search for good lengths, which would not end for absurd ones.
+    if !is_addressable(modes) {
+        return Err(too_large());
+    }
+    let mut choice: Option<Choice<D>> = None;
+    let mut least = f64::INFINITY;
+    let mut fits = false;
+    for &factor in oversampling {
+        let target = modes.map(|n| {
+            if n == 1 {
+                1
+            } else {
+                fast_size((n as f64 * factor).ceil() as usize)
+            }
+        });
+        if !is_addressable(&target) {
+            continue;
+        }
+        fits = true;
+        let narrowest = narrowest::<T, D>(modes, target, tolerance, &mut least);
+        if let Some((fine, width, quality)) = narrowest {
+            let cost = cost(modes, &fine, width, points);
+            if choice.as_ref().is_none_or(|cheapest| cost < cheapest.cost) {
+                choice = Some(Choice {
+                    cost,
+                    fine,
+                    width,
+                    quality,
+                });
+            }
+        }
+    }
+    if !fits {
+        return Err(too_large());
+    }
+    choice.ok_or(PlanError::Tolerance {
+        requested: tolerance,
+        least,
+    })
+}
+
+/// The narrowest window that reaches the tolerance, with its grid of at least `target` points; lowers `least` to the
+/// least tolerance that the windows tried can reach.
+fn narrowest<T: Real, const D: usize>(
+    modes: &[usize; D],
+    target: [usize; D],
+    tolerance: f64,
+    least: &mut f64,
+) -> Option<([usize; D], usize, Quality)> {
+    for width in 2..=MAX_WIDTH {
+        // The window must not meet itself around the period.
+        let fine = target.map(|n| {
+            if n == 1 {
+                1
+            } else if n < width {
+                fast_size(width)
+            } else {
+                n
+            }
+        });
+        let axes: Vec<(usize, usize)> = modes
+            .iter()
+            .copied()
+            .zip(fine)
+            .filter(|&(n, _)| n > 1)
+            .collect();
+        let quality = best(width, &axes);
+        let rounding = T::epsilon().wide() * quality.rounding;
+        let error = quality.aliasing.hypot(rounding);
+        *least = least.min(error / ALIASING_SHARE);
+        if error <= ALIASING_SHARE * tolerance {
+            return Some((fine, width, quality));
+        }
+    }
+    None
+}
+
+/// One over the window's transform for the modes of an axis of `length` fine points.
+fn factors<T: Real>(window: &Window<T>, modes: usize, length: usize) -> Vec<T> {
+    let factor = |index: usize| {
+        if modes == 1 {
+            return T::one();
+        }
+        let k = index as f64 - (modes / 2) as f64;
+        T::of(1.0 / window.transform(k / length as f64))
+    };
+    (0..modes).map(factor).collect()
 }
 
 /// Time of a transform in units of about a nanosecond, from the operations counted: multiply-adds of spreading and

@@ -149,75 +149,104 @@ impl Cluster<'_> {
     pub fn label(&self) -> Option<Labelled> {
         let outside = self.outside()?;
         let facing = self.facing();
-        let all_walls = |cell: u32, hold: &dyn Fn(u32) -> bool| {
-            let mut walls = self.cells.cells[cell as usize].walls.iter();
-            walls.all(|&(triangle, _)| hold(triangle))
+        if let Some(numbers) = self.numbers(outside, 0, &facing) {
+            return self.by_winding(outside, numbers, &facing);
+        }
+        let numbers = self
+            .numbers(outside, 2, |triangle| self.copies(triangle))
+            .or_else(|| {
+                // What is there both ways round and has one cell on both sides is a fin.
+                let step = |triangle| match self.beside(triangle) {
+                    Some([a, b]) if a == b && self.distinct.is_repeated(triangle) => 0,
+                    _ => 1,
+                };
+                self.numbers(outside, 2, step)
+            });
+        let Some(numbers) = numbers else {
+            return self.all_solid(|cell| self.is_region(outside, cell), &facing);
         };
-        let both_ways = |cell| all_walls(cell, &|triangle| self.distinct.is_both_ways(triangle));
-        let is_region = |cell: u32| cell != outside && !self.cells.cells[cell as usize].is_flat();
-        let copies = |triangle: u32| self.distinct.copies[triangle as usize].len() as i64;
+        Some(self.by_parity(outside, numbers, &facing))
+    }
+
+    /// Whether `hold` is true of all walls of a cell.
+    fn all_walls(&self, cell: u32, hold: impl Fn(u32) -> bool) -> bool {
+        let mut walls = self.cells.cells[cell as usize].walls.iter();
+        walls.all(|&(triangle, _)| hold(triangle))
+    }
+
+    /// Whether a cell has a volume and is not the outside.
+    fn is_region(&self, outside: u32, cell: u32) -> bool {
+        cell != outside && !self.cells.cells[cell as usize].is_flat()
+    }
+
+    /// Number of copies of a triangle.
+    fn copies(&self, triangle: u32) -> i64 {
+        self.distinct.copies[triangle as usize].len() as i64
+    }
+
+    /// Labels by winding numbers; none where bodies coincide.
+    fn by_winding(
+        &self,
+        outside: u32,
+        numbers: Vec<i64>,
+        facing: impl Fn(u32) -> i64,
+    ) -> Option<Labelled> {
+        let both_ways =
+            |cell| self.all_walls(cell, |triangle| self.distinct.is_both_ways(triangle));
         let mut labelled = Labelled {
             labels: Vec::new(),
             nested: 0,
             overlap: 0.0,
             merges: false,
         };
-        if let Some(numbers) = self.numbers(outside, 0, &facing) {
-            // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it
-            // is depends on what is about it.
-            let is_double = |cell: u32| {
-                all_walls(cell, &|triangle| {
-                    let beside = self.beside(triangle).into_iter().flatten();
-                    let mut others = beside.filter(|&other| other != cell);
-                    self.distinct.is_both_ways(triangle)
-                        || others.all(|other| self.cells.cells[other as usize].is_flat())
-                })
-            };
-            let mut pairs = self.names.iter().zip(&numbers);
-            if pairs.any(|(&name, number)| {
-                *number == 0 && is_region(name) && !both_ways(name) && is_double(name)
-            }) {
-                return None;
-            }
-            for (&name, number) in self.names.iter().zip(numbers) {
-                let label = if !is_region(name) {
-                    Label::Empty
-                } else if number != 0 {
-                    Label::Body {
-                        inward: number < 0,
-                        both_ways: false,
-                    }
-                } else if both_ways(name) {
-                    Label::Body {
-                        inward: self.is_inward(name, &facing),
-                        both_ways: true,
-                    }
-                } else {
-                    Label::Empty
-                };
-                labelled.labels.push((name, label));
-                if is_region(name) && number.abs() > 1 {
-                    labelled.nested += 1;
-                    labelled.overlap +=
-                        (number.abs() - 1) as f64 * self.cells.cells[name as usize].volume;
-                }
-            }
-            return Some(labelled);
-        }
-        let numbers = self.numbers(outside, 2, copies).or_else(|| {
-            // What is there both ways round and has one cell on both sides is a fin.
-            let step = |triangle| match self.beside(triangle) {
-                Some([a, b]) if a == b && copies(triangle) > 1 => 0,
-                _ => 1,
-            };
-            self.numbers(outside, 2, step)
-        });
-        let Some(numbers) = numbers else {
-            return self.all_solid(is_region, &facing);
+        // A body that coincides with another, or with the wall of a cavity, cut into other triangles: what it
+        // is depends on what is about it.
+        let is_double = |cell: u32| {
+            self.all_walls(cell, |triangle| {
+                let beside = self.beside(triangle).into_iter().flatten();
+                let mut others = beside.filter(|&other| other != cell);
+                self.distinct.is_both_ways(triangle)
+                    || others.all(|other| self.cells.cells[other as usize].is_flat())
+            })
         };
+        let mut pairs = self.names.iter().zip(&numbers);
+        if pairs.any(|(&name, number)| {
+            *number == 0 && self.is_region(outside, name) && !both_ways(name) && is_double(name)
+        }) {
+            return None;
+        }
         for (&name, number) in self.names.iter().zip(numbers) {
-            let doubled = all_walls(name, &|triangle| copies(triangle) > 1);
-            let label = if is_region(name) && (number == 1 || doubled) {
+            let label = if !self.is_region(outside, name) {
+                Label::Empty
+            } else if number != 0 {
+                Label::Body {
+                    inward: number < 0,
+                    both_ways: false,
+                }
+            } else if both_ways(name) {
+                Label::Body {
+                    inward: self.is_inward(name, &facing),
+                    both_ways: true,
+                }
+            } else {
+                Label::Empty
+            };
+            labelled.labels.push((name, label));
+            if self.is_region(outside, name) && number.abs() > 1 {
+                labelled.nested += 1;
+                labelled.overlap +=
+                    (number.abs() - 1) as f64 * self.cells.cells[name as usize].volume;
+            }
+        }
+        Some(labelled)
+    }
+
+    /// Labels by whether a way out passes through an odd number of triangles.
+    fn by_parity(&self, outside: u32, numbers: Vec<i64>, facing: impl Fn(u32) -> i64) -> Labelled {
+        let mut labels = Vec::new();
+        for (&name, number) in self.names.iter().zip(numbers) {
+            let doubled = self.all_walls(name, |triangle| self.distinct.is_repeated(triangle));
+            let label = if self.is_region(outside, name) && (number == 1 || doubled) {
                 Label::Body {
                     inward: self.is_inward(name, &facing),
                     both_ways: false,
@@ -225,9 +254,14 @@ impl Cluster<'_> {
             } else {
                 Label::Empty
             };
-            labelled.labels.push((name, label));
+            labels.push((name, label));
         }
-        Some(labelled)
+        Labelled {
+            labels,
+            nested: 0,
+            overlap: 0.0,
+            merges: false,
+        }
     }
 
     /// Every region solid, all facing as most of their outer walls do; none where a triangle that is there once has one

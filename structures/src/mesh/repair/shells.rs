@@ -5,6 +5,8 @@
 //! has its own copy. Copies that no body needs are dropped: repeats, and what has nothing of the solid on either
 //! side. A cluster that is not closed, or whose sheets cross, stays as it is.
 
+use std::collections::HashMap;
+
 use crate::mesh::repair::cells::Cells;
 use crate::mesh::repair::clusters::clusters;
 use crate::mesh::repair::distinct::Distinct;
@@ -103,114 +105,156 @@ pub(in crate::mesh) fn resolve(mesh: &mut Mesh) -> Shells {
     shells
 }
 
-impl Shells {
-    /// Gives each body of a cluster its walls.
-    fn take(&mut self, cluster: &Cluster, labelled: &Labelled, fates: &mut [Fate]) {
-        let distinct = cluster.distinct;
-        let label = |cell: u32| {
-            let place = labelled
-                .labels
-                .binary_search_by_key(&cell, |(cell, _)| *cell);
-            place.map_or(Label::Empty, |place| labelled.labels[place].1)
+/// The bodies of a cluster, and the shells that they get.
+struct Bodies<'a> {
+    cluster: &'a Cluster<'a>,
+    labelled: &'a Labelled,
+    /// The first shell of each body, by its cells.
+    shell_of: HashMap<u32, u32>,
+    /// [`Shells::is_reverse`] of these shells.
+    is_reverse: Vec<bool>,
+}
+
+impl<'a> Bodies<'a> {
+    /// Numbers the shells of the bodies, from `first` on.
+    fn new(cluster: &'a Cluster<'a>, labelled: &'a Labelled, first: usize) -> Self {
+        let mut bodies = Self {
+            cluster,
+            labelled,
+            shell_of: HashMap::new(),
+            is_reverse: Vec::new(),
         };
-        let copies = |triangle: u32| &distinct.copies[triangle as usize];
-        // Bodies that are one, as the wall between them is there once.
-        let mut merged = Sets::new(labelled.labels.len());
-        let place = |cell: u32| {
-            labelled
-                .labels
-                .binary_search_by_key(&cell, |(cell, _)| *cell)
-        };
-        let is_single = |triangle: u32| {
-            let beside = cluster.cells.beside[triangle as usize];
-            let bodies = beside.is_some_and(|cells| cells.map(label).iter().all(Label::is_body));
-            labelled.merges && bodies && copies(triangle).len() == 1
-        };
-        for &triangle in cluster.triangles {
-            if let (true, Some([front, behind])) =
-                (is_single(triangle), cluster.cells.beside[triangle as usize])
-                && let (Ok(front), Ok(behind)) = (place(front), place(behind))
+        let mut merged = bodies.merged();
+        for (place, &(cell, label)) in labelled.labels.iter().enumerate() {
+            if let Label::Body { both_ways, .. } = label {
+                let root = merged.root(place);
+                let shell = if root < place {
+                    let first = bodies.shell_of.get(&labelled.labels[root].0).copied();
+                    debug_assert!(first.is_some(), "the first cell of a body comes first");
+                    first.unwrap_or_default()
+                } else {
+                    let shell = (first + bodies.is_reverse.len()) as u32;
+                    bodies.is_reverse.push(false);
+                    if both_ways {
+                        bodies.is_reverse.push(true);
+                    }
+                    shell
+                };
+                bodies.shell_of.insert(cell, shell);
+            }
+        }
+        bodies
+    }
+
+    /// Bodies that are one, as the wall between them is there once.
+    fn merged(&self) -> Sets {
+        let mut merged = Sets::new(self.labelled.labels.len());
+        for &triangle in self.cluster.triangles {
+            if let (true, Some([front, behind])) = (self.is_single(triangle), self.beside(triangle))
+                && let (Some(front), Some(behind)) = (self.place(front), self.place(behind))
             {
                 merged.join(front, behind);
             }
         }
-        // The first shell of each body.
-        let mut shell_of = std::collections::HashMap::new();
-        let mut is_reverse = Vec::new();
-        for (place, &(cell, label)) in labelled.labels.iter().enumerate() {
-            if let Label::Body { both_ways, .. } = label {
-                let root = merged.root(place);
-                if root < place {
-                    let first = shell_of.get(&labelled.labels[root].0).copied();
-                    debug_assert!(first.is_some(), "the first cell of a body comes first");
-                    shell_of.insert(cell, first.unwrap_or_default());
-                    continue;
-                }
-                shell_of.insert(cell, (self.is_reverse.len() + is_reverse.len()) as u32);
-                is_reverse.push(false);
+        merged
+    }
+
+    /// Place of a cell among the labels.
+    fn place(&self, cell: u32) -> Option<usize> {
+        let labels = &self.labelled.labels;
+        labels.binary_search_by_key(&cell, |(cell, _)| *cell).ok()
+    }
+
+    fn label(&self, cell: u32) -> Label {
+        self.place(cell)
+            .map_or(Label::Empty, |place| self.labelled.labels[place].1)
+    }
+
+    /// The cells in front of a triangle and behind it.
+    fn beside(&self, triangle: u32) -> Option<[u32; 2]> {
+        self.cluster.cells.beside[triangle as usize]
+    }
+
+    fn copies(&self, triangle: u32) -> &'a [(u32, bool)] {
+        &self.cluster.distinct.copies[triangle as usize]
+    }
+
+    /// Whether a triangle is the only copy of a wall between two bodies that merge.
+    fn is_single(&self, triangle: u32) -> bool {
+        let are_bodies = |cells: [u32; 2]| cells.iter().all(|&cell| self.label(cell).is_body());
+        self.labelled.merges
+            && self.beside(triangle).is_some_and(are_bodies)
+            && self.copies(triangle).len() == 1
+    }
+
+    /// The shells at a triangle, and whether it faces as the first copy for them.
+    fn needs(&self, triangle: u32) -> Vec<(u32, bool)> {
+        let mut needs = Vec::new();
+        if self.is_single(triangle) {
+            return needs;
+        }
+        let Some([front, behind]) = self.beside(triangle) else {
+            return needs;
+        };
+        for (cell, faces_outward) in [(front, false), (behind, true)] {
+            if let Label::Body { inward, both_ways } = self.label(cell) {
+                let shell = self.shell_of.get(&cell).copied();
+                debug_assert!(shell.is_some(), "every cell of a body has a shell");
+                let shell = shell.unwrap_or_default();
+                needs.push((shell, faces_outward != inward));
                 if both_ways {
-                    is_reverse.push(true);
+                    needs.push((shell + 1, faces_outward == inward));
                 }
             }
         }
-        // The shells at each triangle, and whether it faces as the first copy for them.
-        let needs = |triangle: u32| {
-            let mut needs = Vec::new();
-            if is_single(triangle) {
-                return needs;
-            }
-            let Some([front, behind]) = cluster.cells.beside[triangle as usize] else {
-                return needs;
-            };
-            for (cell, faces_outward) in [(front, false), (behind, true)] {
-                if let Label::Body { inward, both_ways } = label(cell) {
-                    let shell = shell_of.get(&cell).copied();
-                    debug_assert!(shell.is_some(), "every cell of a body has a shell");
-                    let shell = shell.unwrap_or_default();
-                    needs.push((shell, faces_outward != inward));
-                    if both_ways {
-                        needs.push((shell + 1, faces_outward == inward));
-                    }
-                }
-            }
-            needs
-        };
+        needs
+    }
+}
+
+impl Shells {
+    /// Gives each body of a cluster its walls.
+    fn take(&mut self, cluster: &Cluster, labelled: &Labelled, fates: &mut [Fate]) {
+        let bodies = Bodies::new(cluster, labelled, self.is_reverse.len());
         let mut triangles = cluster.triangles.iter();
-        if triangles.any(|&triangle| needs(triangle).len() > copies(triangle).len()) {
+        if triangles.any(|&triangle| bodies.needs(triangle).len() > bodies.copies(triangle).len()) {
             // A single wall parts one body from another within it: to drop it would be to trust that the two cross
             // nowhere else.
             self.nested += labelled.nested;
             self.overlap += labelled.overlap;
             return;
         }
-        self.is_reverse.extend(is_reverse);
         for &triangle in cluster.triangles {
-            let mut needs = needs(triangle);
-            let left = match needs.is_empty() {
-                true => Fate::Idle,
-                false => Fate::Repeated,
-            };
-            // First the copies that face as they should, then others.
-            for exact in [true, false] {
-                for &(copy, same) in copies(triangle) {
-                    let fate = &mut fates[copy as usize];
-                    if *fate != Fate::Stays {
-                        continue;
-                    }
-                    let wanted = needs
-                        .iter()
-                        .position(|&(_, as_first)| !exact || as_first == same);
-                    if let Some(wanted) = wanted {
-                        let (shell, as_first) = needs.remove(wanted);
-                        let turn = as_first != same;
-                        self.turned += usize::from(turn);
-                        *fate = Fate::Wall { shell, turn };
-                    } else if !exact {
-                        *fate = left;
-                        match left {
-                            Fate::Idle => self.idle += 1,
-                            _ => self.repeated += 1,
-                        }
+            self.assign(bodies.copies(triangle), bodies.needs(triangle), fates);
+        }
+        self.is_reverse.extend(bodies.is_reverse);
+    }
+
+    /// Gives the copies of a triangle to the shells that need one.
+    fn assign(&mut self, copies: &[(u32, bool)], mut needs: Vec<(u32, bool)>, fates: &mut [Fate]) {
+        let left = match needs.is_empty() {
+            true => Fate::Idle,
+            false => Fate::Repeated,
+        };
+        // First the copies that face as they should, then others.
+        for exact in [true, false] {
+            for &(copy, same) in copies {
+                let fate = &mut fates[copy as usize];
+                if *fate != Fate::Stays {
+                    continue;
+                }
+                let wanted = needs
+                    .iter()
+                    .position(|&(_, as_first)| !exact || as_first == same);
+                if let Some(wanted) = wanted {
+                    let (shell, as_first) = needs.remove(wanted);
+                    let turn = as_first != same;
+                    self.turned += usize::from(turn);
+                    *fate = Fate::Wall { shell, turn };
+                } else if !exact {
+                    *fate = left;
+                    match left {
+                        Fate::Idle => self.idle += 1,
+                        _ => self.repeated += 1,
                     }
                 }
             }

@@ -24,6 +24,20 @@ fn list(items: impl Iterator<Item = String>) -> String {
 
 impl fmt::Display for ReadReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_contents(f)?;
+        self.write_changes(f)?;
+        self.write_copies(f)?;
+        self.write_confidence(f)?;
+        for warning in &self.warnings {
+            write!(f, "\n  warning: {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+impl ReadReport {
+    /// Writes the atoms, residues and chains that are kept.
+    fn write_contents(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let atoms: usize = self.chains.iter().map(|chain| chain.atoms).sum();
         let residues: usize = self.chains.iter().map(|chain| chain.residues).sum();
         let chains = list(self.chains.iter().map(|chain| {
@@ -48,6 +62,11 @@ impl fmt::Display for ReadReport {
             }));
             write!(f, "\n  kept: {groups}")?;
         }
+        Ok(())
+    }
+
+    /// Writes what was renamed, dropped and altered.
+    fn write_changes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.other_names.is_empty() {
             let residues = self.other_names.iter().map(|other| other.residues).sum();
             let names =
@@ -71,6 +90,11 @@ impl fmt::Display for ReadReport {
         if !altered.is_empty() {
             write!(f, "\n  altered: {}", altered.join(", "))?;
         }
+        Ok(())
+    }
+
+    /// Writes the assembly that was built and the models that were joined.
+    fn write_copies(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(built) = &self.assembly {
             let (id, chains) = (&built.id, count(built.chains, "chain"));
             write!(
@@ -97,6 +121,11 @@ impl fmt::Display for ReadReport {
                 write!(f, "; {atoms} in one place in several kept once")?;
             }
         }
+        Ok(())
+    }
+
+    /// Writes the confidence of a predicted model.
+    fn write_confidence(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(confidence) = &self.confidence {
             let source = match confidence.source {
                 ConfidenceSource::Header => "as the file says",
@@ -110,9 +139,6 @@ impl fmt::Display for ReadReport {
                 confidence.below_50,
                 count(confidence.residues, "residue")
             )?;
-        }
-        for warning in &self.warnings {
-            write!(f, "\n  warning: {warning}")?;
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ use crate::molecule::model::atom::{Atom, squared_distance};
 use crate::molecule::model::report::BuiltAssembly;
 use crate::molecule::model::report::{DropKind, ReadReport};
 use crate::molecule::model::wording::{count, show_chain};
-use crate::molecule::read::assemblies::{Assemblies, Operator};
+use crate::molecule::read::assemblies::{Assemblies, Assembly, Operator, Part};
 use crate::molecule::read::error::ReadError;
 use crate::molecule::read::parse::Parsed;
 use crate::molecule::read::select;
@@ -55,18 +55,8 @@ pub(crate) fn build(
     report: &mut ReadReport,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Parsed>, ReadError> {
-    if let Some((line, what)) = &assemblies.broken {
-        return Err(broken(file, *line, what.clone()));
-    }
-    let Some(assembly) = assemblies.list.iter().find(|one| one.id == wanted) else {
-        if assemblies.list.is_empty() {
-            return Ok(parsed);
-        }
-        return Err(ReadError::UnknownAssembly {
-            file: file.to_path_buf(),
-            assembly: wanted.to_owned(),
-            present: assemblies.list.iter().map(|one| one.id.clone()).collect(),
-        });
+    let Some(assembly) = find(file, assemblies, wanted)? else {
+        return Ok(parsed);
     };
     let mut of_chain: HashMap<&str, Vec<usize>> = HashMap::new();
     for (index, record) in parsed.iter().enumerate() {
@@ -81,13 +71,7 @@ pub(crate) fn build(
     let mut built: Vec<Parsed> = Vec::new();
     let mut on_axes = 0;
     for part in &assembly.parts {
-        let members = part
-            .chains
-            .iter()
-            .filter_map(|name| of_chain.get(name.as_str()));
-        let mut members: Vec<usize> = members.flatten().copied().collect();
-        members.sort_unstable();
-        members.dedup();
+        let members = members(part, &of_chain);
         if built.len() + members.len().saturating_mul(part.operators.len()) > MAX_ATOMS {
             let what = format!("assembly {wanted} has more than {MAX_ATOMS} atoms");
             return Err(broken(file, None, what));
@@ -135,6 +119,38 @@ pub(crate) fn build(
         }
     }
     Ok(built)
+}
+
+/// The assembly of this name; `None` where the file describes no assembly.
+fn find<'a>(
+    file: &Path,
+    assemblies: &'a Assemblies,
+    wanted: &str,
+) -> Result<Option<&'a Assembly>, ReadError> {
+    if let Some((line, what)) = &assemblies.broken {
+        return Err(broken(file, *line, what.clone()));
+    }
+    let found = assemblies.list.iter().find(|one| one.id == wanted);
+    if found.is_none() && !assemblies.list.is_empty() {
+        return Err(ReadError::UnknownAssembly {
+            file: file.to_path_buf(),
+            assembly: wanted.to_owned(),
+            present: assemblies.list.iter().map(|one| one.id.clone()).collect(),
+        });
+    }
+    Ok(found)
+}
+
+/// Records of the chains of a part, each once, in file order.
+fn members(part: &Part, of_chain: &HashMap<&str, Vec<usize>>) -> Vec<usize> {
+    let members = part
+        .chains
+        .iter()
+        .filter_map(|name| of_chain.get(name.as_str()));
+    let mut members: Vec<usize> = members.flatten().copied().collect();
+    members.sort_unstable();
+    members.dedup();
+    members
 }
 
 fn broken(file: &Path, line: Option<usize>, what: String) -> ReadError {

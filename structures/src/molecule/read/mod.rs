@@ -21,6 +21,7 @@ pub(crate) mod source;
 pub(crate) mod wanted;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::molecule::chemistry::{ligands, radii};
 use crate::molecule::model::atom::Atom;
@@ -31,7 +32,9 @@ use crate::molecule::model::report::{ChainCount, DropKind, GroupCount, OtherName
 use crate::molecule::model::wording::count;
 use crate::molecule::read::error::ReadError;
 use crate::molecule::read::input::InputSpec;
+use crate::molecule::read::parse::Parsed;
 use crate::molecule::read::policy::{ModelChoice, ReadOptions};
+use crate::molecule::read::record_filter::record::FilteredRecords;
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,6 +107,7 @@ pub fn read_bytes_with_fates(
     Ok((molecule, listed))
 }
 
+/// Reads a file's bytes, and calls `dropped` for each atom that is left out.
 fn read_telling(
     spec: &InputSpec,
     bytes: Vec<u8>,
@@ -112,33 +116,8 @@ fn read_telling(
 ) -> Result<Molecule, ReadError> {
     let file = spec.path.as_path();
     let source = source::unpack(file, bytes)?;
-    let not_a_structure = || match foreign::by_name(file) {
-        Some(foreign) => ReadError::Foreign {
-            file: file.to_path_buf(),
-            what: foreign.what,
-            remedy: foreign.remedy,
-        },
-        None => ReadError::NotAStructure {
-            file: file.to_path_buf(),
-        },
-    };
-    let format = source::format_of(file, &source.text).ok_or_else(not_a_structure)?;
-    let filter = |model: ModelChoice| match format {
-        Format::Pdb => record_filter::pdb::filter(file, &source.text, model),
-        Format::Mmcif => record_filter::mmcif::filter(file, &source.text, model),
-    };
-    let mut filtered = filter(options.model)?;
-    if let ModelChoice::Number(model) = options.model {
-        if filtered.models == 1 && model != 1 {
-            filtered = filter(ModelChoice::Number(1))?;
-        } else if filtered.models > 1 && !(1..=filtered.models).contains(&model) {
-            return Err(ReadError::UnknownModel {
-                file: file.to_path_buf(),
-                model,
-                models: filtered.models,
-            });
-        }
-    }
+    let format = source::format_of(file, &source.text).ok_or_else(|| not_a_structure(file))?;
+    let mut filtered = filter(file, format, &source.text, options.model)?;
     drop(source.text);
     if filtered.records.is_empty() {
         return Err(if filtered.recognised {
@@ -146,7 +125,7 @@ fn read_telling(
                 file: file.to_path_buf(),
             }
         } else {
-            not_a_structure()
+            not_a_structure(file)
         });
     }
 
@@ -157,54 +136,20 @@ fn read_telling(
         ..ReadReport::default()
     };
     let is_joined = options.model == ModelChoice::All && filtered.models > 1;
-    if !is_joined {
-        report.altered.models_ignored = filtered.models.saturating_sub(1);
-    }
-    report.altered.defaults_filled = filtered.defaults_filled;
-    report.drop_atoms(DropKind::Model, "", filtered.atoms_ignored);
-
-    if let Some((line, name)) = filtered.other_blocks.first() {
-        report.warnings.push(format!(
-            "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
-            count(filtered.other_blocks.len(), "further data block")
-        ));
-    }
-    if let Some(first) = filtered.displaced.first() {
-        report.warnings.push(format!(
-            "{} out of the columns of the format, the first at line {first}: moved and read",
-            count(filtered.displaced.len(), "atom record")
-        ));
-    }
+    report_filtered(&filtered, is_joined, &mut report);
     let provenance = filtered.provenance;
     let (models, ignored) = (filtered.models, std::mem::take(&mut filtered.ignored));
     let assemblies = std::mem::take(&mut filtered.assemblies);
     let chain_breaks = std::mem::take(&mut filtered.chain_breaks);
     let mut parsed = parse::parse(file, format, filtered)?;
-    let relation = match models {
-        0 | 1 => models::Relation::Single,
-        _ => {
-            let read = parsed.iter();
-            let read = read.map(|record| (record.raw.model, record.exact.position));
-            models::relation(read.chain(ignored.iter().copied()))
-        }
-    };
-    if is_joined {
-        if options.assembly.is_some() && !assemblies.list.is_empty() {
-            return Err(ReadError::AssemblyOfModels {
-                file: file.to_path_buf(),
-            });
-        }
-        if relation == models::Relation::Alternatives {
-            report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
-        }
-        let (joined, shown) = models::join(parsed, relation);
-        (parsed, report.joined_models) = (joined, Some(shown));
-    } else if relation == models::Relation::Parts {
-        report.altered.models_are_parts = true;
-        let read = parsed.first().map_or(1, |record| record.raw.model);
-        report
-            .warnings
-            .push(models::warning(models, read, ignored.len()));
+    let is_assembly = options.assembly.is_some() && !assemblies.list.is_empty();
+    if is_joined && is_assembly {
+        return Err(ReadError::AssemblyOfModels {
+            file: file.to_path_buf(),
+        });
+    }
+    if models > 1 {
+        parsed = resolve_models(parsed, models, &ignored, is_joined, &mut report);
     }
     if let Some(wanted) = &options.assembly {
         parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
@@ -226,6 +171,100 @@ fn read_telling(
         chain_breaks,
         ..finish(format, atoms, report)
     })
+}
+
+/// The error of a file whose text shows no known format.
+fn not_a_structure(file: &Path) -> ReadError {
+    match foreign::by_name(file) {
+        Some(foreign) => ReadError::Foreign {
+            file: file.to_path_buf(),
+            what: foreign.what,
+            remedy: foreign.remedy,
+        },
+        None => ReadError::NotAStructure {
+            file: file.to_path_buf(),
+        },
+    }
+}
+
+/// Filters the records of the models that are wanted; model 1 names the only one of a file, whatever was asked for.
+fn filter(
+    file: &Path,
+    format: Format,
+    text: &str,
+    model: ModelChoice,
+) -> Result<FilteredRecords, ReadError> {
+    let filter = |model: ModelChoice| match format {
+        Format::Pdb => record_filter::pdb::filter(file, text, model),
+        Format::Mmcif => record_filter::mmcif::filter(file, text, model),
+    };
+    let filtered = filter(model)?;
+    match model {
+        ModelChoice::Number(number) if filtered.models == 1 && number != 1 => {
+            filter(ModelChoice::Number(1))
+        }
+        ModelChoice::Number(number)
+            if filtered.models > 1 && !(1..=filtered.models).contains(&number) =>
+        {
+            Err(ReadError::UnknownModel {
+                file: file.to_path_buf(),
+                model: number,
+                models: filtered.models,
+            })
+        }
+        _ => Ok(filtered),
+    }
+}
+
+/// Reports what the filter left out and altered.
+fn report_filtered(filtered: &FilteredRecords, is_joined: bool, report: &mut ReadReport) {
+    if !is_joined {
+        report.altered.models_ignored = filtered.models.saturating_sub(1);
+    }
+    report.altered.defaults_filled = filtered.defaults_filled;
+    report.drop_atoms(DropKind::Model, "", filtered.atoms_ignored);
+
+    if let Some((line, name)) = filtered.other_blocks.first() {
+        report.warnings.push(format!(
+            "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
+            count(filtered.other_blocks.len(), "further data block")
+        ));
+    }
+    if let Some(first) = filtered.displaced.first() {
+        report.warnings.push(format!(
+            "{} out of the columns of the format, the first at line {first}: moved and read",
+            count(filtered.displaced.len(), "atom record")
+        ));
+    }
+}
+
+/// Joins several models where all are read, and warns where parts of a molecule are ignored.
+fn resolve_models(
+    parsed: Vec<Parsed>,
+    models: usize,
+    ignored: &[(usize, [f64; 3])],
+    is_joined: bool,
+    report: &mut ReadReport,
+) -> Vec<Parsed> {
+    let read = parsed.iter();
+    let read = read.map(|record| (record.raw.model, record.exact.position));
+    let relation = models::relation(read.chain(ignored.iter().copied()));
+    if is_joined {
+        if relation == models::Relation::Alternatives {
+            report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
+        }
+        let (joined, shown) = models::join(parsed, relation);
+        report.joined_models = Some(shown);
+        return joined;
+    }
+    if relation == models::Relation::Parts {
+        report.altered.models_are_parts = true;
+        let read = parsed.first().map_or(1, |record| record.raw.model);
+        report
+            .warnings
+            .push(models::warning(models, read, ignored.len()));
+    }
+    parsed
 }
 
 /// Gives the atoms their radii and the report its counts.

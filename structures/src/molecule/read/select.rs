@@ -35,14 +35,7 @@ pub(crate) fn select(
     report: &mut ReadReport,
     dropped: &mut dyn FnMut(Atom, DropKind),
 ) -> Result<Vec<Atom>, ReadError> {
-    let wanted = chains.map(|chains| Wanted::new(file, &parsed, chains));
-    let wanted = wanted.transpose().map_err(|mut error| {
-        // What was not read may hold the chain.
-        if let ReadError::UnknownChain { warnings, .. } = &mut error {
-            warnings.clone_from(&report.warnings);
-        }
-        error
-    })?;
+    let wanted = wanted(file, &parsed, chains, report)?;
     let other_names = other_names(&parsed);
     let (aligned, pseudo_atoms) = {
         let names = parsed.iter().zip(&other_names);
@@ -54,10 +47,7 @@ pub(crate) fn select(
             pseudo_atoms::find(&parsed, &known),
         )
     };
-    let modified = match options.hetatm {
-        Hetatm::Drop => modified_residues(&parsed),
-        Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
-    };
+    let criteria = Criteria::new(&parsed, wanted, options);
     let mut atoms = Vec::with_capacity(parsed.len());
     let mut left_out = Vec::new();
     let facts = other_names.into_iter().zip(pseudo_atoms);
@@ -65,33 +55,11 @@ pub(crate) fn select(
         let raw = &record.raw;
         let name = raw.residue_name.as_str();
         let known = other_name.as_deref().unwrap_or(name);
-        let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
         let resolved = || {
             let column = &raw.element;
             elements::resolve(known, &record.name, column, raw.name_column, aligned)
         };
-        let is_elsewhere = wanted.as_ref().and_then(|wanted| wanted.leaves_out(raw));
-        let unwanted = if let Some(kind) = is_elsewhere {
-            Some((kind, show_chain(&raw.chain)))
-        } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
-            Some((DropKind::Residue, name))
-        } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
-            Some((DropKind::Water, name))
-        } else if let Some(of) = &pseudo_atom {
-            Some((DropKind::PseudoAtom, of.as_str()))
-        } else if is_kept_by_name || is_water(name) {
-            None
-        } else if options.hetatm != Hetatm::Keep && is_additive(name) {
-            Some((DropKind::Additive, name))
-        } else if options.hetatm == Hetatm::Drop
-            && record.hetero
-            && !modified.contains(&residue_key(&record))
-        {
-            Some((DropKind::Hetatm, name))
-        } else {
-            None
-        };
-        if let Some((kind, of)) = unwanted {
+        if let Some((kind, of)) = criteria.unwanted(&record, pseudo_atom.as_deref()) {
             report.drop_atoms(kind, of, 1);
             let symbol = resolved().map_or("", |element| element.symbol);
             let atom = atom(record, symbol);
@@ -136,6 +104,81 @@ pub(crate) fn select(
         });
     }
     Ok(atoms)
+}
+
+/// The chains and residues that are requested; `None` for all.
+fn wanted(
+    file: &Path,
+    parsed: &[Parsed],
+    chains: Option<&[String]>,
+    report: &ReadReport,
+) -> Result<Option<Wanted>, ReadError> {
+    let wanted = chains.map(|chains| Wanted::new(file, parsed, chains));
+    wanted.transpose().map_err(|mut error| {
+        // What was not read may hold the chain.
+        if let ReadError::UnknownChain { warnings, .. } = &mut error {
+            warnings.clone_from(&report.warnings);
+        }
+        error
+    })
+}
+
+/// What a record is kept or dropped by, hydrogens aside.
+struct Criteria<'a> {
+    wanted: Option<Wanted>,
+    options: &'a ReadOptions,
+    /// Modified residues, where only these of the HETATM records are kept.
+    modified: HashSet<ResidueKey>,
+}
+
+impl<'a> Criteria<'a> {
+    fn new(parsed: &[Parsed], wanted: Option<Wanted>, options: &'a ReadOptions) -> Self {
+        let modified = match options.hetatm {
+            Hetatm::Drop => modified_residues(parsed),
+            Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
+        };
+        Self {
+            wanted,
+            options,
+            modified,
+        }
+    }
+
+    /// Why a record is dropped, and the name by which the report counts it.
+    fn unwanted<'r>(
+        &self,
+        record: &'r Parsed,
+        pseudo_atom: Option<&'r str>,
+    ) -> Option<(DropKind, &'r str)> {
+        let options = self.options;
+        let raw = &record.raw;
+        let name = raw.residue_name.as_str();
+        let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
+        let is_elsewhere = self
+            .wanted
+            .as_ref()
+            .and_then(|wanted| wanted.leaves_out(raw));
+        if let Some(kind) = is_elsewhere {
+            Some((kind, show_chain(&raw.chain)))
+        } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
+            Some((DropKind::Residue, name))
+        } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
+            Some((DropKind::Water, name))
+        } else if let Some(of) = pseudo_atom {
+            Some((DropKind::PseudoAtom, of))
+        } else if is_kept_by_name || is_water(name) {
+            None
+        } else if options.hetatm != Hetatm::Keep && is_additive(name) {
+            Some((DropKind::Additive, name))
+        } else if options.hetatm == Hetatm::Drop
+            && record.hetero
+            && !self.modified.contains(&residue_key(record))
+        {
+            Some((DropKind::Hetatm, name))
+        } else {
+            None
+        }
+    }
 }
 
 /// The atom of a record, its radius left at zero.

@@ -217,12 +217,8 @@ impl<'a> Row<'_, 'a> {
         Some([x?, y?, z?])
     }
 
-    fn filter(
-        &self,
-        columns: &Columns,
-        model: usize,
-        filtered: &mut FilteredRecords,
-    ) -> Result<(), ReadError> {
+    /// The coordinates, occupancy and B value; occupancy and B value that cannot be read are counted as filled.
+    fn exact(&self, columns: &Columns, defaults_filled: &mut usize) -> Result<Exact, ReadError> {
         let mut position = [0.0; 3];
         for (axis, name) in ["Cartn_x", "Cartn_y", "Cartn_z"].into_iter().enumerate() {
             let column = columns.position.get(axis).copied().unwrap_or_default();
@@ -238,60 +234,44 @@ impl<'a> Row<'_, 'a> {
             column
                 .and_then(|column| self.number(column))
                 .unwrap_or_else(|| {
-                    filtered.defaults_filled += 1;
+                    *defaults_filled += 1;
                     default
                 })
         };
-        let exact = Exact {
+        Ok(Exact {
             position,
             occupancy: or_default(columns.occupancy, 1.0),
             b_factor: or_default(columns.b_factor, 0.0),
-        };
+        })
+    }
 
-        let name = self.value(columns.name).unwrap_or("");
-        let residue_name = self.value(columns.residue).unwrap_or("UNK");
-        let chain = self.first_of(columns.chain).unwrap_or("");
+    /// The author's residue number, or else the archive's.
+    fn residue_number(&self, columns: &Columns) -> Result<i64, ReadError> {
         // Waters and ions have no label_seq_id; a file without author numbers leaves them unnumbered.
         let number = self.first_of(columns.number).unwrap_or("0");
-        let residue_number: i64 = number
+        number
             .parse()
-            .map_err(|_| self.error("auth_seq_id", number, "a whole number"))?;
+            .map_err(|_| self.error("auth_seq_id", number, "a whole number"))
+    }
+
+    /// Adds the row's atom; `model` is its number.
+    fn filter(
+        &self,
+        columns: &Columns,
+        model: usize,
+        filtered: &mut FilteredRecords,
+    ) -> Result<(), ReadError> {
+        let exact = self.exact(columns, &mut filtered.defaults_filled)?;
+        let residue_name = self.value(columns.residue).unwrap_or("UNK");
+        let chain = self.first_of(columns.chain).unwrap_or("");
+        let residue_number = self.residue_number(columns)?;
         let alternate = self.character(columns.alternate, "label_alt_id")?;
         let insertion = self.character(columns.insertion, "pdbx_PDB_ins_code")?;
-        let group = match columns.group.and_then(|column| self.value(column)) {
-            Some(group) if group.eq_ignore_ascii_case("HETATM") => "HETATM",
-            _ => "ATOM",
-        };
-
-        filtered
-            .text
-            .push_str(&format!("{group} {} ", filtered.records.len()));
-        self.quote(&mut filtered.text, "label_atom_id", name)?;
-        let shown_alternate = alternate.unwrap_or(NO_ALTERNATE).to_string();
-        self.quote(&mut filtered.text, "label_alt_id", &shown_alternate)?;
-        self.quote(&mut filtered.text, "label_comp_id", residue_name)?;
-        self.quote(&mut filtered.text, "auth_asym_id", chain)?;
-        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What
-        // it takes for one residue is of no matter: the number travels past it.
-        let shown_number = residue_number.rem_euclid(SHOWN_NUMBERS);
-        filtered.text.push_str(&format!("{shown_number} "));
-        match insertion {
-            Some(code) => self.quote(&mut filtered.text, "pdbx_PDB_ins_code", &code.to_string())?,
-            None => filtered.text.push_str("? "),
-        }
-        // Element and coordinates travel past pdbtbx.
-        filtered.text.push_str("\"C\" 0 0 0\n");
         let archive_chain = columns
             .archive_chain
             .and_then(|column| self.value(column))
             .filter(|name| *name != chain);
-        let before = filtered.records.last();
-        if before.is_some_and(|before| {
-            before.chain == chain && before.archive_chain.as_deref() != archive_chain
-        }) {
-            filtered.chain_breaks.push(self.line());
-        }
-        filtered.records.push(AtomRecord {
+        let atom = AtomRecord {
             line: self.line(),
             model,
             chain: chain.to_string(),
@@ -307,7 +287,49 @@ impl<'a> Row<'_, 'a> {
                 .to_string(),
             name_column: NameColumn::Unknown,
             exact: Some(exact),
-        });
+        };
+        self.write(columns, &atom, filtered)?;
+        let before = filtered.records.last();
+        if before.is_some_and(|before| {
+            before.chain == atom.chain && before.archive_chain != atom.archive_chain
+        }) {
+            filtered.chain_breaks.push(atom.line);
+        }
+        filtered.records.push(atom);
+        Ok(())
+    }
+
+    /// Writes the row that pdbtbx reads.
+    fn write(
+        &self,
+        columns: &Columns,
+        atom: &AtomRecord,
+        filtered: &mut FilteredRecords,
+    ) -> Result<(), ReadError> {
+        let group = match columns.group.and_then(|column| self.value(column)) {
+            Some(group) if group.eq_ignore_ascii_case("HETATM") => "HETATM",
+            _ => "ATOM",
+        };
+
+        let name = self.value(columns.name).unwrap_or("");
+        filtered
+            .text
+            .push_str(&format!("{group} {} ", filtered.records.len()));
+        self.quote(&mut filtered.text, "label_atom_id", name)?;
+        let shown_alternate = atom.alternate_location.unwrap_or(NO_ALTERNATE).to_string();
+        self.quote(&mut filtered.text, "label_alt_id", &shown_alternate)?;
+        self.quote(&mut filtered.text, "label_comp_id", &atom.residue_name)?;
+        self.quote(&mut filtered.text, "auth_asym_id", &atom.chain)?;
+        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What
+        // it takes for one residue is of no matter: the number travels past it.
+        let shown_number = atom.residue_number.rem_euclid(SHOWN_NUMBERS);
+        filtered.text.push_str(&format!("{shown_number} "));
+        match atom.insertion_code {
+            Some(code) => self.quote(&mut filtered.text, "pdbx_PDB_ins_code", &code.to_string())?,
+            None => filtered.text.push_str("? "),
+        }
+        // Element and coordinates travel past pdbtbx.
+        filtered.text.push_str("\"C\" 0 0 0\n");
         Ok(())
     }
 

@@ -183,6 +183,59 @@ fn atom(
     model: usize,
     filtered: &mut FilteredRecords,
 ) -> Result<(), ReadError> {
+    check_columns(file, line, record)?;
+    check_coordinates(file, line, record)?;
+    let slice = |start: usize, end: usize| slice(record, start, end);
+
+    let name = slice(12, 16);
+    let (residue_name, chain) = residue_and_chain(slice(17, 22), wide_chains);
+    let (residue_number, insertion) =
+        residue_number(slice(22, 26), slice(26, 27)).ok_or_else(|| {
+            field(
+                file,
+                line,
+                "the residue number (columns 23-26)",
+                slice(22, 27),
+                "a whole number",
+            )
+        })?;
+    let alternate = slice(16, 17).chars().next().filter(|c| *c != ' ');
+
+    let atom = AtomRecord {
+        line,
+        model,
+        chain: chain.to_string(),
+        archive_chain: None,
+        residue_name: residue_name.to_string(),
+        residue_number,
+        insertion_code: Some(insertion).filter(|code| *code != ' '),
+        alternate_location: alternate,
+        element: element(record).to_string(),
+        name_column: if name.starts_with(' ') {
+            NameColumn::Blank
+        } else {
+            NameColumn::Filled
+        },
+        exact: None,
+    };
+    write_line(record, &atom, filtered);
+    filtered.records.push(atom);
+    Ok(())
+}
+
+/// Columns from `start` to `end`, counted from 0, as far as the record has them.
+fn slice(record: &str, start: usize, end: usize) -> &str {
+    // ASCII up to column 66, so that slices up to there fall between characters; `get` guards the rest.
+    record.get(start..end.min(record.len())).unwrap_or("")
+}
+
+/// The columns of the three coordinates.
+fn positions(record: &str) -> [&str; 3] {
+    [(30, 38), (38, 46), (46, 54)].map(|(start, end)| slice(record, start, end))
+}
+
+/// Refuses a record that is too short, or not ASCII.
+fn check_columns(file: &Path, line: usize, record: &str) -> Result<(), ReadError> {
     if record.len() < 54 {
         return Err(ReadError::ShortRecord {
             file: file.to_path_buf(),
@@ -202,10 +255,12 @@ fn atom(
             "plain ASCII text",
         ));
     }
-    // ASCII up to column 66, so that slices up to there fall between characters; `get` guards the rest.
-    let slice = |start: usize, end: usize| record.get(start..end.min(record.len())).unwrap_or("");
+    Ok(())
+}
 
-    let positions = [slice(30, 38), slice(38, 46), slice(46, 54)];
+/// Refuses coordinates that are no numbers, or run together.
+fn check_coordinates(file: &Path, line: usize, record: &str) -> Result<(), ReadError> {
+    let positions = positions(record);
     for ((axis, columns), text) in [("x", "31-38"), ("y", "39-46"), ("z", "47-54")]
         .into_iter()
         .zip(positions)
@@ -225,21 +280,11 @@ fn atom(
             "three numbers in columns of eight (larger ones need mmCIF)",
         ));
     }
+    Ok(())
+}
 
-    let name = slice(12, 16);
-    let (residue_name, chain) = residue_and_chain(slice(17, 22), wide_chains);
-    let (residue_number, insertion) =
-        residue_number(slice(22, 26), slice(26, 27)).ok_or_else(|| {
-            field(
-                file,
-                line,
-                "the residue number (columns 23-26)",
-                slice(22, 27),
-                "a whole number",
-            )
-        })?;
-    let alternate = slice(16, 17).chars().next().filter(|c| *c != ' ');
-
+/// Writes the line of an atom that pdbtbx reads.
+fn write_line(record: &str, atom: &AtomRecord, filtered: &mut FilteredRecords) {
     let mut number = |text: &str, default: &'static str, width: usize| -> String {
         let text = text.trim();
         if coordinate(text).is_some() {
@@ -249,18 +294,20 @@ fn atom(
             format!("{default:>width$}")
         }
     };
-    let occupancy = number(slice(54, 60), "1.00", 6);
-    let b_factor = number(slice(60, 66), "0.00", 6);
+    let occupancy = number(slice(record, 54, 60), "1.00", 6);
+    let b_factor = number(slice(record, 60, 66), "0.00", 6);
 
     // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
     let serial = filtered.records.len() % 100_000;
     // Carried past pdbtbx where it is blank or longer than its column.
-    let shown_chain = chain.get(..1).unwrap_or("A");
+    let shown_chain = atom.chain.get(..1).unwrap_or("A");
     // What pdbtbx's four columns cannot hold is carried, and shown as 0.
-    let shown_number = Some(residue_number)
+    let shown_number = Some(atom.residue_number)
         .filter(|number| (-999..=9999).contains(number))
         .unwrap_or(0);
-    let [x, y, z] = positions;
+    let name = slice(record, 12, 16);
+    let insertion = atom.insertion_code.unwrap_or(' ');
+    let [x, y, z] = positions(record);
     // The element travels past pdbtbx; carbon is what it finds fastest.
     filtered.text.push_str(&format!(
         "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  \n",
@@ -269,28 +316,10 @@ fn atom(
         } else {
             "ATOM"
         },
-        alternate.unwrap_or(NO_ALTERNATE),
-        residue_name,
+        atom.alternate_location.unwrap_or(NO_ALTERNATE),
+        atom.residue_name,
         "",
     ));
-    filtered.records.push(AtomRecord {
-        line,
-        model,
-        chain: chain.to_string(),
-        archive_chain: None,
-        residue_name: residue_name.to_string(),
-        residue_number,
-        insertion_code: Some(insertion).filter(|code| *code != ' '),
-        alternate_location: alternate,
-        element: element(record).to_string(),
-        name_column: if name.starts_with(' ') {
-            NameColumn::Blank
-        } else {
-            NameColumn::Filled
-        },
-        exact: None,
-    });
-    Ok(())
 }
 
 /// Whether two coordinates run into one another, so that the columns no longer say where one ends.
