@@ -115,7 +115,8 @@ impl Docking {
         run.then_some(self.directory.as_path())
     }
 
-    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the same options.
+    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
+    /// same options.
     pub fn is_done(&self) -> bool {
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
             return false;

@@ -22,7 +22,8 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::metal_bound;
 use crate::cli::messages::failure::Failure;
 
-/// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
+/// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges
+/// assumed.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
@@ -43,7 +44,8 @@ pub struct Inspect {
     options: OptionArguments<OfInspect>,
 }
 
-/// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about 0.3% of the total.
+/// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about
+/// 0.3% of the total.
 fn surface_points(atoms: usize) -> usize {
     (4_000_000 / atoms.max(1)).clamp(100, 960)
 }

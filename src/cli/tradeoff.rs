@@ -23,7 +23,8 @@ use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 
-/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given, and with combinations.
+/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
+/// and with combinations.
 ///
 /// Writes tradeoff.csv, tradeoff.json and tradeoff.svg into a directory, and says which setting to take.
 #[derive(Args, Debug)]

@@ -23,7 +23,8 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
-    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at least the best pose's.
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
+    /// least the best pose's.
     pub cluster_score: Option<f64>,
     /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
     pub refined: bool,
@@ -33,7 +34,8 @@ pub struct RankedPose {
     pub score_grid: f64,
     /// B&I's own sum (no low-pass) at `pose`.
     pub score_unfiltered: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the effect is off.
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
+    /// effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],
@@ -43,11 +45,13 @@ pub struct RankedPose {
     pub other_copies: Option<f64>,
     /// Sum that ranks poses: `score`, the pose terms and `other_copies`.
     pub pose_score: f64,
-    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
+    /// differ.
     pub z_score: Option<f64>,
 }
 
-/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores anything.
+/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores
+/// anything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredError {
     /// Grid poses over which it was measured.
@@ -56,15 +60,17 @@ pub struct MeasuredError {
     pub rms: f64,
     /// Largest of the same.
     pub worst: f64,
-    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
+    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| /
+    /// |best exact score|.
     pub low_pass_share: f64,
 }
 
 /// Scores below this are none: a pair of balls that touch earns about one.
 const NOTHING: f64 = 1e-6;
 
-/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by more than `ringing` of that. Transforms ring about
-/// zero by their tolerance where no pose scores (lambda = 0, or no skin); exact sums do not.
+/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by
+/// more than `ringing` of that. Transforms ring about zero by their tolerance where no pose scores (lambda = 0, or no
+/// skin); exact sums do not.
 pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -> f64 {
     let (best, largest) = scores
         .into_iter()
@@ -79,7 +85,8 @@ pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -
 }
 
 impl MeasuredError {
-    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
+    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact
+    /// score.
     pub(crate) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
         let poses = peaks.len().min(exact.len());
         if best < NOTHING {
@@ -115,7 +122,8 @@ pub struct EffectCost {
     pub on: bool,
     /// Why it was on or off.
     pub reason: String,
-    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out would save.
+    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out
+    /// would save.
     pub rank: usize,
     /// Milliseconds that it adds to a rotation on one thread, likewise, peaks not counted.
     #[serde(skip)]
@@ -166,7 +174,8 @@ pub struct DockOutcome {
 mod tests {
     use super::*;
 
-    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
+    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored
+    /// 100: they looked 200 times smaller.
     #[test]
     fn errors_are_shares_of_the_best_score_and_of_magnitudes_only_where_nothing_scores() {
         assert_eq!(error_scale([100.0, 30.0, -20_000.0], 0.0), 100.0);

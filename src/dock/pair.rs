@@ -144,8 +144,8 @@ impl<'a> Preparer<'a> {
         }
     }
 
-    /// Samples what has to be and plans. Of meshes, `options` have all lengths; a sampling that is at hand is used again, with the time
-    /// that it took.
+    /// Samples what has to be and plans. Of meshes, `options` have all lengths; a sampling that is at hand is used
+    /// again, with the time that it took.
     ///
     /// # Errors
     /// [`PairError`].

@@ -65,8 +65,8 @@ impl Clock {
     }
 }
 
-/// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`] of a
-/// molecule, the centres of the balls of a mesh.
+/// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
+/// of a molecule, the centres of the balls of a mesh.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.

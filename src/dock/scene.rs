@@ -61,10 +61,11 @@ pub struct Scene {
     pub ring_axis: Option<RingAxis>,
 }
 
-/// Score of a contact of an active atom in the search, times the number of active residues, as a share of the weight of active residues.
+/// Score of a contact of an active atom in the search, times the number of active residues, as a share of the weight
+/// of active residues.
 ///
-/// A residue in contact has about 70 contacts. So the contacts of all active residues earn about a quarter of that weight, however
-/// many there are.
+/// A residue in contact has about 70 contacts. So the contacts of all active residues earn about a quarter of that
+/// weight, however many there are.
 const PULL: f64 = 4e-3;
 
 impl Scene {

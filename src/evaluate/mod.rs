@@ -6,20 +6,21 @@
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
 //! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
 //!   residues are matched.
-//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's chains, and
-//!   of the copies that the native holds those are taken that superpose, touch and have most contacts. Where identical
-//!   chains of that complex can be matched in several ways, each pose gets the one with the best DockQ.
+//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's
+//!   chains, and of the copies that the native holds those are taken that superpose, touch and have most contacts.
+//!   Where identical chains of that complex can be matched in several ways, each pose gets the one with the best
+//!   DockQ.
 //! - **Backbone** is N, CA, C and O, and phosphate and sugar in nucleic acids, of matched residues, where both have the
 //!   atom. Hydrogens, waters, ions, cofactors and glycans play no part.
 //! - `irmsd`: backbone of the native's interface residues (any heavy atom within 10 Å across) after superposing them.
-//! - `lrmsd`: backbone of the smaller side after superposing the larger on the native's. As in DockQ 2.1.3 the smaller side
-//!   is the one of fewer native residues, and of two equal ones the receptor. So figures of unequal sides are the same
-//!   whichever is called the receptor.
+//! - `lrmsd`: backbone of the smaller side after superposing the larger on the native's. As in DockQ 2.1.3 the
+//!   smaller side is the one of fewer native residues, and of two equal ones the receptor. So figures of unequal
+//!   sides are the same whichever is called the receptor.
 //! - `fnat`: share of the native's residue contacts (any heavy atoms within 5 Å) that the pose has too. Contacts of
 //!   residues without a match count as lost.
-//! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside one of
-//!   the same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native),
-//!   and then our figures are those that it gives for the pairs that the numbers name.
+//! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside
+//!   one of the same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from
+//!   the native), and then our figures are those that it gives for the pairs that the numbers name.
 //! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
 //!
 //! # Cost

@@ -94,7 +94,8 @@ pub struct MatchReport {
     pub permutations: usize,
     /// Chains of a native complex that belong to neither side.
     pub unused_native_chains: Vec<String>,
-    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by contacts.
+    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by
+    /// contacts.
     pub complexes: Vec<NativeComplex>,
     /// What the user should know before trusting the figures: a docked side of which less than 70% is matched, or whose
     /// backbone lies more than 5 Å RMSD from the native's.

@@ -1,4 +1,5 @@
-//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it already.
+//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it
+//! already.
 
 use std::collections::HashSet;
 
@@ -26,8 +27,8 @@ pub struct SharedChains {
     pub rest: Vec<String>,
 }
 
-/// The chains of `one` that `other` holds, if it holds all of them and further chains beside. Two copies of one molecule, as of a homodimer, hold
-/// nothing beside one another.
+/// The chains of `one` that `other` holds, if it holds all of them and further chains beside. Two copies of one
+/// molecule, as of a homodimer, hold nothing beside one another.
 pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
     let one = Residues::of(one, "molecule").ok()?;
     let other = Residues::of(other, "molecule").ok()?;

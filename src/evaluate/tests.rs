@@ -274,7 +274,8 @@ fn half_an_interface_is_an_error() {
     assert!(error.remedy().contains("--native-receptor"));
 }
 
-/// Found by a review: where each side had the half of the interface that the other lacked, the interface RMSD of every pose was 0.
+/// Found by a review: where each side had the half of the interface that the other lacked, the interface RMSD of
+/// every pose was 0.
 #[test]
 fn halves_of_an_interface_that_do_not_meet_are_an_error() {
     let (receptor, ligand) = both_ends();

@@ -46,7 +46,8 @@ pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
 mod tests {
     use super::*;
 
-    /// n caps of the covering radius hide the half sphere, so that their area is at least its own; and the set is not much worse than that.
+    /// n caps of the covering radius hide the half sphere, so that their area is at least its own; and the set is not
+    /// much worse than that.
     #[test]
     fn axes_cover_the_half_sphere_evenly() {
         for count in [20, 300, 900, 3600, 10_000] {

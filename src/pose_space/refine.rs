@@ -65,8 +65,8 @@ pub(crate) fn printed(pose: &Pose) -> Pose {
 
 /// Maximizes a score from `start`. Returned are the best pose found and its score.
 ///
-/// `score` gives value and gradient (per Å, per radian). `moved` applies a rotation and a shift to a pose: to the ligand
-/// about its centre ([`rigid_body`]), or to the two bodies of a ring together.
+/// `score` gives value and gradient (per Å, per radian). `moved` applies a rotation and a shift to a pose: to the
+/// ligand about its centre ([`rigid_body`]), or to the two bodies of a ring together.
 pub fn maximize(
     start: Pose,
     ligand_center: Vector3<f64>,

@@ -1,4 +1,5 @@
-//! Rings of copies: their score by the fast path and its ascent, about any axis (Cn) or about axes across a ring's own (Dn).
+//! Rings of copies: their score by the fast path and its ascent, about any axis (Cn) or about axes across a ring's
+//! own (Dn).
 
 use super::refine::{AscentLimits, maximize};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
@@ -85,8 +86,8 @@ mod tests {
     use nalgebra::{Unit, UnitQuaternion};
     use std::f64::consts::PI;
 
-    /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
-    /// ascent ends higher, on a ring.
+    /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule
+    /// gain, by the exact sum over all pairs, and a ascent ends higher, on a ring.
     #[test]
     fn copies_across_the_axis_are_climbed_with_the_rest() {
         let centers = vec![
@@ -149,8 +150,8 @@ mod tests {
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
     }
 
-    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
-    /// shift along it gains anything by the exact sum.
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one
+    /// ends where neither a turn about that axis nor a shift along it gains anything by the exact sum.
     #[test]
     fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
         let turn = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);

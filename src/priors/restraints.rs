@@ -18,7 +18,8 @@ pub(crate) struct Restraints {
 }
 
 impl Restraints {
-    /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active are active.
+    /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active
+    /// are active.
     ///
     /// # Errors
     /// [`SearchError::Option`] when residues are named that a molecule does not have.

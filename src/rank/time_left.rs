@@ -1,7 +1,7 @@
 //! How many poses there is time to rescore and score until a deadline.
 //!
-//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is done, on
-//! the machine as it then is, and the poses that scored least are left out where time is short.
+//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is
+//! done, on the machine as it then is, and the poses that scored least are left out where time is short.
 
 use crate::options::DockOptions;
 use crate::pose_space::refine::RefinedPose;

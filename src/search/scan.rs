@@ -86,8 +86,8 @@ fn scan_on_card(
     })
 }
 
-/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first ones, at
-/// least one, whatever the threads: each takes the next one and searches it to its end.
+/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first
+/// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
     plan: &SearchPlan,
     engine: &CpuEngine<T>,

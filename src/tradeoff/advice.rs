@@ -47,12 +47,12 @@ fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> S
     }
 }
 
-/// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the reference's rows, where
-/// a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
+/// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the
+/// reference's rows, where a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
 ///
-/// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default does, less
-/// 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and fewer rotations find
-/// fewer poses at no larger an error.
+/// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default
+/// does, less 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and
+/// fewer rotations find fewer poses at no larger an error.
 pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let default = tradeoff.measured.first()?;
     let tolerance = default.setting.options.kernel.tolerance;
@@ -228,8 +228,8 @@ mod tests {
         advice(&tradeoff).unwrap().text
     }
 
-    /// Found by a user: 600 rotations were "more exact", since the few poses that they found happened to have half the error,
-    /// while they found 56% of the reference's rows.
+    /// Found by a user: 600 rotations were "more exact", since the few poses that they found happened to have half
+    /// the error, while they found 56% of the reference's rows.
     #[test]
     fn what_loses_the_answer_is_not_advised() {
         let few = measured(Parameter::Option("rotations"), 600, 1.5, 5e-4, 0.56);

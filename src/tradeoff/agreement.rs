@@ -4,8 +4,8 @@ use knotdock_scoring::se3::Pose;
 
 use crate::rank::cluster::RigidBody;
 
-/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit. 1 where there is nothing
-/// to find.
+/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit.
+/// 1 where there is nothing to find.
 pub fn agreement(body: &RigidBody, reference: &[Pose], found: &[Pose], radius: f64) -> f64 {
     if reference.is_empty() {
         return 1.0;

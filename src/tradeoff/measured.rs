@@ -1,11 +1,13 @@
 //! What a sweep measures of each setting.
 //!
 //! - **Time** by stage, on the clock and of all processors.
-//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking run measures it.
-//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's resolution and
-//!   sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set against it at the poses that the
-//!   reference ranks first.
-//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within the radius of clusters.
+//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking
+//!   run measures it.
+//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's
+//!   resolution and sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set
+//!   against it at the poses that the reference ranks first.
+//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within
+//!   the radius of clusters.
 //! - **Ranks** of near poses, where a known complex is given.
 
 use serde::Serialize;
@@ -77,13 +79,14 @@ impl Measured {
         self.timing.iter().map(|stage| stage.cpu_seconds).sum()
     }
 
-    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock where the system does
-    /// not tell.
+    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock
+    /// where the system does not tell.
     pub fn cost(&self) -> f64 {
         self.cpu_seconds().unwrap_or_else(|| self.wall_seconds())
     }
 
-    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
+    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's
+    /// resolution and sampling.
     pub fn same_score(&self, default: &DockOptions) -> bool {
         let options = &self.setting.options;
         (

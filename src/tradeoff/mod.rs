@@ -2,7 +2,8 @@
 //!
 //! # Conventions
 //!
-//! - Time is that of all stages of a run, in seconds; settings are compared by processor time. Errors are shares of the best exact score.
+//! - Time is that of all stages of a run, in seconds; settings are compared by processor time. Errors are shares of
+//!   the best exact score.
 //! - Sampling, planning and searching are those of `knotdock dock`: nothing is modelled that can be run.
 
 pub mod advice;

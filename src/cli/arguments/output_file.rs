@@ -6,7 +6,8 @@ use knotdock::output::files::whole_file::is_stream;
 
 use crate::cli::messages::failure::Failure;
 
-/// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless `force` is true.
+/// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless
+/// `force` is true.
 pub fn check_output<'a>(
     file: &Path,
     read: impl IntoIterator<Item = &'a Path>,

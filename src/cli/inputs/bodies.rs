@@ -125,7 +125,8 @@ impl Bodies {
         }
     }
 
-    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not among these.
+    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not
+    /// among these.
     pub fn plan(
         &self,
         options: &mut DockOptions,
@@ -231,8 +232,9 @@ impl Bodies {
     }
 }
 
-/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An option at its default
-/// is no different from one that is not given. Weights of effects that are off are not refused: they say what the effect would weigh.
+/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An
+/// option at its default is no different from one that is not given. Weights of effects that are off are not refused:
+/// they say what the effect would weigh.
 fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Failure> {
     let Some(option) = options.without_effect(are_meshes) else {
         return Ok(());

@@ -41,8 +41,8 @@ impl Input {
         Self::of(&spec, options)
     }
 
-    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
-    /// above which inputs are looked for that are no longer where they were.
+    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside
+    /// or above which inputs are looked for that are no longer where they were.
     pub fn recorded(
         record: &InputRecord,
         run: &Path,
@@ -63,7 +63,8 @@ impl Input {
         })
     }
 
-    /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is taken.
+    /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is
+    /// taken.
     pub fn read_with_fates(
         text: &str,
         options: &ReadOptions,
@@ -103,8 +104,8 @@ impl Input {
         Self::all(&specs.collect::<Result<Vec<_>, Failure>>()?, options)
     }
 
-    /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as predictions; where none is, the
-    /// user's word is taken for all whose B values can be pLDDT.
+    /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as
+    /// predictions; where none is, the user's word is taken for all whose B values can be pLDDT.
     ///
     /// # Errors
     /// Where one cannot be read, and where an option does nothing to any.
@@ -162,8 +163,9 @@ impl Input {
     }
 }
 
-/// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
-/// says anything of one, `--model` where none has several, `--drop-residue` of a name that none has.
+/// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model,
+/// `--assembly` where no file says anything of one, `--model` where none has several, `--drop-residue` of a name that
+/// none has.
 fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,

@@ -26,9 +26,9 @@ use told::{Told, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
 ///
-/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1: A1 lies inside the solid, A2 is
-/// A1 grown by epsilon and covers it, A3 is A2 without what is redundant; each is within epsilon of the solid, which is
-/// measured. Lengths are in the file's unit.
+/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1: A1 lies inside
+/// the solid, A2 is A1 grown by epsilon and covers it, A3 is A2 without what is redundant; each is within epsilon of
+/// the solid, which is measured. Lengths are in the file's unit.
 #[derive(Args, Debug)]
 pub struct Sample {
     /// The mesh: .stl, .obj, .ply or .off.
@@ -57,7 +57,8 @@ pub struct Sample {
     /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
     #[arg(long, value_parser = above_zero)]
     alpha: Option<f64>,
-    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set covers.
+    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set
+    /// covers.
     #[arg(long, value_name = "BALLS", value_parser = at_least_one, conflicts_with = "weights")]
     level: Option<usize>,
     /// The table of balls to write.

@@ -1,6 +1,7 @@
 //! Which residues of a chain of the user's molecule are which of a chain of the native's: every chain with every chain.
 //!
-//! Sequences alone do not say which of several copies a chain is; that is for [`placements`](crate::evaluate::matching::placements).
+//! Sequences alone do not say which of several copies a chain is; that is for
+//! [`placements`](crate::evaluate::matching::placements).
 
 use std::collections::HashMap;
 

@@ -1,9 +1,9 @@
 //! Which copies of the native are the complex that poses are measured by.
 //!
 //! A crystal's file holds several complexes, and neighbours that only touch in the crystal. Each side's
-//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination counts that matches nearly as
-//! much of both sides as the best does and whose sides touch. The one with most contacts is the complex; of several that
-//! stand alike, the one whose chain names agree.
+//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination
+//! counts that matches nearly as much of both sides as the best does and whose sides touch. The one with most
+//! contacts is the complex; of several that stand alike, the one whose chain names agree.
 
 use std::collections::HashMap;
 

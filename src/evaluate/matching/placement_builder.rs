@@ -15,8 +15,8 @@ const DISTINCTIVE: usize = 20;
 const DISTINCTIVE_PEPTIDE: (usize, f64) = (8, 0.9);
 /// What is left of two merged chains must have so many equal residues: fewer pair by chance.
 const MIN_OF_TWO_REMAINDERS: usize = 8;
-/// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other chain is
-/// a copy of what was matched already.
+/// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other
+/// chain is a copy of what was matched already.
 const MIN_OF_WHOLE: f64 = 0.9;
 
 /// Two chains of like sequence and their superposition.
@@ -157,8 +157,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// What is left of two chains, of which one at least is matched in part, if it is alike and lies together; and what it
-    /// is worth.
+    /// What is left of two chains, of which one at least is matched in part, if it is alike and lies together; and
+    /// what it is worth.
     fn remainder(&self, user: usize, native: usize) -> Option<(f64, ChainPair)> {
         let whole = (self.is_whole_user(user), self.is_whole_native(native));
         if whole == (true, true) {

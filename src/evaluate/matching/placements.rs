@@ -1,13 +1,13 @@
 //! The ways in which one docked side lies on the native: which of its chains is which copy, by superposition.
 //!
-//! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is superposed;
-//! then every other chain is given the native's chain that lies where it comes to stand, and what is left of chains that
-//! one file has merged likewise. Copies elsewhere in the crystal are never mixed, whatever their names, the order of the
-//! file and the residues that each copy lacks. For two identical chains these ways are their orders that fit; for a ring of
-//! n they are its n rotations.
+//! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is
+//! superposed; then every other chain is given the native's chain that lies where it comes to stand, and what is left
+//! of chains that one file has merged likewise. Copies elsewhere in the crystal are never mixed, whatever their
+//! names, the order of the file and the residues that each copy lacks. For two identical chains these ways are their
+//! orders that fit; for a ring of n they are its n rotations.
 //!
-//! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a hinge, a
-//! domain that moved), unless the whole would fit no longer: then the placement is displaced.
+//! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a
+//! hinge, a domain that moved), unless the whole would fit no longer: then the placement is displaced.
 
 use crate::evaluate::matching::chain_pair::{ChainPair, align_all};
 use crate::evaluate::matching::placement::Placement;

@@ -103,9 +103,9 @@ impl Residue {
 
 /// The name under which residues are compared.
 ///
-/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as methionine and
-/// S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the plain residue's, and nucleotides as their
-/// base ([`plain_residue_name`]).
+/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as
+/// methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the
+/// plain residue's, and nucleotides as their base ([`plain_residue_name`]).
 pub(in crate::evaluate) fn kind(name: &str) -> String {
     let plain = match name {
         "MSE" => "MET",

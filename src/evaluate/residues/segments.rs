@@ -1,19 +1,20 @@
 //! Where one chain ends and another begins under one name.
 //!
-//! Many programs write several chains under one name: an antibody's H and L, both partners of a complex, the two strands
-//! of a duplex. A new segment begins
+//! Many programs write several chains under one name: an antibody's H and L, both partners of a complex, the two
+//! strands of a duplex. A new segment begins
 //!
 //! - where a residue number comes again, or falls;
-//! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every gap;
-//! - where the backbone is broken though the numbers leave no room for what would be missing: consecutive numbers whose C
-//!   and N (O3' and P) are not bonded, or ends too far apart for the residues that the numbers leave out;
+//! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every
+//!   gap;
+//! - where the backbone is broken though the numbers leave no room for what would be missing: consecutive numbers
+//!   whose C and N (O3' and P) are not bonded, or ends too far apart for the residues that the numbers leave out;
 //! - where a nucleic acid follows a protein, or the reverse;
-//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 keep merged chains apart
-//!   (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
+//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 keep merged chains
+//!   apart (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
 //!
-//! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers within a
-//! chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a gap of its own
-//! does no harm: all its pieces are matched.
+//! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers
+//! within a chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a
+//! gap of its own does no harm: all its pieces are matched.
 
 use std::collections::HashSet;
 
@@ -109,8 +110,8 @@ fn has_bonds(residues: &[Residue]) -> bool {
     broken as f64 <= 1.0 + BROKEN * consecutive().count() as f64
 }
 
-/// Whether another chain begins with `after`; `ends` are the lines at which the file ends a chain, rising, and `bonds` says
-/// whether a missing bond means something.
+/// Whether another chain begins with `after`; `ends` are the lines at which the file ends a chain, rising, and
+/// `bonds` says whether a missing bond means something.
 fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) -> bool {
     let link = link(before, after);
     if link == Link::Bonded {
@@ -249,8 +250,9 @@ mod tests {
         let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
         assert_eq!(residues.segments.len(), 2);
     }
-    /// Found with both partners of a complex under one name, the ligand's numbers starting again below the receptor's: the
-    /// ligand's first residues, whose numbers the receptor does not have, were counted to the receptor.
+    /// Found with both partners of a complex under one name, the ligand's numbers starting again below the
+    /// receptor's: the ligand's first residues, whose numbers the receptor does not have, were counted to the
+    /// receptor.
     #[test]
     fn falling_number_begins_a_segment() {
         assert_eq!(
@@ -284,8 +286,8 @@ mod tests {
         assert_eq!(sizes(atoms), [19, 19]);
     }
 
-    /// A gap in the numbers may be a missing loop or a second chain. A TER record decides where a loop would be long; in a
-    /// short gap it says nothing, for PyMOL writes it at each.
+    /// A gap in the numbers may be a missing loop or a second chain. A TER record decides where a loop would be long;
+    /// in a short gap it says nothing, for PyMOL writes it at each.
     #[test]
     fn end_of_a_chain_in_the_file_begins_a_segment() {
         let pieces = |second: i64, x: f64, ends: Vec<usize>| {
@@ -303,7 +305,8 @@ mod tests {
         assert_eq!(pieces(31, 9.0, vec![101]), [40]);
     }
 
-    /// Found with a file whose insertion codes were lost: a chain was cut into pieces so short that they matched anything.
+    /// Found with a file whose insertion codes were lost: a chain was cut into pieces so short that they matched
+    /// anything.
     #[test]
     fn numbers_that_come_again_within_a_bonded_chain_do_not_cut_it() {
         let mut atoms = beside(1, 30, 0.0);

@@ -1,9 +1,10 @@
 //! Whole files or none.
 //!
 //! A run is built in `DIR/.partial/` and its entries are renamed into `DIR` when all of them are written, `run.json`
-//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names, which
-//! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A run that goes on holds a
-//! lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no other run takes its files for a killed one's.
+//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names,
+//! which the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A
+//! run that goes on holds a lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no
+//! other run takes its files for a killed one's.
 
 use std::fs;
 use std::io;
@@ -22,8 +23,9 @@ pub struct Product {
 }
 
 impl Product {
-    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none. `interrupted` says that a
-    /// staging folder was found there, so that entries without their record are a killed run's.
+    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none.
+    /// `interrupted` says that a staging folder was found there, so that entries without their record are a killed
+    /// run's.
     fn refuse_existing(
         &self,
         directory: &Path,
@@ -156,7 +158,8 @@ impl Staging {
         force: bool,
     ) -> Result<Self, StagingError> {
         let folder = directory.join(PARTIAL);
-        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its renames: what that left is ours.
+        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its
+        // renames: what that left is ours.
         let interrupted = folder.is_dir();
         product.refuse_existing(directory, interrupted, force)?;
         Self::claim(product, directory, interrupted, force)
@@ -234,7 +237,8 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is gone.
+        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is
+        // gone.
         if cfg!(windows) {
             self.lock = None;
         }
@@ -336,7 +340,8 @@ mod tests {
         );
     }
 
-    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its end.
+    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its
+    /// end.
     #[test]
     fn two_runs_do_not_share_a_directory() {
         let root = tempfile::tempdir().unwrap();
@@ -361,7 +366,8 @@ mod tests {
         );
     }
 
-    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced without --force.
+    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced
+    /// without --force.
     #[test]
     fn a_run_that_ends_before_the_lock_is_taken_is_not_replaced() {
         let root = tempfile::tempdir().unwrap();

@@ -68,8 +68,8 @@ impl FileError {
     }
 }
 
-/// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the process under such a name, which may be
-/// a regular file (`/dev/stdout`, redirected).
+/// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the
+/// process under such a name, which may be a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
     let is_own = path.starts_with("/proc")
         || path.starts_with("/dev/fd")

@@ -43,8 +43,8 @@ pub enum CostModelError {
     },
 }
 
-/// Where the cost model is kept: knotdock/cost_model.json in `XDG_CACHE_HOME`, or else in .cache of the home folder. `None` where there is
-/// neither.
+/// Where the cost model is kept: knotdock/cost_model.json in `XDG_CACHE_HOME`, or else in .cache of the home folder.
+/// `None` where there is neither.
 pub fn default_path() -> Option<PathBuf> {
     // The standard has relative folders ignored.
     let folder = |name: &str| {

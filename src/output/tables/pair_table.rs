@@ -65,12 +65,13 @@ impl PairTableError {
     }
 }
 
-/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at
-/// least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all are (`rings`).
+/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`,
+/// then at least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all
+/// are (`rings`).
 ///
-/// Spreadsheets save what they call CSV in several ways: columns are separated by whichever of comma, semicolon and tab the
-/// header has most of, or by the one that a first line `sep=;` names; a byte order mark is passed over; column names may have
-/// capital letters, and blanks or `-` for `_`.
+/// Spreadsheets save what they call CSV in several ways: columns are separated by whichever of comma, semicolon and
+/// tab the header has most of, or by the one that a first line `sep=;` names; a byte order mark is passed over;
+/// column names may have capital letters, and blanks or `-` for `_`.
 ///
 /// # Errors
 /// [`PairTableError`].

@@ -13,8 +13,8 @@
 //! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
 //!   |x - x'| <= r(x) - (1 - mu) r(x').
 //! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its
-//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which keeps
-//!   more balls.
+//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which
+//!   keeps more balls.
 //! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball: its own to begin with, and
 //!   chains of which each lies in the next, so that nothing need be left near the first.
 //! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest to

@@ -3,17 +3,19 @@
 //! # Conventions
 //!
 //! Shape is the double-skin correlation of B&I. Every other effect is a sum over pairs of labelled knots,
-//! `sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|)`. Each knot has a class c and a value (a charge, or 1). The class matrix M carries
-//! the weight and the sign, and k is a radial function. A higher score is better, so energies enter with a minus.
+//! `sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|)`. Each knot has a class c and a value (a charge, or 1). The class
+//! matrix M carries the weight and the sign, and k is a radial function. A higher score is better, so energies enter
+//! with a minus.
 //!
-//! The filter of the ranking kernel is applied to k ([`crate::kernel::radial_filter`]). So k ends at the same reach and the same
-//! frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain it adds one function of the
-//! ligand for each class. The engine compresses these together with those of shape. An effect that is off adds none.
+//! The filter of the ranking kernel is applied to k ([`crate::kernel::radial_filter`]). So k ends at the same reach
+//! and the same frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain
+//! it adds one function of the ligand for each class. The engine compresses these together with those of shape. An
+//! effect that is off adds none.
 //!
 //! # Adding an effect
 //!
-//! Write a file with a constant `EFFECT` of type [`EffectDefinition`] that says its labels, radial function and class matrix, and add
-//! it to the list of [`Effect`] below.
+//! Write a file with a constant `EFFECT` of type [`EffectDefinition`] that says its labels, radial function and class
+//! matrix, and add it to the list of [`Effect`] below.
 
 pub mod contact;
 pub mod electrostatics;

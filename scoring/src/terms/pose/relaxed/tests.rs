@@ -117,7 +117,8 @@ fn the_listed_pairs_add_up_to_the_energy() {
     assert!(touching > 30, "{touching}");
 }
 
-/// A relaxed pose has the returned energy, which is never more than before, and its interface lies within the bounds. Most poses gain.
+/// A relaxed pose has the returned energy, which is never more than before, and its interface lies within the bounds.
+/// Most poses gain.
 #[test]
 fn poses_come_to_rest_nearby_and_lower() {
     let (_, ligand, relaxation) = bodies(0.0);

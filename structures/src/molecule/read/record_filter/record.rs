@@ -56,7 +56,8 @@ pub(crate) struct FilteredRecords {
     pub(crate) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(crate) defaults_filled: usize,
-    /// Lines at which the file itself ends a chain; see [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
+    /// Lines at which the file itself ends a chain; see
+    /// [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
     pub(crate) chain_breaks: Vec<usize>,
     /// Lines and names of further data blocks of an mmCIF file that have atoms, too.
     pub(crate) other_blocks: Vec<(usize, String)>,
