@@ -21,7 +21,7 @@ use crate::cli::messages::failure::Failure;
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///
 /// A pair whose directory holds its run already, of the same inputs and options, is not docked again, so that a batch
-/// which was stopped goes on where it was. A pair that fails is told of and the others go on. DIR/results.csv has a
+/// which was stopped goes on where it was. A pair that fails is reported, and the others go on. DIR/results.csv has a
 /// row a pair and is written anew after each.
 #[derive(Args, Debug)]
 pub struct Batch {
@@ -97,7 +97,7 @@ impl Batch {
             if count == 1 { "goes" } else { "go" },
             directory.display()
         ));
-        let mut told: Vec<Value> = Vec::new();
+        let mut entries: Vec<Value> = Vec::new();
         let (mut waiting, mut table): (Vec<Dock>, Vec<PairResult>) = (Vec::new(), Vec::new());
         for pair in pairs {
             waiting.push(pair.dock);
@@ -125,7 +125,7 @@ impl Batch {
                 };
             }
             table[index].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
-            told.push(entry);
+            entries.push(entry);
             write_results(results, &table, &others)?;
         }
         let done = table
@@ -143,7 +143,7 @@ impl Batch {
         console.result(&json!({
             "directory": directory.display().to_string(),
             "results": results.display().to_string(),
-            "pairs": told,
+            "pairs": entries,
         }))?;
         Ok(code)
     }

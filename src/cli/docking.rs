@@ -1,4 +1,4 @@
-//! A docking run: prepared, told, carried out and written.
+//! A docking run: planned, described, carried out and written.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -29,7 +29,7 @@ use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
-    assumed, error_warning, few_rotations_warning, regions_text, told,
+    assumed, error_warning, few_rotations_warning, regions_text, outcome_text,
 };
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::timings::timings_text;
@@ -213,7 +213,7 @@ impl Docking {
     /// Reports the run: effects, errors, times and the best clusters.
     fn report(&self, outcome: &DockOutcome, quality: &[Column], console: Console) {
         let plan = &self.prepared.plan;
-        console.say(format!("\n{}", told(plan, outcome)));
+        console.say(format!("\n{}", outcome_text(plan, outcome)));
         console.detail(format!("\n{}", timings_text(outcome)));
         if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);

@@ -76,9 +76,9 @@ impl Inspect {
             }
             None => None,
         };
-        let (input, listed) = if self.atoms.is_some() {
-            let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
-            (input, Some(listed))
+        let (input, fates) = if self.atoms.is_some() {
+            let (input, fates) = Input::read_with_fates(&self.file, &reading)?;
+            (input, Some(fates))
         } else {
             let [input] = Input::read_all([&self.file], &reading)?;
             (input, None)
@@ -116,9 +116,9 @@ impl Inspect {
             ),
             counts_text(&counts)
         ));
-        if let (Some(path), Some(listed)) = (&self.atoms, listed) {
-            atom_table::write(path, &listed)?;
-            console.say(format!("{} atoms in {}", listed.len(), path.display()));
+        if let (Some(path), Some(fates)) = (&self.atoms, fates) {
+            atom_table::write(path, &fates)?;
+            console.say(format!("{} atoms in {}", fates.len(), path.display()));
         }
         if let (Some(path), Some(format)) = (&self.write, format) {
             molecule_file::write(path, format, molecule)?;

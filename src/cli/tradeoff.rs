@@ -100,7 +100,7 @@ impl TradeoffCommand {
         let machine = machine(&first.plan);
         let inputs = request.inputs(first.sampling.as_deref())?;
         let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
-        let progress = Told {
+        let progress = SweepConsole {
             line: console.progress(),
             console,
         };
@@ -212,12 +212,12 @@ fn table(tradeoff: &Tradeoff) -> String {
 }
 
 /// Lines on how far the sweep is, and the bar of the search that runs.
-struct Told {
+struct SweepConsole {
     line: ProgressLine,
     console: Console,
 }
 
-impl Progress for Told {
+impl Progress for SweepConsole {
     fn stage(&self, name: &str, total: u64) {
         self.line.stage(name, total);
     }
@@ -227,7 +227,7 @@ impl Progress for Told {
     }
 }
 
-impl SweepProgress for Told {
+impl SweepProgress for SweepConsole {
     fn begins(&self, settings: usize, seconds: f64) {
         self.line.clear();
         self.console.say(format!(

@@ -26,7 +26,7 @@ pub struct RankedPose {
     /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
     /// least the best pose's.
     pub cluster_score: Option<f64>,
-    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
+    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the ascent.
     pub refined: bool,
     /// Index in the rotation set of the grid pose that this row came from.
     pub rotation: usize,

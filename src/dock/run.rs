@@ -141,7 +141,7 @@ fn dock_in<T: Real>(
     let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
     // Poses closer than neighbouring samples of the search are one place to it.
     let step = body.step(plan.spacing, plan.search.rotation_step());
-    let listed = deduplicated(&candidates, &clusters, &body, step);
+    let distinct = deduplicated(&candidates, &clusters, &body, step);
     clock.lap("cluster");
 
     let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
@@ -156,7 +156,7 @@ fn dock_in<T: Real>(
     let ranking = report(
         pose_scorer,
         &candidates,
-        (&clusters, &listed),
+        (&clusters, &distinct),
         plan.options.ranking.no_cluster,
         2.0 * plan.options.kernel.tolerance * best_peak.abs(),
         progress,
@@ -309,12 +309,12 @@ struct Check {
 
 impl Check {
     fn new(scorer: &ExactScorer, grid_poses: &[Pose]) -> Self {
-        let begun = Instant::now();
+        let started = Instant::now();
         let at_grid: Vec<ExactScore> = grid_poses
             .par_iter()
             .map(|pose| scorer.score(&printed(pose)))
             .collect();
-        let seconds = begun.elapsed().as_secs_f64() / at_grid.len() as f64;
+        let seconds = started.elapsed().as_secs_f64() / at_grid.len() as f64;
         Self { at_grid, seconds }
     }
 

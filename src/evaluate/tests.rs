@@ -214,13 +214,13 @@ fn swapped_identical_chains_find_the_best_order() {
 }
 
 #[test]
-fn merged_chains_match_those_kept_apart() {
+fn merged_chains_match_separate_ones() {
     // An antibody's H and L as one chain with numbers that begin again, against two chains in the native.
     let (heavy, antigen) = bound();
     let light = helix("L", &random_sequence(23, 35), [0.0, 10.0, 3.0]);
     let merged = [heavy.clone(), renamed(&light, "A")].concat();
-    let apart = [light, renamed(&heavy, "H")].concat();
-    let evaluator = evaluator((&merged, &antigen), (&apart, &antigen)).unwrap();
+    let separate = [light, renamed(&heavy, "H")].concat();
+    let evaluator = evaluator((&merged, &antigen), (&separate, &antigen)).unwrap();
     assert_eq!(evaluator.report().receptor.matched, 75);
     assert_perfect(evaluator.evaluate(&Pose::identity()));
 }
@@ -309,8 +309,8 @@ fn strangers_and_lone_sides_are_errors() {
     let (receptor, ligand) = bound();
     let error = evaluator((&ligand, &receptor), (&receptor, &ligand)).unwrap_err();
     assert_eq!(error, EvaluateError::Unmatched { side: "receptor" });
-    let apart = moved(&ligand, &translation(100.0, 0.0, 0.0));
-    let error = evaluator((&receptor, &ligand), (&receptor, &apart)).unwrap_err();
+    let separate = moved(&ligand, &translation(100.0, 0.0, 0.0));
+    let error = evaluator((&receptor, &ligand), (&receptor, &separate)).unwrap_err();
     assert_eq!(error, EvaluateError::NoContact);
     let dot = vec![atom("B", 1, "GLY", "CA", [4.0, 0.0, 0.0])];
     let error = evaluator((&square("A", 0.0), &dot), (&square("A", 0.0), &dot)).unwrap_err();

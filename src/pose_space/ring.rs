@@ -87,7 +87,7 @@ mod tests {
     use std::f64::consts::PI;
 
     /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule
-    /// gain, by the exact sum over all pairs, and a ascent ends higher, on a ring.
+    /// gain, by the exact sum over all pairs, and an ascent ends higher, on a ring.
     #[test]
     fn copies_across_the_axis_are_climbed_with_the_rest() {
         let centers = vec![
@@ -99,8 +99,8 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
         let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let field = PotentialGrid::new(&plan, &folded, &knots);
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let field = PotentialGrid::new(&plan, &spectra, &knots);
         let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
@@ -176,7 +176,7 @@ mod tests {
         });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
-        let folded = ReceptorSpectra::<f32>::new(
+        let spectra = ReceptorSpectra::<f32>::new(
             &plan.search.engine,
             &plan.receptor,
             &plan.ligand,
@@ -185,7 +185,7 @@ mod tests {
         let search = &plan.search;
         let chosen = choose_rank(
             &search.engine,
-            &folded,
+            &spectra,
             &plan.ligand,
             &search.rotations.coarse,
         );
@@ -213,7 +213,7 @@ mod tests {
             assert!(off.norm() < 1.8 * plan.spacing, "{off}");
         }
 
-        let field = PotentialGrid::new(&plan.search.engine, &folded, &plan.ligand);
+        let field = PotentialGrid::new(&plan.search.engine, &spectra, &plan.ligand);
         let scorer = plan.exact_scorer().unwrap();
         let limits = AscentLimits {
             evaluations: 60,

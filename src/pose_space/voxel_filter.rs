@@ -126,8 +126,8 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let voxels = VoxelFilter::new(&engine, None);
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "C3".parse().unwrap();
@@ -179,8 +179,8 @@ mod tests {
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "D2".parse().unwrap();
         for across in axis.across(5) {

@@ -108,11 +108,11 @@ pub(crate) fn deduplicated(
         .map(|(candidate, &cluster)| {
             let others = &mut standing[cluster];
             let near = body.first_within(others, &candidate.pose, step);
-            let apart = near.is_none();
-            if apart && candidate.refined {
+            let is_distinct = near.is_none();
+            if is_distinct && candidate.refined {
                 others.push(body.place(&candidate.pose));
             }
-            apart
+            is_distinct
         })
         .collect()
 }
@@ -125,7 +125,7 @@ mod tests {
     /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for
     /// the other.
     #[test]
-    fn repeats_are_not_listed_within_their_cluster() {
+    fn a_cluster_has_no_repeats() {
         let body = RigidBody::new(&[[0.0; 3]]);
         let at = |x: f64| Pose {
             translation: Vector3::new(x, 0.0, 0.0),

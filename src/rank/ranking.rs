@@ -72,7 +72,7 @@ pub(crate) fn report(
     margin: f64,
     progress: &dyn Progress,
 ) -> Ranking {
-    let (clusters, listed) = clusters;
+    let (clusters, distinct) = clusters;
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -81,13 +81,13 @@ pub(crate) fn report(
     let background = Background::of(candidates);
     let mut centres = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
-    for ((candidate, &cluster), &listed) in candidates.iter().zip(clusters).zip(listed) {
+    for ((candidate, &cluster), &is_distinct) in candidates.iter().zip(clusters).zip(distinct) {
         sizes[cluster] += 1;
         // The centre comes first, being the best by the fast path.
         centres[cluster] = centres[cluster].max(candidate.score);
         // Scores against the centre's, so that nothing overflows.
         weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
-        if listed && (every_pose || candidate.score >= centres[cluster] - margin) {
+        if is_distinct && (every_pose || candidate.score >= centres[cluster] - margin) {
             wanted.push((candidate, cluster));
         }
     }
@@ -187,7 +187,7 @@ impl Candidate {
         let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
         let (pose, terms, others, refined) = if self.refined {
             let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
-            // A climb on the fast path's values that the exact sum does not confirm is undone.
+            // An ascent on the fast path's values that the exact sum does not confirm is undone.
             let before = match &self.terms {
                 Some(terms) => terms.score,
                 None => scorer.score_only(&self.start),
@@ -202,7 +202,7 @@ impl Candidate {
             (self.start, at_start(), others(&self.start), false)
         };
         let pose_terms = match rescorer {
-            // An undone climb leaves another pose than was rescored.
+            // An undone ascent leaves another pose than was rescored.
             Some(rescorer) if refined != self.refined => {
                 rescorer.score(&pose, &mut Workspace::default())
             }
@@ -282,10 +282,10 @@ mod tests {
         assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
     }
 
-    /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one
+    /// An ascent whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one
     /// stands.
     #[test]
-    fn an_undone_climb_is_reported_as_unrefined() {
+    fn an_undone_ascent_is_reported_as_unrefined() {
         let scorer = scorer();
         let exact = |x: f64| scorer.score_only(&at(x));
         let (touching, overlapping) = (4.2, 0.5);

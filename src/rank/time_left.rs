@@ -34,9 +34,9 @@ pub(crate) fn poses_in_time(
         let step = count.div_ceil(PROBES);
         let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
         let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
-        let begun = Instant::now();
+        let started = Instant::now();
         let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
-        begun.elapsed().as_secs_f64() / probed.max(1) as f64
+        started.elapsed().as_secs_f64() / probed.max(1) as f64
     });
     // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {

@@ -40,9 +40,9 @@ impl Deadline {
             .as_secs_f64()
     }
 
-    /// Whether a search that began at `begun` and has done so many rotations must stop.
-    pub(crate) fn is_reached(&self, begun: Instant, done: usize) -> bool {
-        self.must_stop(begun.elapsed().as_secs_f64(), self.left(), done)
+    /// Whether a search that began at `started` and has done so many rotations must stop.
+    pub(crate) fn is_reached(&self, started: Instant, done: usize) -> bool {
+        self.must_stop(started.elapsed().as_secs_f64(), self.left(), done)
     }
 
     /// Whether the seconds left are no more than the rest of the run takes at the pace of the search. Other programs

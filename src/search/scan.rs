@@ -98,10 +98,10 @@ fn scan_on_cores<T: Real>(
 ) -> Scanned {
     let filter = plan.space.voxel_filter(engine);
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let begun = Instant::now();
+    let started = Instant::now();
     let take = || {
         let done = searched.load(Ordering::Relaxed);
-        let is_late = |deadline: &Deadline| deadline.is_reached(begun, done);
+        let is_late = |deadline: &Deadline| deadline.is_reached(started, done);
         if next.load(Ordering::Relaxed) > 0 && deadline.is_some_and(is_late) {
             return None;
         }

@@ -32,14 +32,14 @@ fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> S
     match quick {
         Some(quick) if keeps(&quick) => format!(
             " In half the time or less, {} ({}) finds {}, at an error of {:.1e}.",
-            told(quick),
+            setting_text(quick),
             seconds(quick.cost()),
             share(quick),
             quick.error.rms
         ),
         Some(quick) => format!(
             " No setting that takes half the time or less keeps the answer: the best, {} ({}), finds {}.",
-            told(quick),
+            setting_text(quick),
             seconds(quick.cost()),
             share(quick)
         ),
@@ -72,7 +72,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let mut text = format!(
         "Take {}: {} of processor time ({} on the clock), an error of {:.1e} of the best score, and {} of the first {FIRST} rows of the \
          reference, which has {} times the rotations of the default, within {:.3} of one of its own.",
-        told(take),
+        setting_text(take),
         seconds(take.cost()),
         seconds(take.wall_seconds()),
         take.error.rms,
@@ -107,7 +107,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     if let Some(sharper) = sharper {
         text += &format!(
             " Where the error matters, {} ({}) brings it to {:.1e}.",
-            told(sharper),
+            setting_text(sharper),
             seconds(sharper.cost()),
             sharper.error.rms
         );
@@ -118,7 +118,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     if let Some(wider) = wider {
         text += &format!(
             " Where time allows, {} ({}) finds {}.",
-            told(wider),
+            setting_text(wider),
             seconds(wider.cost()),
             share(wider)
         );
@@ -143,7 +143,7 @@ fn rotations_ratio(tradeoff: &Tradeoff) -> usize {
 }
 
 /// A setting by its name, and its options where the name is not all of them.
-fn told(run: &Measured) -> String {
+fn setting_text(run: &Measured) -> String {
     let setting = &run.setting;
     match setting.parameter {
         Parameter::Default => "the default".to_owned(),

@@ -160,9 +160,9 @@ impl Bodies {
                 };
                 let solids = inputs.each_ref().map(|input| &input.solid);
                 let sampling =
-                    Sampling::of(solids, &sampling).map_err(|error| located(&error, inputs))?;
+                    Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
                 sampling.pair.defaults(options, given);
-                console.say(told(&sampling.pair));
+                console.say(sampling_text(&sampling.pair));
                 PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
             }
         }
@@ -251,7 +251,7 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
 }
 
 /// A failure that names the mesh at fault.
-fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
     let failure = Failure::input(error).remedy(error.remedy());
     match error.part() {
         Some(part) => failure.at(&inputs[part].record.path),
@@ -260,7 +260,7 @@ fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
 }
 
 /// How meshes were sampled.
-fn told(pair: &MeshPair) -> String {
+fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
         let weights = match &part.weights {
             Some(fit) => format!(

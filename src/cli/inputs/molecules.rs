@@ -77,9 +77,9 @@ impl Input {
             trust_plddt: options.min_plddt.is_some(),
             ..options.clone()
         };
-        let (molecule, listed) = read_bytes_with_fates(&spec, bytes, &options)?;
+        let (molecule, fates) = read_bytes_with_fates(&spec, bytes, &options)?;
         check_used(&options, [&molecule])?;
-        Ok((Self { record, molecule }, listed))
+        Ok((Self { record, molecule }, fates))
     }
 
     /// Reads structures that are docked together, `FILE` or `FILE:H,L` each.

@@ -39,7 +39,7 @@ impl Console {
             let mut stream = io::stdout();
             let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
             if let Err(error) = written {
-                // Only the first is told.
+                // Only the first failure is reported.
                 let _ = LOST.set(error);
             }
         }

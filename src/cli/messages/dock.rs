@@ -12,7 +12,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.
-pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
+pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
     let effects = outcome
         .effects
         .iter()

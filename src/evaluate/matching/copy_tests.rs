@@ -194,7 +194,7 @@ fn the_largest_interface_wins_over_a_crystal_contact() {
 /// Found with both partners under one name: the inhibitor's first fifteen residues, whose numbers trypsin does not
 /// have, were counted to trypsin (dockq 0.495).
 #[test]
-fn partners_under_one_name_are_told_apart() {
+fn partners_under_one_name_are_distinguished() {
     let [trypsin, inhibitor] = bound("A", "A");
     // As they are; running on, so that a bond is missing; after a gap as of a missing loop; the inhibitor first.
     for native in [
@@ -345,7 +345,7 @@ fn an_absurd_fit_is_an_error() {
 /// A docked chain that the native's other chain holds a few residues of is elsewhere all the same; one of which a
 /// second copy has more is not.
 #[test]
-fn chains_cut_at_other_places_are_told_from_copies() {
+fn chains_cut_at_other_places_are_no_copies() {
     let docked = halves(&receptor(), "A", "B");
     let [one, inhibitor] = bound("E", "C");
     let first = without(&one, 128..=300);

@@ -58,40 +58,40 @@ const FIVE_PRIME_OXYGEN: usize = 10;
 enum Link {
     Bonded,
     /// So far apart, in Å; a missing residue spans at most so much.
-    Apart(f64, f64),
+    Distant(f64, f64),
     /// The atoms that would show it are not in the file.
     Unknown,
 }
 
 /// How `after` is joined to `before`.
 fn link(before: &Residue, after: &Residue) -> Link {
-    let apart = |from: usize, to: usize| {
+    let measured = |from: usize, to: usize| {
         let ends = before.backbone[from].zip(after.backbone[to]);
         ends.map(|(from, to)| nalgebra::distance(&from, &to))
     };
-    let judge = |distance: f64, bond: f64, span: f64| {
+    let classify = |distance: f64, bond: f64, span: f64| {
         if distance <= bond {
             Link::Bonded
         } else {
-            Link::Apart(distance, span)
+            Link::Distant(distance, span)
         }
     };
     let is_protein = |residue: &Residue| residue.backbone[..PHOSPHORUS].iter().any(Option::is_some);
     let is_nucleic = |residue: &Residue| residue.backbone[PHOSPHORUS..].iter().any(Option::is_some);
     let [amino_acid, nucleotide] = SPANS;
     if (is_protein(before) && is_nucleic(after)) || (is_nucleic(before) && is_protein(after)) {
-        Link::Apart(f64::INFINITY, nucleotide)
-    } else if let Some(distance) = apart(CARBON, NITROGEN) {
-        judge(distance, PEPTIDE_BOND, amino_acid)
-    } else if let Some(distance) = apart(LINKING_OXYGEN, PHOSPHORUS) {
-        judge(distance, PHOSPHATE_BOND, nucleotide)
-    } else if let Some(distance) = apart(LINKING_OXYGEN, FIVE_PRIME_OXYGEN) {
-        judge(distance, OXYGENS, nucleotide)
-    } else if let Some(distance) = apart(ALPHA_CARBON, ALPHA_CARBON) {
+        Link::Distant(f64::INFINITY, nucleotide)
+    } else if let Some(distance) = measured(CARBON, NITROGEN) {
+        classify(distance, PEPTIDE_BOND, amino_acid)
+    } else if let Some(distance) = measured(LINKING_OXYGEN, PHOSPHORUS) {
+        classify(distance, PHOSPHATE_BOND, nucleotide)
+    } else if let Some(distance) = measured(LINKING_OXYGEN, FIVE_PRIME_OXYGEN) {
+        classify(distance, OXYGENS, nucleotide)
+    } else if let Some(distance) = measured(ALPHA_CARBON, ALPHA_CARBON) {
         if distance < *ALPHA_CARBONS.start() {
             Link::Unknown
         } else {
-            judge(distance, *ALPHA_CARBONS.end(), amino_acid)
+            classify(distance, *ALPHA_CARBONS.end(), amino_acid)
         }
     } else {
         Link::Unknown
@@ -125,8 +125,8 @@ fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) 
         return true;
     }
     match link {
-        Link::Apart(..) if step == 1 && (bonds || is_ended) => true,
-        Link::Apart(distance, span) => {
+        Link::Distant(..) if step == 1 && (bonds || is_ended) => true,
+        Link::Distant(distance, span) => {
             let (residues, longest) = MAX_GAP_LENGTH;
             distance > f64::max(span * step as f64, UNCOUNTED)
                 || (is_ended && (step > residues || distance > longest))

@@ -35,11 +35,11 @@ pub const COLUMNS: [&str; 16] = [
 ///
 /// # Errors
 /// [`FileError`].
-pub fn write(path: &Path, listed: &[AtomFate]) -> Result<(), FileError> {
+pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut table = csv::Writer::from_writer(&mut *file);
         table.write_record(COLUMNS).map_err(io::Error::other)?;
-        for entry in listed {
+        for entry in fates {
             table
                 .write_record(fields(entry))
                 .map_err(io::Error::other)?;

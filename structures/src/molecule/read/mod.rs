@@ -89,19 +89,19 @@ pub fn read_bytes_with_fates(
     bytes: Vec<u8>,
     options: &ReadOptions,
 ) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
-    let mut listed = Vec::new();
+    let mut fates = Vec::new();
     let molecule = read_telling(spec, bytes, options, &mut |atom, kind| {
-        listed.push(AtomFate {
+        fates.push(AtomFate {
             atom,
             dropped: Some(kind),
         });
     })?;
-    listed.extend(molecule.atoms.iter().map(|atom| AtomFate {
+    fates.extend(molecule.atoms.iter().map(|atom| AtomFate {
         atom: atom.clone(),
         dropped: None,
     }));
-    listed.sort_by_key(|entry| entry.atom.line);
-    Ok((molecule, listed))
+    fates.sort_by_key(|entry| entry.atom.line);
+    Ok((molecule, fates))
 }
 
 fn read_telling(

@@ -280,17 +280,17 @@ impl Relaxation {
             let arm = turn * atom.arm;
             let position = arm + place;
             let (mut energy, mut force) = (0.0, Vector3::zeros());
-            for listed in workspace.neighbours[from..atom.end].chunks(CHUNK) {
+            for near in workspace.neighbours[from..atom.end].chunks(CHUNK) {
                 // Without a branch: a third of the pairs is within reach, in an unpredictable order.
                 let mut within = [(0, 0.0); CHUNK];
                 let mut count = 0;
-                for (index, other) in listed.iter().enumerate() {
+                for (index, other) in near.iter().enumerate() {
                     let square = (position - other.position).norm_squared();
                     within[count] = (index, square);
                     count += usize::from(square < limit);
                 }
                 for &(index, square) in &within[..count] {
-                    let (other, distance) = (&listed[index], square.sqrt());
+                    let (other, distance) = (&near[index], square.sqrt());
                     let (value, rise) = self.pair(other, &atom.site, distance, stiffness);
                     energy += value;
                     force += rise / distance.max(1e-6) * (position - other.position);

@@ -7,8 +7,8 @@ use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Sampling, SetName};
 use serde_json::{Value, json};
 
-/// What is told of a sampled solid, in the file's unit.
-pub(super) struct Told<'a> {
+/// Report on a sampled solid, in the file's unit.
+pub(super) struct SampleReport<'a> {
     pub sampling: &'a Sampling,
     pub fits: &'a [Fit],
     /// Length of the sampler's unit in the file's.
@@ -17,19 +17,19 @@ pub(super) struct Told<'a> {
     pub volume: f64,
 }
 
-impl<'a> Told<'a> {
-    /// What is told of a sampling and its fits.
+impl<'a> SampleReport<'a> {
+    /// Report on a sampling and its fits.
     pub fn new(
         sampling: &'a Sampling,
         fits: &'a [Fit],
         solid: &Solid,
-        referee: &HausdorffMeter,
+        meter: &HausdorffMeter,
     ) -> Self {
         Self {
             sampling,
             fits,
             unit: solid.frame().unit,
-            volume: referee.volume(),
+            volume: meter.volume(),
         }
     }
 
