@@ -24,7 +24,7 @@ pub enum SearchError {
         /// Its range.
         bound: String,
     },
-    /// An effect was asked for that the inputs cannot feed.
+    /// A requested effect for which the inputs hold nothing.
     #[error("there can be no {effect}: {reason}")]
     Effect {
         /// The effect.
@@ -32,7 +32,7 @@ pub enum SearchError {
         /// What is missing.
         reason: String,
     },
-    /// Two rings were asked for of a molecule that is none.
+    /// Two rings requested of a molecule that is not a ring.
     #[error("{symmetry} lays two rings together, and this molecule is no ring for it: {reason}")]
     Ring {
         /// The symmetry.
@@ -49,11 +49,11 @@ pub enum SearchError {
         allowed: u64,
         /// Grid spacing that would fit, if any does.
         spacing: Option<f64>,
-        /// Resolution for which that spacing is fine enough, where it is a coarser one than was asked for.
+        /// Resolution for which that spacing is fine enough, where it is coarser than the requested one.
         resolution: Option<f64>,
-        /// The pass length that goes with it, where one was asked for.
+        /// The pass length that goes with it, where one was requested.
         pass_length: Option<f64>,
-        /// Whether that resolution is so much coarser than was asked for that it shows little.
+        /// Whether that resolution is so much coarser than the requested one that it shows little.
         shows_little: bool,
     },
     /// The modes that a score is to be made of do not fit into the memory allowed.

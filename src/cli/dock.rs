@@ -48,9 +48,9 @@ pub struct Dock {
     #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry", help_heading = WITHIN)]
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
-    /// planned as are expected to fit, but no more than 56,250; where the machine is slower than expected the search
-    /// stops earlier, and run.json records where, so that the run can be repeated. `knotdock calibrate` measures how
-    /// fast this machine is.
+    /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search
+    /// stops earlier. run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast
+    /// this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
     #[command(flatten)]

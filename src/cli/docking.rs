@@ -49,7 +49,7 @@ pub struct Docking {
 }
 
 impl Docking {
-    /// Plans what was asked for, to be written into a directory, in place of a run there if that is forced.
+    /// Plans the requested run. It is written into `directory`, and replaces a run there only if `force` is true.
     pub fn prepare(
         mut request: Request,
         wanted: Wanted,

@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// What orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
+    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
     pub score: f64,
     /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
     pub search_score: f64,
@@ -137,7 +137,7 @@ pub struct StageTime {
     pub name: &'static str,
     /// Wall-clock seconds.
     pub wall_seconds: f64,
-    /// CPU seconds of the whole process, where the system tells.
+    /// CPU seconds of the whole process, where the system reports them.
     pub cpu_seconds: Option<f64>,
 }
 
@@ -162,7 +162,7 @@ pub struct DockOutcome {
     pub rank_error: f64,
     /// What each term cost.
     pub effects: Vec<EffectCost>,
-    /// What a finer search about the best rotations covered, where one was asked for.
+    /// What a finer search about the best rotations covered, where one was requested.
     pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,
@@ -174,7 +174,7 @@ pub struct DockOutcome {
 mod tests {
     use super::*;
 
-    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored
+    /// A reported pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored
     /// 100: they looked 200 times smaller.
     #[test]
     fn errors_are_shares_of_the_best_score_and_of_magnitudes_only_where_nothing_scores() {

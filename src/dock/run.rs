@@ -79,8 +79,9 @@ pub fn dock(
 }
 
 /// Docks as planned, with as many of the rotations as a deadline leaves time for, if there is one.
-/// [`DockOutcome::stopped`] says how many those were: planned with it as [`DockOptions::stopped`] and docked without a
-/// deadline, the outcome is the same. Graphics processors search all.
+///
+/// [`DockOutcome::stopped`] says how many those were. A run planned with it as [`DockOptions::stopped`] and docked
+/// without a deadline has the same outcome. Graphics processors search all rotations.
 ///
 /// [`DockOptions::stopped`]: crate::options::DockOptions::stopped
 ///

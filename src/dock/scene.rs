@@ -72,8 +72,8 @@ impl Scene {
     /// The scene of two molecules.
     ///
     /// # Errors
-    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the molecules lack
-    /// something for.
+    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the
+    /// molecules lack something for.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,

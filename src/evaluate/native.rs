@@ -18,7 +18,7 @@ pub enum Native<'a> {
     /// and superpose on; of several complexes the one with the largest interface is taken. Where receptor and ligand
     /// are the same chain, both ways round are tried for every pose.
     Complex(&'a Molecule),
-    /// The two sides apart, in one common frame.
+    /// The two sides as separate molecules, in one common frame.
     Pair {
         /// The native's receptor.
         receptor: &'a Molecule,
@@ -71,7 +71,8 @@ pub(super) struct Ways {
 ///
 /// # Errors
 /// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::Unmatched`] when no chain is the
-/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
+/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and
+/// [`EvaluateError::NoContact`].
 pub(super) fn ways(
     receptor: &Residues,
     ligand: &Residues,
@@ -280,8 +281,10 @@ fn complexes(receptor: PlacedCopy, ligand: PlacedCopy, all: &[Combination]) -> V
     found
 }
 
-/// The residues of the complex that belong to each side, segment by segment: of a segment of which both sides match a
-/// part, each residue goes to the side whose nearest matched residue is nearer in the sequence.
+/// The residues of the complex that belong to each side, segment by segment.
+///
+/// Both sides may match a part of one segment. Then each residue goes to the side whose nearest matched residue is
+/// nearer in the sequence.
 fn split(complex: &Residues, receptor: &Placement, ligand: &Placement) -> [Part; 2] {
     let placements = [receptor, ligand];
     let segments = placements.map(Placement::native_segments);

@@ -1,4 +1,4 @@
-//! What was matched with what, for the user to judge how far the figures reach.
+//! Report on the matching: which parts of the native and of the docked molecules the figures cover.
 
 use serde::Serialize;
 
@@ -54,7 +54,7 @@ pub struct SideMatch {
     pub interface_residues: usize,
     /// Those of them that are matched.
     pub interface_matched: usize,
-    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot mend.
+    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot correct.
     pub backbone_rmsd: f64,
     /// Chain by chain, the one with most matched residues first.
     pub chains: Vec<ChainMatch>,

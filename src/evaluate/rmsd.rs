@@ -98,7 +98,8 @@ impl RmsdForms {
         [&self.receptor_interface, &self.ligand_interface].map(|side| side.count as usize)
     }
 
-    /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can mend.
+    /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can
+    /// correct.
     pub fn of_the_parts(&self) -> (f64, f64) {
         (
             self.receptor.rmsd(&self.receptor.best),

@@ -121,7 +121,7 @@ mod tests {
         let found = shared_chains(&ligand, &complex).unwrap();
         assert_eq!(found.pairs, [("A".to_owned(), "I".to_owned())]);
         assert_eq!(found.rest, ["E"]);
-        // Two chains of one name cannot be told apart by it.
+        // Two chains of one name cannot be distinguished by it.
         let merged = of(&[("A", &enzyme), ("A", &inhibitor)]);
         assert_eq!(shared_chains(&ligand, &merged).unwrap().rest, [""; 0]);
         assert_eq!(shared_chains(&of(&[("E", &enzyme)]), &ligand), None);

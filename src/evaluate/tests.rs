@@ -95,7 +95,7 @@ fn square(chain: &str, x: f64) -> Vec<Atom> {
 
 #[test]
 fn two_squares_by_hand() {
-    // Pulled apart from 4 to 6 Å along the axis: superposed, every atom is 1 Å off; the ligand alone is 2 Å off; the
+    // Separated from 4 to 6 Å along the axis: superposed, every atom is 1 Å off; the ligand alone is 2 Å off; the
     // only contact is lost.
     let (receptor, ligand) = (square("A", 0.0), square("B", 4.0));
     let evaluator = evaluator((&receptor, &ligand), (&receptor, &ligand)).unwrap();

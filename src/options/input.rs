@@ -34,7 +34,7 @@ pub struct InputOptions {
     #[arg(long, value_name = "NAME", default_value_t = AlternateLocation::default())]
     pub altloc: AlternateLocation,
     /// Model of a file that has several: 1 is the first, whatever number it carries. all reads all models as one
-    /// molecule, as of a biological assembly (.pdb1), in which the chain A of the second is called A-2.
+    /// molecule, as of a biological assembly (.pdb1). Chain A of its second model is then called A-2.
     #[arg(long, value_name = "N", default_value_t = ModelChoice::default())]
     pub model: ModelChoice,
     /// Build this biological assembly of a file that has it, such as 1; copies of chain A are called ...,

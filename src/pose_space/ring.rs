@@ -86,8 +86,8 @@ mod tests {
     use nalgebra::{Unit, UnitQuaternion};
     use std::f64::consts::PI;
 
-    /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule
-    /// gain, by the exact sum over all pairs, and an ascent ends higher, on a ring.
+    /// Four copies so near the axis that those across it interact. The gradient agrees with moves of the molecule by
+    /// the exact sum over all pairs. An ascent ends higher, on a ring.
     #[test]
     fn copies_across_the_axis_are_climbed_with_the_rest() {
         let centers = vec![
@@ -150,8 +150,8 @@ mod tests {
         assert!((score - exact(symmetry, &top)).abs() < 0.02 * score.abs());
     }
 
-    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one
-    /// ends where neither a turn about that axis nor a shift along it gains anything by the exact sum.
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis. The ascent from one ends
+    /// at a maximum of the exact sum, by rotation about that axis and by shift along it.
     #[test]
     fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
         let turn = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);

@@ -277,7 +277,7 @@ mod tests {
                 pieces.collect::<Vec<_>>().concat()
             };
             assert_eq!(sites(atoms(&numbers)), [(family, named(residues))]);
-            // The same segments of a chain whose catalytic residues stand apart are chance.
+            // The same segments of a chain whose catalytic residues are not together are chance.
             if pieces.len() > 1 {
                 assert_eq!(sites(atoms(&numbers[..1])), [], "{family}");
             }

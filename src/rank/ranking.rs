@@ -1,16 +1,16 @@
 //! The ranking: clusters by the fast path's scores, and every row that is reported by its exact score.
 //!
-//! The fast path's error is measured in every run and far below what sets clusters apart, while an exact sum costs as
-//! much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the grid's,
-//! or the receptor field's where a pose was refined); rows of the table carry exact scores.
+//! The fast path's error is measured in every run and is far below the differences between clusters. An exact sum
+//! costs as much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the
+//! grid's, or the receptor field's where a pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the pose score; of rings
-//! with what copies beyond the neighbours add to it.
+//! Where poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings
+//! it includes what copies beyond the neighbours add.
 //!
-//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores: the best pose's where it
-//! stands alone, more where many good poses lie about it, as about a native one they do. T is a tenth of the run's
-//! best score: on training pairs anything from a twentieth to a fifth ranked better than the best pose alone
-//! (docs/defaults.md).
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
+//! score where that pose stands alone. It is more where many good poses lie about it, as they do about a native one.
+//! T is a tenth of the run's best score: on training pairs anything from a twentieth to a fifth ranked better than
+//! the best pose alone (docs/defaults.md).
 //!
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
 //! score, so that such a cluster has many good poses; where a joint fits there is one place.
@@ -59,8 +59,9 @@ pub(crate) fn cluster_temperature(unit: LengthUnit) -> f64 {
 /// Most rows that a thread takes at once: refined ones take longer and come first.
 const ROWS_TOGETHER: usize = 8;
 
-/// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster,
-/// ordered by the clusters' scores, by which clusters are numbered; ties in the order given.
+/// Exactly scored rows: every distinct pose by exact score, or the best of each cluster by the cluster's score.
+///
+/// Clusters are numbered by their scores. Ties stay in the order given.
 ///
 /// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are
 /// scored.
@@ -150,7 +151,7 @@ struct Background {
     deviation: Option<f64>,
 }
 
-/// Least spread of scores, as a share of the largest, that tells one pose from another.
+/// Least spread of scores, as a share of the largest, that distinguishes poses.
 const MIN_SPREAD: f64 = 1e-3;
 
 impl Background {
@@ -325,8 +326,8 @@ mod tests {
         assert_eq!(stands.terms[1..], [None; 3]);
     }
 
-    /// Found by a user: a flat face slides on another at nearly the same score, and that cluster came before the
-    /// joint that fits, whose one pose had by 19% the best score of the run.
+    /// Found by a user: a flat face slides on another at nearly the same score. That cluster came before the joint
+    /// that fits, whose one pose had the best score of the run by 19%.
     #[test]
     fn company_counts_among_molecules_and_not_among_meshes() {
         let scorer = scorer();

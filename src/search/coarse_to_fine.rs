@@ -2,9 +2,9 @@
 //!
 //! Each rotation of the finer set belongs to the nearest rotation of the coarse one, in whose *cell* it lies. The
 //! coarse rotations' cells are searched in the order of their best peaks, until a given share of the finer set has
-//! been. In a searched cell the best peaks of all its rotations, coarse and fine, take the place of the coarse
-//! rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its best
-//! regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
+//! been. In a searched cell the best peaks of all its rotations, coarse and fine, replace the coarse rotation's own.
+//! They are as many and as widely spaced, so the list of poses keeps its length and its spread, with better poses in
+//! its best regions. (Keeping every fine peak would fill the list with copies of the best few.)
 
 use crate::error::SearchError;
 use crate::pose_space::rotations::RotationSample;

@@ -1,8 +1,8 @@
 //! Which rotations are searched, in which order, and until when.
 //!
 //! A search within a time stops between two rotations. What it has searched by then is the first part of an order in
-//! which every first part covers all orientations about evenly, and how many those were is recorded: searched again,
-//! the same rotations give the same bytes.
+//! which every first part covers all orientations about evenly. The number of these rotations is recorded: searched
+//! again, they give the same bytes.
 
 use crate::pose_space::rotations::RotationGroup;
 use crate::search::plan::SearchPlan;

@@ -47,8 +47,10 @@ fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> S
     }
 }
 
-/// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the
-/// reference's rows, where a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
+/// The advice of a sweep; `None` for a sweep without settings.
+///
+/// Among settings whose error is within the default's tolerance it is the one that finds most of the reference's
+/// rows. A doubling of the time must be worth a tenth of them.
 ///
 /// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default
 /// does, less 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and

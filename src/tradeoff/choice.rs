@@ -27,9 +27,9 @@ pub struct Wanted {
 /// What was chosen, and what it is expected to cost and to give.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
-    /// Error that was asked for.
+    /// Error that was requested.
     pub accuracy: Option<f64>,
-    /// Seconds that were asked for.
+    /// Seconds that were requested.
     pub budget_seconds: Option<f64>,
     /// Where the cost model came from: `built-in`, or the file that `knotdock calibrate` wrote.
     pub cost_model: String,

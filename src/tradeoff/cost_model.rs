@@ -50,10 +50,12 @@ pub struct CostModel {
 
 /// Exact sums made to measure a run's error.
 const CHECKED: f64 = 100.0;
-/// Poses that join a cluster for each that founds one, at 3,600 rotations and times the ligand's knots (the larger
-/// the ligand, the farther apart neighbouring rotations take it), and the power by which they rise with rotations: as
-/// counted on the example pair, 1AVX and 1EAW.
+/// Poses that join a cluster for each that begins one, at 3,600 rotations and times the ligand's knots.
+///
+/// The larger the ligand, the farther neighbouring rotations move its atoms. As counted on the example pair, 1AVX and
+/// 1EAW.
 const JOINING: f64 = 500.0;
+/// Power by which that number rises with rotations, as counted on the same pair.
 const CROWDING: f64 = 0.7;
 /// Ligand knots that feel the receptor in a pose that touches, per root of all: as timed on the same pairs.
 const TOUCHING: f64 = 15.0;
@@ -67,8 +69,8 @@ const FINE: f64 = 2.1;
 const PROBED: usize = 64;
 
 impl CostModel {
-    /// Coefficients of a two-core Intel Xeon at 2.50 GHz; `pair` is what it was there, 1.6e-8, times what the sum of
-    /// pairs has gained since (`benches/exact.rs`, score with slices over plain loop, on an AMD EPYC at 2.60 GHz:
+    /// Coefficients of a two-core Intel Xeon at 2.50 GHz; `pair` was 1.6e-8 there. It is multiplied by what the sum
+    /// of pairs has gained since (`benches/exact.rs`, score with slices over plain loop, on an AMD EPYC at 2.60 GHz:
     /// 0.71 then, 0.39 now).
     pub const BUILT_IN: Self = Self {
         inverse: 2.7e-10,
@@ -178,7 +180,7 @@ pub struct Workload {
     /// Peaks kept of each rotation.
     pub per_rotation: f64,
     /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is
-    /// listed.
+    /// a row.
     pub doubtful: f64,
     /// Poses rescored, each times the share of the pose terms' time that the acting terms take.
     pub rescored: f64,

@@ -74,7 +74,7 @@ impl Measured {
         self.timing.iter().map(|stage| stage.wall_seconds).sum()
     }
 
-    /// Seconds of all stages and processors, where the system tells.
+    /// Seconds of all stages and processors, where the system reports them.
     pub fn cpu_seconds(&self) -> Option<f64> {
         self.timing.iter().map(|stage| stage.cpu_seconds).sum()
     }

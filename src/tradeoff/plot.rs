@@ -10,7 +10,7 @@ const NONE_MISSED: f64 = 0.5;
 
 const FRONT: Colour = [0x88, 0x88, 0x88];
 
-/// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
+/// Colours that colour-blind readers can distinguish too (Okabe and Ito, and Tol's bright scheme).
 fn colour(parameter: Parameter) -> Colour {
     match parameter {
         Parameter::Default => [0x00, 0x00, 0x00],

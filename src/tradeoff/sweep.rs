@@ -19,7 +19,7 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Tradeoff};
 use crate::tradeoff::settings::{Parameter, Planned, Refused, Setting, settings};
 
-/// Who is told how far a sweep has come.
+/// Receiver of a sweep's progress.
 pub trait SweepProgress: Progress {
     /// The default has run: so many settings, and about so many seconds for all.
     fn begins(&self, settings: usize, seconds: f64);
@@ -35,7 +35,8 @@ pub trait SweepProgress: Progress {
 /// with.
 ///
 /// # Errors
-/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are listed with the reason.
+/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are reported with the
+/// reason.
 pub fn sweep(
     pair: Pair,
     first: PreparedPair,

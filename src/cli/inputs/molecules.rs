@@ -63,8 +63,8 @@ impl Input {
         })
     }
 
-    /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is
-    /// taken.
+    /// Reads one structure like [`Input::read`], and returns the fate of every atom, kept or dropped. With
+    /// `--min-plddt` the B column counts as pLDDT.
     pub fn read_with_fates(
         text: &str,
         options: &ReadOptions,
@@ -163,9 +163,10 @@ impl Input {
     }
 }
 
-/// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model,
-/// `--assembly` where no file says anything of one, `--model` where none has several, `--drop-residue` of a name that
-/// none has.
+/// Refuses options that did nothing to the molecules read with them.
+///
+/// These are `--min-plddt` where none is a predicted model, `--assembly` where no file describes one, `--model` where
+/// none has several models, and `--drop-residue` of a name that none has.
 fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,

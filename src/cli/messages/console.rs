@@ -69,7 +69,7 @@ impl Console {
         write_line(&mut io::stderr(), &text.to_string());
     }
 
-    /// Writes the command's JSON object, if that was asked for: what cannot be written is a failure then, for the
+    /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
     /// object is all there is, unless its reader has gone.
     pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
         if !self.json {

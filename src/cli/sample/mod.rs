@@ -26,9 +26,9 @@ use sample_report::{SampleReport, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
 ///
-/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1: A1 lies inside
-/// the solid, A2 is A1 grown by epsilon and covers it, A3 is A2 without what is redundant; each is within epsilon of
-/// the solid, which is measured. Lengths are in the file's unit.
+/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1. A1 lies inside
+/// the solid, A2 is A1 grown by epsilon and covers it, and A3 is A2 without redundant balls. Each is within epsilon
+/// of the solid, which is measured. Lengths are in the file's unit.
 #[derive(Args, Debug)]
 pub struct Sample {
     /// The mesh: .stl, .obj, .ply or .off.
@@ -46,9 +46,9 @@ pub struct Sample {
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
     set: Option<SetChoice>,
-    /// Refuse meshes that are not closed, have triangles that face the wrong way, are there several times or bound
-    /// nothing, parts within others that face outward, or of which something was left out on reading; and closed
-    /// ones that the balls do not come within epsilon of.
+    /// Refuse doubtful meshes: meshes that are not closed, with triangles that face the wrong way, are there several
+    /// times or bound nothing, or with inner parts that face outward. Meshes of which something was left out on
+    /// reading are refused too, and closed ones that the balls do not come within epsilon of.
     #[arg(long)]
     strict: bool,
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.
@@ -208,7 +208,7 @@ impl Sample {
         Ok(())
     }
 
-    /// The balls to write: of the chosen set, weighed or thinned out as was asked for.
+    /// The balls to write: the chosen set, weighted or thinned out as requested.
     fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Failure> {
         let start = Instant::now();
         let mut finished = Finished {

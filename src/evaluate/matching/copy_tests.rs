@@ -445,7 +445,7 @@ fn both_strands_of_a_duplex_docked_as_one_chain_are_matched() {
         let quality = evaluator.evaluate(&Pose::identity());
         assert!(quality.irmsd < 1e-9 && quality.lrmsd < 1e-9, "{quality:?}");
         assert_eq!(quality.fnat, 1.0);
-        // Strands kept apart in both, with the native's in the other order and under other names.
+        // Separate strands in both, with the native's in the other order and under other names.
         let swapped = [renamed(&native[1], "A"), renamed(&native[0], "B")].concat();
         let complex = [swapped, renamed(&protein, "P")];
         let evaluator = against(&protein, &native.concat(), &complex).unwrap();

@@ -6,8 +6,8 @@
 //! names, the order of the file and the residues that each copy lacks. For two identical chains these ways are their
 //! orders that fit; for a ring of n they are its n rotations.
 //!
-//! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a
-//! hinge, a domain that moved), unless the whole would fit no longer: then the placement is displaced.
+//! A chain that finds nothing in its place is given the one chain of its sequence, even if that stands elsewhere (a
+//! hinge, a domain that moved). Where the whole would then fit no longer, the placement is displaced.
 
 use crate::evaluate::matching::chain_pair::{ChainPair, align_all};
 use crate::evaluate::matching::placement::Placement;

@@ -27,7 +27,7 @@ pub(in crate::evaluate) const PHOSPHATE_BOND: f64 = 2.5;
 pub(in crate::evaluate) struct Residue {
     /// Author number and insertion code.
     pub number: Number,
-    /// Residue name with its chemical variants folded, so that equal strings mean the same residue (see [`kind`]).
+    /// Residue name without its chemical variants, so that equal strings mean the same residue (see [`kind`]).
     pub kind: String,
     /// Coordinates of the backbone atoms, in the order of [`BACKBONE_ATOMS`], in Å; `None` where the file has none.
     pub backbone: [Option<Point3<f64>>; BACKBONE_ATOMS.len()],

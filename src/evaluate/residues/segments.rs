@@ -1,4 +1,4 @@
-//! Where one chain ends and another begins under one name.
+//! Boundaries of chains that share one name.
 //!
 //! Many programs write several chains under one name: an antibody's H and L, both partners of a complex, the two
 //! strands of a duplex. A new segment begins
@@ -6,11 +6,11 @@
 //! - where a residue number comes again, or falls;
 //! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every
 //!   gap;
-//! - where the backbone is broken though the numbers leave no room for what would be missing: consecutive numbers
-//!   whose C and N (O3' and P) are not bonded, or ends too far apart for the residues that the numbers leave out;
+//! - where the backbone is broken though the numbers leave no room for unresolved residues: C and N (O3' and P) of
+//!   consecutive numbers are not bonded, or the gap is too wide for the residues that the numbers leave out;
 //! - where a nucleic acid follows a protein, or the reverse;
-//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 keep merged chains
-//!   apart (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
+//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 distinguish merged
+//!   chains (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
 //!
 //! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers
 //! within a chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a
@@ -57,7 +57,7 @@ const FIVE_PRIME_OXYGEN: usize = 10;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Link {
     Bonded,
-    /// So far apart, in Å; a missing residue spans at most so much.
+    /// Distance in Å, and the most that a missing residue spans, in Å.
     Distant(f64, f64),
     /// The atoms that would show it are not in the file.
     Unknown,
@@ -235,7 +235,7 @@ mod tests {
             segments.map(|segment| segment.members.len()).collect()
         };
         assert_eq!(sizes((1..=30).chain(1001..=1025).collect()), [30, 25]);
-        // A loop of 99 missing residues, and a tag of five: one chain.
+        // A loop of 99 residues that the file lacks, and a tag of five: one chain.
         assert_eq!(sizes((1..=30).chain(129..=150).collect()), [52]);
         assert_eq!(sizes((1..=30).chain(501..=505).collect()), [35]);
     }

@@ -122,9 +122,10 @@ pub enum PseudoAtomError {
     File(#[from] FileError),
 }
 
-/// Writes the balls as pseudo-atoms of a PDB file: HETATM records named `X` of residue `BAL`, a residue a ball, with
-/// the radius in the columns of the temperature factor and the weight in those of the occupancy. Three decimals are
-/// kept.
+/// Writes the balls as pseudo-atoms of a PDB file, with three decimals.
+///
+/// These are HETATM records named `X` of residue `BAL`, one residue for each ball. The radius is in the columns of
+/// the temperature factor and the weight in those of the occupancy.
 ///
 /// # Errors
 /// [`PseudoAtomError`] when a coordinate does not fit its columns or the file cannot be written.

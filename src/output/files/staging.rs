@@ -66,7 +66,7 @@ pub const TRADEOFF: Product = Product {
 /// Why output could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum StagingError {
-    /// The directory holds a run and overwriting it was not asked for.
+    /// The directory holds a run, and overwriting it was not requested.
     #[error("{} already holds a run", .0.display())]
     ExistingRun(PathBuf),
     /// Another process is writing its run there.
@@ -142,8 +142,9 @@ impl Staging {
     /// Makes `directory` if there is none and the staging folder in it, which also shows that it can be written to.
     ///
     /// # Errors
-    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is there
-    /// no run has written, [`StagingError::Busy`] when another run is being written there, [`StagingError::Write`] when nothing can be.
+    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is
+    /// there no run has written, [`StagingError::Busy`] when another run is being written there,
+    /// [`StagingError::Write`] when nothing can be.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
         Self::of(&RUN, directory, force)
     }

@@ -68,8 +68,9 @@ impl FileError {
     }
 }
 
-/// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the
-/// process under such a name, which may be a regular file (`/dev/stdout`, redirected).
+/// Whether a name stands for something that is written to in place, such as a device or a pipe.
+///
+/// A name that the system gives to the process counts too. It may be a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
     let is_own = path.starts_with("/proc")
         || path.starts_with("/dev/fd")

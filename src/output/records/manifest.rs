@@ -124,7 +124,7 @@ pub struct Machine {
     pub adapter: Option<Adapter>,
     /// The command line.
     pub command: Vec<String>,
-    /// What the plan was chosen by, where an accuracy or a time was asked for.
+    /// The basis of the plan, where an accuracy or a time was requested.
     pub chosen: Option<Chosen>,
 }
 
@@ -164,7 +164,7 @@ pub struct Manifest<'a> {
 pub struct ManifestParts<'a> {
     /// The input files.
     pub inputs: &'a Inputs,
-    /// What was asked for.
+    /// What was requested.
     pub options: &'a DockOptions,
     /// What was planned.
     pub plan: &'a DockPlan,

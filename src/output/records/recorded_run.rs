@@ -138,8 +138,8 @@ impl RecordedRun {
         (self.version.as_str(), self.commit.as_str()) == (VERSION, COMMIT)
     }
 
-    /// Whether it asked the same of the same: files of the same content wherever they lie, the same chains of them,
-    /// and the same options, those of the machine aside.
+    /// Whether it is the same request: files of the same content (wherever they lie), the same chains of them, and
+    /// the same options except those of the machine.
     pub fn asks(
         &self,
         [receptor, ligand]: [&InputRecord; 2],

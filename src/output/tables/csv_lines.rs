@@ -1,4 +1,4 @@
-//! Lines of a CSV file by which faults in it are told.
+//! Line numbers of a CSV file, by which faults in it are reported.
 
 /// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty
 /// lines and, where a byte begins comments, over theirs.

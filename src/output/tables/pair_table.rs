@@ -69,9 +69,9 @@ impl PairTableError {
 /// then at least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all
 /// are (`rings`).
 ///
-/// Spreadsheets save what they call CSV in several ways: columns are separated by whichever of comma, semicolon and
-/// tab the header has most of, or by the one that a first line `sep=;` names; a byte order mark is passed over;
-/// column names may have capital letters, and blanks or `-` for `_`.
+/// Spreadsheets save what they call CSV in several ways. Columns are separated by whichever of comma, semicolon and
+/// tab the header has most of, or by the one that a first line `sep=;` names. A byte order mark is skipped. Column
+/// names may have capital letters, and blanks or `-` for `_`.
 ///
 /// # Errors
 /// [`PairTableError`].

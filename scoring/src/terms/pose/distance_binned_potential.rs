@@ -37,7 +37,8 @@ impl DistanceBinnedPotential {
     /// each type.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and symmetric.
+    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and
+    /// symmetric.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let mut lines = table_lines(text);
         header(&mut lines, "range,")?;

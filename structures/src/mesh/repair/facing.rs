@@ -17,7 +17,7 @@ use crate::mesh::repair::nesting::containers;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::neighbours::cell::{Cell, around, cell_of};
 
-/// How far apart the borders of two pieces of one surface are at most, about, as a share of the mesh's longest side.
+/// Largest distance, about, between the borders of two pieces of one surface, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
 
 /// What was found of the surfaces, and done to them.

@@ -76,7 +76,7 @@ impl Molecule {
         Some(squared_distance(c.position, n.position).sqrt())
     }
 
-    /// Whether one chain ends and another begins between two peptide residues in a row.
+    /// Whether two peptide residues in a row belong to different chains.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
         let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number, ..) = before.key;

@@ -55,7 +55,7 @@ const GLYCANS: [&str; 30] = [
     "LAT", "TRE", "NGS", "M6P",
 ];
 
-/// Elements whose ions count as metals; everything not listed is none.
+/// Elements whose ions count as metals; no other counts.
 pub(crate) const NON_METALS: [&str; 22] = [
     "H", "D", "He", "B", "C", "N", "O", "F", "Ne", "Si", "P", "S", "Cl", "Ar", "As", "Se", "Br",
     "Kr", "Te", "I", "Xe", "At",
@@ -142,8 +142,8 @@ pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
         .collect()
 }
 
-/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers begin
-/// again, residues that share a key stay apart.
+/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers
+/// begin again, residues that share a key stay separate.
 pub(crate) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut runs = Vec::new();
     let mut first = 0;

@@ -69,7 +69,7 @@ pub fn read_bytes(
     read_telling(spec, bytes, options, &mut |_, _| {})
 }
 
-/// As [`read`], with every atom of the model listed in file order, kept or dropped.
+/// Reads like [`read`], and returns the fate of every atom of the model in file order, kept or dropped.
 ///
 /// # Errors
 /// As [`read`].

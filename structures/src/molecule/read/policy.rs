@@ -130,13 +130,13 @@ pub enum Waters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Hetatm {
-    /// Listed buffer and cryo additives are dropped (whatever their record), all else is kept.
+    /// Known buffer and cryo additives are dropped (whatever their record), all else is kept.
     #[default]
     NoAdditives,
     /// All are kept.
     Keep,
-    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their
-    /// record.
+    /// All are dropped but modified amino acids: residues with N, CA and C. Known additives are dropped whatever
+    /// their record.
     Drop,
 }
 

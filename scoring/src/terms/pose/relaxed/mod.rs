@@ -2,8 +2,8 @@
 //!
 //! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy
 //! that penalises overlap says little about a pose as it stands. It says more about one half an Ångström beside it.
-//! [`Relaxation`] finds that pose by steepest descent, as rigid-body minimisation does before poses are ranked by
-//! force fields (Li, Chen & Weng, Proteins 53 (2003) 693-707).
+//! [`Relaxation`] finds that pose by steepest descent. Rigid-body minimisation does the same before force fields rank
+//! poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
 
 mod descent;
 #[cfg(test)]
@@ -51,11 +51,11 @@ const SOFT_CORE_STIFFNESS: f64 = 0.2;
 /// file keeps them.
 const HYDROGEN: f64 = 1.15;
 
-/// Distance in Å beyond the reach up to which pairs are listed: the interface moves by at most [`FARTHEST`].
+/// Distance in Å beyond the reach up to which pairs are collected: the interface moves by at most [`FARTHEST`].
 ///
 /// A descent may miss pairs that a long arm brings within reach. The final energy is the whole sum.
 const SLACK: f64 = FARTHEST + 0.6;
-/// Number of listed atoms that are sorted by distance at a time.
+/// Number of collected atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
 /// Least radius in Å about which an interface rotates.
 const MIN_RADIUS: f64 = 3.0;
@@ -259,7 +259,7 @@ impl Relaxation {
         Some((middle, spread.sqrt().max(MIN_RADIUS)))
     }
 
-    /// Energy and gradient over the listed pairs, with the arms rotated by `turn` about `place`.
+    /// Energy and gradient over the collected pairs, with the arms rotated by `turn` about `place`.
     #[inline(always)]
     fn slope(
         &self,
