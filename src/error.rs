@@ -24,7 +24,7 @@ pub enum SearchError {
         /// Its range.
         bound: String,
     },
-    /// A requested effect for which the inputs hold nothing.
+    /// A requested effect for which the inputs lack data.
     #[error("there can be no {effect}: {reason}")]
     Effect {
         /// The effect.
