@@ -29,7 +29,7 @@ pub enum SearchError {
     Effect {
         /// The effect.
         effect: Effect,
-        /// What is missing.
+        /// The missing data.
         reason: String,
     },
     /// Two rings requested of a molecule that is not a ring.
@@ -81,7 +81,7 @@ pub enum SearchError {
 }
 
 impl SearchError {
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
             Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),

@@ -29,7 +29,7 @@ use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
-    assumed, error_warning, few_rotations_warning, regions_text, outcome_text,
+    assumed, error_warning, few_rotations_warning, outcome_text, regions_text,
 };
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::timings::timings_text;

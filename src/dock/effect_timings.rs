@@ -1,4 +1,4 @@
-//! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and
+//! Timings of the effects: the fields of the compressed functions that it adds, and the time of a rotation with and
 //! without it.
 
 use crate::dock::effect_decisions::Decision;

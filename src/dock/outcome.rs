@@ -1,4 +1,4 @@
-//! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
+//! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
@@ -113,7 +113,7 @@ impl MeasuredError {
     }
 }
 
-/// What one term of the score cost.
+/// Cost of one term of the score.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectCost {
     /// The term.
@@ -160,9 +160,9 @@ pub struct DockOutcome {
     pub rank: usize,
     /// Error of the compressed functions at the probe rotations, relative to their best score.
     pub rank_error: f64,
-    /// What each term cost.
+    /// Cost of each term.
     pub effects: Vec<EffectCost>,
-    /// What a finer search about the best rotations covered, where one was requested.
+    /// Coverage of a finer search about the best rotations, where one was requested.
     pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,

@@ -181,7 +181,7 @@ fn dock_in<T: Real>(
     })
 }
 
-/// What a run computes with.
+/// Engines and scorers of a run.
 struct Prepared<T: Real> {
     spectra: ReceptorSpectra<T>,
     engine: ScanEngine<T>,
@@ -214,13 +214,13 @@ impl<T: Real> Prepared<T> {
     }
 }
 
-/// What a search found.
+/// Peaks that a search found, and its timings.
 struct Found {
     /// The best peaks, best first.
     peaks: Vec<Peak>,
     /// Rotations of the set that were searched.
     searched: usize,
-    /// What a finer search covered.
+    /// Coverage of a finer search.
     fine: Option<FineSearched>,
 }
 

@@ -51,7 +51,7 @@ pub struct Scene {
     pub terms: Vec<Term>,
     /// One decision for each effect, in the order of [`Effect::ALL`].
     pub decisions: Vec<Decision>,
-    /// What was assumed in labelling receptor and ligand.
+    /// Assumptions in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
     /// Residues that should be in contact.
     pub active: ActiveResidues,

@@ -67,7 +67,7 @@ const MIN_INTERFACE_SHARE: f64 = 0.5;
 /// Fewest backbone atoms that fix a superposition.
 const MIN_ATOMS: usize = 3;
 
-/// How near a pose is to the native. All numbers are finite.
+/// Quality of a pose against the native. All numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseQuality {
     /// Interface RMSD, in Å.
@@ -156,7 +156,7 @@ impl Evaluator {
         })
     }
 
-    /// What was matched with what.
+    /// Report on the matching.
     pub fn report(&self) -> &MatchReport {
         &self.report
     }
@@ -219,7 +219,7 @@ fn arrange(
     Ok((Arrangement { rmsds, contacts }, report))
 }
 
-/// What was matched of receptor and ligand.
+/// Report on the matching of receptor and ligand.
 fn side_matches(
     [receptor, ligand]: [&Residues; 2],
     way: &Way,

@@ -10,7 +10,7 @@ const GOOD_DOCKED_SHARE: f64 = 0.7;
 /// Backbone RMSD in Å of a docked side with the native's above which it is.
 const GOOD_FIT: f64 = 5.0;
 
-/// How a chain's residues were matched.
+/// Method by which a chain's residues were matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MatchMethod {

@@ -53,7 +53,7 @@ pub(super) struct Rmsds {
     pub ligand: f64,
 }
 
-/// What the RMSDs of any pose are computed from.
+/// Data from which the RMSDs of any pose are computed.
 #[derive(Clone, Debug)]
 pub(super) struct RmsdForms {
     receptor: Superposition,

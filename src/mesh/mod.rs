@@ -49,12 +49,12 @@ pub const RESOLUTION: f64 = 4.5 / 2.2;
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 /// Widest cell of the lattice in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
-/// What plays the part of an Ångström, in offsets.
+/// Length that stands for one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 
-/// How two meshes are sampled. Lengths in the files' unit.
+/// Options on sampling two meshes. Lengths in the files' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions {
     /// Nodes along each edge of each part's grid, n = m^(1/3).
@@ -134,7 +134,7 @@ impl MeshSceneError {
         }
     }
 
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Sample { .. } => {

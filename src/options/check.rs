@@ -1,4 +1,4 @@
-//! What no run can do, refused: values out of range, and options that do not go together.
+//! Checks of options. They refuse values out of range, and options that do not go together.
 
 use super::definition::{Definition, Scope};
 use super::text::{self, OptionError};

@@ -1,4 +1,4 @@
-//! What is read of a molecule.
+//! Options on reading molecules.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What the search correlates.
+//! Options on the score that the search correlates.
 
 use clap::Args;
 use knotdock_scoring::engine::EngineOptions;

@@ -120,7 +120,7 @@ impl Default for DockOptions {
     }
 }
 
-/// What is known of each option, in their order.
+/// Definitions of all options, in their order.
 pub fn definitions() -> &'static [Definition] {
     static ALL: OnceLock<Vec<Definition>> = OnceLock::new();
     ALL.get_or_init(definitions_of::<DockOptions>)

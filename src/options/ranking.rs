@@ -1,4 +1,4 @@
-//! How poses become rows.
+//! Options on ranking: how poses become rows.
 
 use clap::Args;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What is known of the contacts.
+//! Options on known contacts.
 
 use clap::{Args, ValueEnum};
 use knotdock_structures::molecule::ResidueSelection;

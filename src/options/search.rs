@@ -1,4 +1,4 @@
-//! How densely and on what is searched.
+//! Options on the search: its density, and the hardware that it runs on.
 
 use clap::{Args, ValueEnum};
 use knotdock_scoring::symmetry::Symmetry;

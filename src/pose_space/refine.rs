@@ -19,7 +19,7 @@ pub struct AscentLimits {
     pub angle: f64,
     /// Radius of gyration of the ligand, Å: an angle times this is a length, so that both kinds of step compare.
     pub gyration: f64,
-    /// What plays the part of an Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
+    /// Length that stands for one Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
     pub angstrom: f64,
 }
 

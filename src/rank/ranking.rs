@@ -26,14 +26,14 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
-/// What rows of the table are scored by.
+/// Scorer of the table's rows.
 #[derive(Clone, Copy)]
 pub(crate) struct PoseScorer<'a> {
     /// The exact score.
     pub scorer: &'a ExactScorer,
-    /// What poses are rescored with.
+    /// Terms that rescore poses.
     pub rescorer: Option<&'a Rescorer>,
-    /// Which effects are on, by effect.
+    /// Effects that are on.
     pub on: [bool; Effect::ALL.len()],
     /// The poses that are searched.
     pub space: &'a PoseSpace,
@@ -41,7 +41,7 @@ pub(crate) struct PoseScorer<'a> {
     pub cluster_temperature: f64,
 }
 
-/// What is reported of the ranking.
+/// Reported facts of the ranking.
 pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
@@ -144,7 +144,7 @@ pub(crate) fn report(
     }
 }
 
-/// What the run's kept poses score on the whole.
+/// Distribution of the scores of the run's kept poses.
 struct Background {
     mean: f64,
     /// Nothing where scores differ by no more than the fast path may be off by.

@@ -1,4 +1,4 @@
-//! How many poses there is time to rescore and score until a deadline.
+//! Number of poses that can be rescored and scored before a deadline.
 //!
 //! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is
 //! done, on the machine as it then is, and the poses that scored least are left out where time is short.

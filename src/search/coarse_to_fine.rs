@@ -18,7 +18,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What a finer search covered.
+/// Coverage of a finer search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FineSearched {
     /// Rotations of the finer set that were searched.

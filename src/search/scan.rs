@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// What a scan found.
+/// Peaks that a scan found.
 pub(crate) struct Scanned {
     /// The best peaks, best first.
     pub peaks: Vec<Peak>,

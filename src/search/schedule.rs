@@ -1,4 +1,4 @@
-//! Which rotations are searched, in which order, and until when.
+//! Schedule of the rotations: which are searched, in which order, and until when.
 //!
 //! A search within a time stops between two rotations. What it has searched by then is the first part of an order in
 //! which every first part covers all orientations about evenly. The number of these rotations is recorded: searched

@@ -1,4 +1,4 @@
-//! Which setting to take, in words.
+//! Advice on which setting to take.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ const DOUBLING: f64 = 0.1;
 /// Share of the reference's rows that a setting may find fewer of than the default and still keep the answer.
 const KEEPS: f64 = 0.05;
 
-/// What to take, and what it gives up.
+/// Recommended setting, and what it gives up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
     /// The setting to take.

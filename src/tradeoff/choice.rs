@@ -15,7 +15,7 @@ pub const MIN_ROTATIONS: usize = 600;
 /// Most: 6 degrees, beyond which rotations cost time and find nothing.
 pub const MAX_ROTATIONS: usize = 56_250;
 
-/// What was wanted.
+/// The expected content.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Error of the fast path, rms over the best grid poses, as a share of the best score.
@@ -24,7 +24,7 @@ pub struct Wanted {
     pub budget: Option<f64>,
 }
 
-/// What was chosen, and what it is expected to cost and to give.
+/// The chosen setting, with its expected cost and quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// Error that was requested.
@@ -48,7 +48,7 @@ pub enum ChoiceError {
     /// More accuracy than there is.
     #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
     Accuracy {
-        /// What was wanted.
+        /// The expected content.
         wanted: f64,
         /// The least error.
         least: f64,
@@ -68,7 +68,7 @@ pub enum ChoiceError {
 }
 
 impl ChoiceError {
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
             Self::Pair(error) => error.remedy(),

@@ -1,4 +1,4 @@
-//! What a docking will cost and how far off its fast path will be, before it runs.
+//! Cost model: the expected time of a docking and the expected error of its fast path.
 //!
 //! # Time
 //!
@@ -156,7 +156,7 @@ impl CostModel {
     }
 }
 
-/// How much there is to do in a run.
+/// Amount of work in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Workload {
     /// N log2 N of the grid's N points.

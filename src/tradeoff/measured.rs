@@ -1,4 +1,4 @@
-//! What a sweep measures of each setting.
+//! Measurements of each setting of a sweep.
 //!
 //! - **Time** by stage, on the clock and of all processors.
 //! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking
@@ -20,7 +20,7 @@ use crate::tradeoff::settings::{Refused, Setting};
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
 
-/// How a setting ranks poses near the known complex, by rows of its table.
+/// Ranks of poses near the known complex, by rows of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NativeRanks {
     /// Rank of the first acceptable pose ([`Criterion`](crate::evaluate::Criterion)).
@@ -33,7 +33,7 @@ pub struct NativeRanks {
     pub near_native: usize,
 }
 
-/// What a setting was measured to cost and to give.
+/// Measured cost and quality of a setting.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The setting.

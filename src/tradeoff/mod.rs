@@ -1,4 +1,4 @@
-//! What accuracy costs in time: settings around a default, each run and measured, and which of them is worth taking.
+//! Tradeoff of accuracy and time: settings around a default, each run and measured, and which of them is worth taking.
 //!
 //! # Conventions
 //!

@@ -9,7 +9,7 @@ use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// What a setting changes of the default.
+/// Change of the default that a setting makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// Nothing.

@@ -1,4 +1,4 @@
-//! Where a single file may be written: never over one that is read, and over another only on request.
+//! Checks of an output file: never over one that is read, and over another only on request.
 
 use std::path::{Path, PathBuf};
 

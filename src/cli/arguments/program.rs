@@ -1,4 +1,4 @@
-//! What every command line of the program has.
+//! Options that every command has.
 
 use clap::{Args, Command};
 

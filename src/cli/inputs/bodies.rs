@@ -159,8 +159,8 @@ impl Bodies {
                     alpha: options.kernel.alpha,
                 };
                 let solids = inputs.each_ref().map(|input| &input.solid);
-                let sampling =
-                    Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
+                let sampling = Sampling::of(solids, &sampling)
+                    .map_err(|error| mesh_failure(&error, inputs))?;
                 sampling.pair.defaults(options, given);
                 console.say(sampling_text(&sampling.pair));
                 PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
@@ -259,7 +259,7 @@ fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
     }
 }
 
-/// How meshes were sampled.
+/// Report on the sampling of the meshes.
 fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
         let weights = match &part.weights {

@@ -1,4 +1,4 @@
-//! What `knotdock sample` says of a sampled solid.
+//! Report of `knotdock sample` on a sampled solid.
 
 use knotdock::output::tables::report;
 use knotdock_structures::mesh::{Figure, Solid};
@@ -145,7 +145,7 @@ impl<'a> SampleReport<'a> {
         )
     }
 
-    /// How a level of detail fits, for a person.
+    /// Fit of a level of detail, as text.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
             "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward",
@@ -196,7 +196,7 @@ impl<'a> SampleReport<'a> {
         .collect()
     }
 
-    /// How balls fit the solid, for a program.
+    /// Fit of the balls to the solid, as JSON.
     pub fn fit(&self, fit: &Fit) -> Value {
         json!({
             "hausdorff_inward": fit.hausdorff_inward * self.unit,
@@ -221,7 +221,7 @@ fn set_name(name: SetName) -> &'static str {
     }
 }
 
-/// What fitting the weights did.
+/// Report on the fitted weights.
 pub(super) fn weights_text(fitted: &FittedWeights) -> String {
     format!(
         "Weights: summed bumps (alpha {}) are off one inside by {:.3} rms with weights of one and by {:.3} with those fitted; their \

@@ -1,4 +1,4 @@
-//! Which copies of the native are the complex that poses are measured by.
+//! Choice of the native's copies: the complex by which poses are measured.
 //!
 //! A crystal's file holds several complexes, and neighbours that only touch in the crystal. Each side's
 //! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination

@@ -40,7 +40,10 @@ pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec
         .map(|pair| {
             let superposition =
                 Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()));
-            Candidate { pair, superposition }
+            Candidate {
+                pair,
+                superposition,
+            }
         })
         .collect();
     let size = |candidate: &Candidate| candidate.pair.pairs.len();

@@ -11,10 +11,10 @@ pub(in crate::evaluate) const BACKBONE_ATOMS: [&str; 16] = [
     "C5'",
 ];
 
-/// What a residue is called in its file: number and insertion code.
+/// Identifier of a residue in its file: number and insertion code.
 pub(in crate::evaluate) type Number = (i64, Option<char>);
 
-/// How many of the [`BACKBONE_ATOMS`] are of proteins.
+/// Number of the [`BACKBONE_ATOMS`] that are of proteins.
 const OF_PROTEINS: usize = 4;
 /// Places of P and O3' among the [`BACKBONE_ATOMS`].
 pub(in crate::evaluate) const PHOSPHORUS: usize = 4;

@@ -53,7 +53,7 @@ const CARBON: usize = 1;
 const NITROGEN: usize = 2;
 const FIVE_PRIME_OXYGEN: usize = 10;
 
-/// How two residues in a row are joined.
+/// Link between two residues in a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Link {
     Bonded,
@@ -63,7 +63,7 @@ enum Link {
     Unknown,
 }
 
-/// How `after` is joined to `before`.
+/// Link from `before` to `after`.
 fn link(before: &Residue, after: &Residue) -> Link {
     let measured = |from: usize, to: usize| {
         let ends = before.backbone[from].zip(after.backbone[to]);

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use crate::output::files::exclusive::ExclusiveLock;
 use crate::output::files::whole_file::{FileError, PARTIAL};
 
-/// What a command puts into its directory.
+/// Files that a command puts into its directory.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Product {
     /// The entries, in the order in which they are moved there.
@@ -51,13 +51,13 @@ impl Product {
     }
 }
 
-/// What `knotdock dock` leaves.
+/// Files of `knotdock dock`.
 pub const RUN: Product = Product {
     entries: &["top", "poses.csv", "run.json"],
     record: "run.json",
 };
 
-/// What `knotdock tradeoff` leaves.
+/// Files of `knotdock tradeoff`.
 pub const TRADEOFF: Product = Product {
     entries: &["tradeoff.svg", "tradeoff.csv", "tradeoff.json"],
     record: "tradeoff.json",
@@ -88,7 +88,7 @@ pub enum StagingError {
 }
 
 impl StagingError {
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::ExistingRun(_) => {
@@ -127,7 +127,7 @@ pub struct Staging {
 /// The file in the staging folder that a run locks.
 const LOCK: &str = "lock";
 
-/// How far a staging has come, which says what its end has to tidy up.
+/// Progress of a staging, which decides what its end has to remove.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     /// Being filled: the folder goes, and the directory if it was made for it.

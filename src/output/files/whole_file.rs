@@ -17,7 +17,7 @@ pub enum FileError {
     Unwritable {
         /// The file or directory.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// A file could not be written although it could be made: a full disk, for instance.
@@ -25,7 +25,7 @@ pub enum FileError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
 }
@@ -47,7 +47,7 @@ impl FileError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Unwritable { .. } => "name a place that you may write to",

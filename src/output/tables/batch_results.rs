@@ -44,7 +44,7 @@ pub struct PairResult {
     pub outcome: Option<Result<RunSummary, String>>,
 }
 
-/// What a batch reports of a run.
+/// Report of a batch on one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSummary {
     /// Poses kept and clusters among them, as run.json has them.

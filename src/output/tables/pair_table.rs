@@ -35,7 +35,7 @@ pub enum PairTableError {
         path: PathBuf,
         /// 1-based line, where known.
         line: Option<u64>,
-        /// What is wrong.
+        /// The fault, in words.
         message: String,
     },
     /// The file cannot be opened.
@@ -43,7 +43,7 @@ pub enum PairTableError {
     Open {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
 }

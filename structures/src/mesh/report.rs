@@ -1,4 +1,4 @@
-//! What a mesh file held and how sound its surface is.
+//! Report on a mesh file: its content, and the faults of its surface.
 
 use std::fmt;
 
@@ -71,7 +71,7 @@ pub struct MeshReport {
     pub high: [f64; 3],
 }
 
-/// What reading altered.
+/// Report on what reading altered.
 pub(super) struct Altered {
     /// Triangles dropped with two corners in one place.
     pub collapsed: usize,

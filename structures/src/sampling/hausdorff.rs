@@ -1,4 +1,4 @@
-//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
+//! Fit of a set of balls to a solid: Hausdorff distances of the solids both ways, and volumes missed and
 //! outside.
 //!
 //! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of the
@@ -29,7 +29,7 @@ use crate::sampling::outward::farthest;
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
-/// What [`HausdorffMeter::measure`] measures. Lengths and volumes are in the solid's unit and its cube.
+/// Result of [`HausdorffMeter::measure`]. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Farthest distance of a point of the solid from the balls.
@@ -284,7 +284,7 @@ impl<'a> HausdorffMeter<'a> {
         farthest.get()
     }
 
-    /// How far a ball is seen to reach out of the solid, and how far it can.
+    /// Distance of a ball outside of the solid: measured, and its upper bound.
     fn outward(&self, ball: &Ball) -> (f64, f64) {
         let nearest = self.solid.nearest(ball.center);
         let away = distance(nearest, ball.center);

@@ -1,4 +1,4 @@
-//! How far balls reach out of a solid: searched on their spheres.
+//! Largest distance of the balls outside of a solid, by a search on their spheres.
 //!
 //! The distance to the solid changes along a sphere by no more than one walks on it. So a patch of the sphere holds
 //! no point farther than d + s, if its middle is a distance d from the solid and none of its points is farther than s

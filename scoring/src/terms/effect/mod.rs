@@ -78,7 +78,7 @@ impl std::fmt::Display for Effect {
     }
 }
 
-/// What a search effect is called, what it reads, and its term.
+/// Definition of a search effect: its name, what it reads, and its term.
 #[derive(Debug)]
 pub struct EffectDefinition {
     /// Name on the command line, in tables and in JSON: lower case with `_` between words.
@@ -87,7 +87,7 @@ pub struct EffectDefinition {
     pub of_meshes: &'static str,
     /// Number of components of the compressed functions that it takes at the default tolerance (cost model).
     pub components: f64,
-    /// What the inputs lack for it; `None` if they hold what it reads.
+    /// Data that the inputs lack for it; `None` if they hold what it reads.
     pub lacks: fn(&EffectInputs) -> Option<String>,
     /// Reason that it is on, where the inputs lack nothing.
     pub reason: fn(&EffectInputs) -> String,

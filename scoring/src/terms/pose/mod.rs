@@ -73,7 +73,7 @@ pub trait PoseTerm: Send + Sync {
     fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64;
 }
 
-/// What a pose term is called, what it reads, and how it is prepared.
+/// Definition of a pose term: its name, what it reads, and how it is prepared.
 #[derive(Debug)]
 pub struct TermDefinition {
     /// Name in columns, JSON and scripts: lower case with `_` between words.

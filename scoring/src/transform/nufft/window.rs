@@ -76,7 +76,7 @@ impl<T: Real> Window<T> {
     }
 }
 
-/// What a window costs in accuracy.
+/// Error of a window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quality {
     /// The Kaiser-Bessel parameter.

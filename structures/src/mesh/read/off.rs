@@ -24,7 +24,7 @@ pub fn begins(text: &str) -> bool {
     first.is_some_and(|line| keyword(line.text).is_some())
 }
 
-/// How words are to be taken.
+/// Interpretation of words.
 #[derive(Clone, Copy)]
 struct Shape {
     /// Numbers after the coordinates of each vertex, in a stream.

@@ -1,4 +1,4 @@
-//! Which way surfaces face: what faces inward is turned, but for the walls of cavities.
+//! Orientation of surfaces: what faces inward is turned, but for the walls of cavities.
 //!
 //! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another. A piece of a
 //! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a surface

@@ -61,7 +61,7 @@ pub(crate) const NON_METALS: [&str; 22] = [
     "Kr", "Te", "I", "Xe", "At",
 ];
 
-/// What distinguishes a residue from all others in a file: chain, number, insertion code, name.
+/// Key of a residue in a file: chain, number, insertion code, name.
 pub(crate) type ResidueKey<'a> = (&'a str, i64, Option<char>, &'a str);
 
 /// The residue that an atom belongs to.

@@ -37,7 +37,7 @@ pub enum ReadError {
     Unreadable {
         /// The path as given.
         file: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
     /// The gzip stream is cut short or damaged.
@@ -117,7 +117,7 @@ pub enum ReadError {
         file: PathBuf,
         /// 1-based line where it shows.
         line: usize,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
     /// The atom table of an mmCIF file lacks a column that cannot be done without.
@@ -205,7 +205,7 @@ pub enum ReadError {
         file: PathBuf,
         /// 1-based line where it shows, where there is one.
         line: Option<usize>,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
     /// Every atom was dropped: hydrogens, waters and additives only, or what the policies leave out besides.
@@ -290,7 +290,7 @@ impl ReadError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Specification { .. } | Self::Unnamed { .. } => {

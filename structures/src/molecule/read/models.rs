@@ -21,7 +21,7 @@ const CELL: f64 = 2.0;
 /// another.
 const MAX_SHARED: f64 = 0.05;
 
-/// What the models of a file are to one another.
+/// Relation between the models of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
     /// There is but one.

@@ -10,7 +10,7 @@ use crate::molecule::read::record_filter::provenance::Provenance;
 /// Alternate location given to pdbtbx for atoms that have none, so that it does not copy them into other conformers.
 pub(crate) const NO_ALTERNATE: char = '~';
 
-/// What travels past pdbtbx for one atom.
+/// Data of one atom that bypass pdbtbx.
 #[derive(Clone, Debug)]
 pub(crate) struct AtomRecord {
     pub(crate) line: usize,
