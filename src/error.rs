@@ -29,7 +29,7 @@ pub enum SearchError {
     Effect {
         /// The effect.
         effect: Effect,
-        /// The missing data.
+        /// What the inputs lack.
         reason: String,
     },
     /// Two rings requested of a molecule that is not a ring.

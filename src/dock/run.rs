@@ -181,7 +181,7 @@ fn dock_in<T: Real>(
     })
 }
 
-/// Engines and scorers of a run.
+/// Prepared engine, spectra and scorer of a run.
 struct Prepared<T: Real> {
     spectra: ReceptorSpectra<T>,
     engine: ScanEngine<T>,
@@ -214,7 +214,7 @@ impl<T: Real> Prepared<T> {
     }
 }
 
-/// Peaks that a search found, and its timings.
+/// Peaks of a search, with its coverage and errors.
 struct Found {
     /// The best peaks, best first.
     peaks: Vec<Peak>,

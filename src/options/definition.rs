@@ -1,4 +1,4 @@
-//! Definitions of all options: its name, subject, scope, help and default.
+//! Definitions of all options: name, subject, scope, help and default.
 //!
 //! All of it is read off the command line that clap derives from the structs of options.
 

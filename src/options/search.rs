@@ -43,8 +43,8 @@ pub struct SearchOptions {
     pub refine: Option<usize>,
     /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies about an
     /// axis. Where RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings face to
-    /// face. `--rotations` then counts axes, and each pose is where the second copy or ring goes. Residues that
-    /// --block-receptor and --active-receptor name are those of every copy, or of both rings.
+    /// face. The option --rotations then counts axes, and each pose is where the second copy or ring goes. Residues
+    /// that --block-receptor and --active-receptor name are those of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn")]
     pub symmetry: Option<Symmetry>,
 }

@@ -61,7 +61,7 @@ impl VariableKind {
 /// A variable domain of an antibody.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VariableDomain {
-    /// Chain that it belongs to.
+    /// Kind of the chain that it belongs to.
     pub kind: VariableKind,
     /// The file's name of the chain that it stands in; may be empty.
     pub chain: String,
@@ -72,7 +72,7 @@ pub struct VariableDomain {
     pub cdrs: [Vec<String>; 3],
 }
 
-/// An antibody's type and binding site.
+/// An antibody: its variable domains and its binding site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Antibody {
     /// Its variable domains, in file order.

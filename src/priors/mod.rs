@@ -46,7 +46,7 @@ pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
     sites.flatten().collect()
 }
 
-/// Report of `knotdock inspect` on a molecule.
+/// Sites found in a molecule, for the report of `knotdock inspect`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Findings {
     /// The entry in JSON.

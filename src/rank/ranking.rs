@@ -41,7 +41,7 @@ pub(crate) struct PoseScorer<'a> {
     pub cluster_temperature: f64,
 }
 
-/// Reported facts of the ranking.
+/// The ranked rows, and the number of clusters.
 pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
@@ -144,7 +144,7 @@ pub(crate) fn report(
     }
 }
 
-/// Distribution of the scores of the run's kept poses.
+/// Mean and spread of the scores of the run's kept poses.
 struct Background {
     mean: f64,
     /// Nothing where scores differ by no more than the fast path may be off by.

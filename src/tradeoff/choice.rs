@@ -15,7 +15,7 @@ pub const MIN_ROTATIONS: usize = 600;
 /// Most: 6 degrees, beyond which rotations cost time and find nothing.
 pub const MAX_ROTATIONS: usize = 56_250;
 
-/// The expected content.
+/// Requested accuracy and time of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Error of the fast path, rms over the best grid poses, as a share of the best score.
@@ -48,7 +48,7 @@ pub enum ChoiceError {
     /// More accuracy than there is.
     #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
     Accuracy {
-        /// The expected content.
+        /// The requested error.
         wanted: f64,
         /// The least error.
         least: f64,

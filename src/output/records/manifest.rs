@@ -103,7 +103,7 @@ pub struct Timing {
     pub peak_memory_bytes: Option<u64>,
 }
 
-/// Machine and threads of the run. Differs from machine to machine.
+/// Machine, threads and memory of the run. Differs from machine to machine.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
     /// Operating system.

@@ -59,7 +59,7 @@ pub struct BallSet {
 /// A step of sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Step {
-    /// Report on the steps.
+    /// Name of the step.
     pub name: &'static str,
     /// Wall time, in seconds.
     pub seconds: f64,

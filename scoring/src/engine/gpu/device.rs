@@ -26,7 +26,7 @@ pub enum GpuError {
     TooSmall {
         /// The adapter's name.
         adapter: String,
-        /// The missing data.
+        /// The missing feature or limit.
         what: String,
     },
     /// The driver reported an error.

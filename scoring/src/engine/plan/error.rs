@@ -29,7 +29,7 @@ pub enum PlanError {
     Term {
         /// The term.
         effect: Effect,
-        /// The value that does not fit.
+        /// The mismatch, in words.
         fault: &'static str,
     },
     /// A body's weights are so large or small that scores would leave the range of single precision.

@@ -93,7 +93,7 @@ impl Plan {
         self.axis_error
     }
 
-    /// Relation of radii to the lifted axis.
+    /// Functions of the radius on the lifted axis.
     pub fn basis(&self) -> &RadiusBasis {
         &self.basis
     }

@@ -23,7 +23,7 @@ pub struct Labels {
     pub report: LabelReport,
 }
 
-/// Assumptions in labelling a molecule.
+/// Report on labelling a molecule: totals and assumptions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LabelReport {
     /// Sum of all charges, in e.

@@ -103,7 +103,7 @@ impl Molecule {
         (!self.capped(caps, residue, name)).then_some(end.position)
     }
 
-    /// Junction of two peptide residues in a row. Residues that lack the atoms to tell are bonded.
+    /// Junction of two peptide residues in a row. Residues that lack the deciding atoms count as bonded.
     fn between(&self, before: &Residue<'_>, after: &Residue<'_>) -> Between {
         let ((chain, number, ..), (next_chain, next_number, ..)) = (before.key, after.key);
         let (Some(from), Some(to)) = (self.atom(before, "C"), self.atom(after, "N")) else {

@@ -1,4 +1,4 @@
-//! Report on reading a file: atoms kept, dropped, altered, warned of.
+//! Report on reading a file: what was kept, dropped and altered, and the warnings.
 
 use std::collections::BTreeMap;
 
@@ -226,7 +226,7 @@ pub enum ConfidenceSource {
 /// Confidence of a prediction of a molecule.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Confidence {
-    /// How it was known that the B column is pLDDT.
+    /// Source by which the B column was detected as pLDDT.
     pub source: ConfidenceSource,
     /// Mean pLDDT of the residues, 0 to 100, those that are left out among them.
     pub mean: f64,

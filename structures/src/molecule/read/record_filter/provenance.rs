@@ -48,7 +48,7 @@ impl ProvenanceItems {
         }
     }
 
-    /// The result of all lines.
+    /// Provenance by all records.
     pub(crate) fn provenance(&self) -> Provenance {
         match (self.measured, self.scored, self.by_plddt) {
             (true, ..) | (false, true, false) => Provenance::NoConfidence,
