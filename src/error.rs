@@ -141,7 +141,8 @@ impl SearchError {
             Self::Ring { symmetry, .. } => {
                 let folds = symmetry.folds().unwrap_or(1);
                 format!(
-                    "dock the single molecule with --symmetry C{folds} first and give a complex of that run, such as its top/rank_0001.pdb: copies one after \
+                    "dock the single molecule with --symmetry C{folds} first and give a complex of that run, \
+                     such as its top/rank_0001.pdb: copies one after \
                      another, each with all its chains"
                 )
             }

@@ -45,7 +45,8 @@ pub struct Dock {
     options: OptionArguments<OfDock>,
     /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to
     /// be within X: rms over the best grid poses, as a share of the best score.
-    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry", help_heading = WITHIN)]
+    #[arg(long, value_name = "X", value_parser = above_zero, help_heading = WITHIN)]
+    #[arg(conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry")]
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
     /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search

@@ -140,7 +140,7 @@ fn dockq_superposes_the_larger_side() {
     assert!((quality.lrmsd - smaller).abs() < 1e-9);
     assert!(
         smaller - backbone_shift(&ligand, &pose) > 5.0,
-        "the case must tell the two apart"
+        "the case must distinguish the two"
     );
     let (fnat, irmsd) = (quality.fnat, quality.irmsd);
     assert!((quality.dockq - dockq(fnat, irmsd, smaller)).abs() < 1e-12);

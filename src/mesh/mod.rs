@@ -2,9 +2,9 @@
 //!
 //! # Conventions
 //!
-//! Lengths are in the unit of the mesh files, which must be one. h is the spacing of a part's grid. eps = sqrt(3) h /
-//! 2 is the bound within which the sampler knows its surface ([`knotdock_structures::sampling::grid`]). A is the
-//! receptor, B the ligand.
+//! Lengths are in the unit of the mesh files, which must be one. The spacing of a part's grid is h. The value eps =
+//! sqrt(3) h / 2 is the bound within which the sampler knows its surface ([`knotdock_structures::sampling::grid`]). A
+//! is the receptor, B the ligand.
 //!
 //! # Why balls of one radius
 //!
@@ -98,7 +98,8 @@ pub enum MeshSceneError {
     },
     /// A part is thinner than the two grids resolve together.
     #[error(
-        "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of both parts) to which the two are sampled"
+        "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of both \
+         parts) to which the two are sampled"
     )]
     Thin {
         /// Which part.
@@ -146,10 +147,12 @@ impl MeshSceneError {
                 "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
             }
             Self::Thin { .. } => {
-                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut it down to what is near the joint"
+                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut \
+                 it down to what is near the joint"
             }
             Self::Offset { .. } => {
-                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; where one part is much larger than the \
+                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; \
+                 where one part is much larger than the \
                  other, cut it down to what is near the joint"
             }
         }

@@ -189,7 +189,8 @@ mod tests {
     /// The heavy chain of trastuzumab as CA atoms. It is an antibody also where all of it may bind.
     #[test]
     fn an_antibody_against_a_peptidase_may_be_anywhere() {
-        let sequence = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLRAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
+        let sequence = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLR\
+            AEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
         let names =
             "ALA CYS ASP GLU PHE GLY HIS ILE LYS LEU MET ASN PRO GLN ARG SER THR VAL TRP TYR";
         let names: Vec<&str> = names.split(' ').collect();

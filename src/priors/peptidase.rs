@@ -424,7 +424,8 @@ mod tests {
     /// Hen egg-white lysozyme, an enzyme that cuts no proteins; a residue without its CA; nothing at all.
     #[test]
     fn what_is_no_peptidase_has_none() {
-        let lysozyme = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSDITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
+        let lysozyme = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSD\
+            ITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
         let all: Vec<i64> = (1..130).collect();
         assert_eq!(sites(chain("A", lysozyme, 1, &all)), []);
         let mut atoms = chain("A", "AAHELGHSLGLSHS", 216, &[218, 219]);

@@ -1,7 +1,8 @@
 //! Clusters of poses by the ligand's RMSD, in closed form.
 //!
 //! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')).
-//! c1 and c2 are the images of the points' mean, and C is their covariance. The cost is O(1) for a pair of poses.
+//! Here c1 and c2 are the images of the points' mean, and C is their covariance. The cost is O(1) for a pair of
+//! poses.
 
 use crate::pose_space::equivalents::Equivalents;
 use knotdock_scoring::se3::Pose;

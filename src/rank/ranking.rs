@@ -332,7 +332,7 @@ mod tests {
     fn company_counts_among_molecules_and_not_among_meshes() {
         let scorer = scorer();
         let score = |x: f64| scorer.score_only(&at(x));
-        // The best distance of the two atoms, and five farther apart that score nearly as much.
+        // The best distance of the two atoms, and five larger distances that score nearly as much.
         let tenths = (30..60).map(|tenths| f64::from(tenths) / 10.0);
         let best = tenths
             .max_by(|a, b| score(*a).total_cmp(&score(*b)))

@@ -279,7 +279,8 @@ fn sampling_text(pair: &MeshPair) -> String {
         )
     });
     format!(
-        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one radius, so the kernel is the cone",
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one \
+         radius, so the kernel is the cone",
         pair.offset
     )
 }

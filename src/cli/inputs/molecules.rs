@@ -225,7 +225,8 @@ fn check_used<'a>(
             "--assembly is for files that describe their biological assemblies, and none does here",
         )
         .remedy(
-            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in _pdbx_struct_assembly_gen (mmCIF)",
+            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in \
+             _pdbx_struct_assembly_gen (mmCIF)",
         ));
     }
     if options.model != ModelChoice::default() && !several {

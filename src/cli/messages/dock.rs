@@ -111,7 +111,8 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
     }
     (worst > tolerance).then(|| {
         format!(
-            "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of {tolerance:e}: what is reported is exact, but \
+            "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of \
+             {tolerance:e}: what is reported is exact, but \
              other poses may have been missed; use a lower --tolerance or a finer --spacing than {:.4}",
             plan.spacing
         )

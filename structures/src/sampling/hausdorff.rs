@@ -1,10 +1,9 @@
-//! Fit of a set of balls to a solid: Hausdorff distances of the solids both ways, and volumes missed and
-//! outside.
+//! Fit of a set of balls to a solid: Hausdorff distances both ways, and volumes missed and outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of the
-//! surface no farther than eps / 10 apart, and over the inside points of a grid of 8 m points: every node moved by a
-//! quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either side are no
-//! points of it.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of
+//! the surface spaced by eps / 10 at most, and over the inside points of a grid of 8 m points. The grid is every node
+//! moved by a quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either
+//! side are not points of it.
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
 //! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to

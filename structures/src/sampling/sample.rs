@@ -27,7 +27,7 @@ pub enum Method {
     Voxels,
 }
 
-/// A set of balls.
+/// Name of a set of balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SetName {
@@ -48,7 +48,7 @@ pub enum SetName {
 /// A set of balls.
 #[derive(Clone, Debug)]
 pub struct BallSet {
-    /// Which.
+    /// Name of the set.
     pub name: SetName,
     /// The balls, in the solid's unit.
     pub balls: Vec<Ball>,

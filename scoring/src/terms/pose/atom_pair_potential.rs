@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Distances in Å at which the table holds energies, [`STEP`] apart.
+/// Distances in Å at which the table holds energies, spaced by [`STEP`].
 pub const DISTANCES: [f64; 6] = [3.25, 3.75, 4.25, 4.75, 5.25, 5.75];
 /// Distance in Å between them.
 pub const STEP: f64 = 0.5;

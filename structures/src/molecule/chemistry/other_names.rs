@@ -8,8 +8,8 @@
 //!   the termini included) is read so where no atom contradicts. Where it says the charge state, too, the state is
 //!   read: `ASPH` is neutral.
 //! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives
-//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); those
-//!   are listed and stay as they are.
+//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); the
+//!   table has those, and they stay as they are.
 //!
 //! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types
 //! here.

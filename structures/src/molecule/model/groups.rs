@@ -110,8 +110,8 @@ impl Residue<'_> {
 
 /// The residues of a list of atoms, in order of first appearance.
 ///
-/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name
-/// comes again, chains were merged under one name whose numbers begin anew: that is another residue. A name that comes
+/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they do not and a name comes
+/// again, chains were merged under one name whose numbers begin anew: that is another residue. A name that comes
 /// again among atoms that stand together is an atom given twice, and stays.
 pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut place: HashMap<ResidueKey<'_>, usize> = HashMap::new();

@@ -126,7 +126,8 @@ pub(crate) fn weigh(
     let doubtful = below(LOW).saturating_sub(below(least));
     if doubtful > 0 {
         report.warnings.push(format!(
-            "{doubtful} of {} residues have a pLDDT below {LOW}, so that where they stand is likely no fact: --min-plddt {LOW} leaves them out",
+            "{doubtful} of {} residues have a pLDDT below {LOW}, so that where they stand is likely no fact: \
+             --min-plddt {LOW} leaves them out",
             values.len()
         ));
     }
