@@ -130,7 +130,7 @@ impl Docking {
         let inputs = self.request.bodies.records();
         self.directory.join("poses.csv").is_file()
             && run.is_of_this_program()
-            && run.asks(inputs, native.as_ref(), &options)
+            && run.is_same_request(inputs, native.as_ref(), &options)
     }
 
     /// Docks, and writes the run; its JSON object.

@@ -41,7 +41,7 @@ impl std::fmt::Display for LengthUnit {
 pub struct Scene {
     /// Unit of all lengths.
     pub unit: LengthUnit,
-    /// Length in that unit that stands for an Ångström: first and last steps of climbs are shares of it.
+    /// Length in that unit that stands for an Ångström: first and last steps of refinement are shares of it.
     pub angstrom: f64,
     /// The receptor, labelled where an effect needs it.
     pub receptor: Knots,

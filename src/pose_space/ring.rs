@@ -89,7 +89,7 @@ mod tests {
     /// Four copies so near the axis that those across it interact. The gradient agrees with moves of the molecule by
     /// the exact sum over all pairs. An ascent ends higher, on a ring.
     #[test]
-    fn copies_across_the_axis_are_climbed_with_the_rest() {
+    fn copies_across_the_axis_are_maximized_with_the_rest() {
         let centers = vec![
             [0.0, 0.0, 0.0],
             [2.6, 0.4, 1.1],
@@ -153,7 +153,7 @@ mod tests {
     /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis. The ascent from one ends
     /// at a maximum of the exact sum, by rotation about that axis and by shift along it.
     #[test]
-    fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
+    fn of_two_rings_peaks_are_dihedral_and_ascents_end_on_maxima() {
         let turn = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
         let strand = |chain: &str, angle: f64| {
             let tilt = UnitQuaternion::new(Vector3::new(0.2, -0.5, 0.3));

@@ -291,7 +291,7 @@ mod tests {
         let exact = |x: f64| scorer.score_only(&at(x));
         let (touching, overlapping) = (4.2, 0.5);
         assert!(exact(touching) > exact(overlapping));
-        let climbed = |from: f64, to: f64| {
+        let ascent = |from: f64, to: f64| {
             let peak = Peak {
                 score: exact(from),
                 rotation: 0,
@@ -318,10 +318,10 @@ mod tests {
             );
             ranking.poses[0].clone()
         };
-        let undone = climbed(touching, overlapping);
+        let undone = ascent(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
         assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
-        let stands = climbed(overlapping, touching);
+        let stands = ascent(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
     }

@@ -8,7 +8,7 @@
 //! - preparing: `prepare` for each mode and effect, on the clock: threads share it in part;
 //! - in double precision these two times [`DOUBLE`];
 //! - an exact sum: `pair` for each pair of knots that can feel each other;
-//! - rescoring a pose, climbing a peak: `rescore`, `refine` for each knot of the ligand;
+//! - rescoring a pose, refining a peak: `rescore`, `refine` for each knot of the ligand;
 //! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
 //!
 //! Coefficients are seconds of one thread while all are busy. The built-in ones are those of a

@@ -6,8 +6,8 @@
 //! - where a residue number comes again, or falls;
 //! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every
 //!   gap;
-//! - where the backbone is broken though the numbers leave no room for unresolved residues: consecutive numbers
-//!   without a bond from C to N (O3' to P), or a gap too wide for the numbers left out;
+//! - where the backbone is broken and the numbers leave no room for unresolved residues: consecutive numbers without
+//!   a bond from C to N (O3' to P), or a gap too wide for the numbers;
 //! - where a nucleic acid follows a protein, or the reverse;
 //! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 distinguish merged
 //!   chains (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).

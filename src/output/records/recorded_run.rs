@@ -140,7 +140,7 @@ impl RecordedRun {
 
     /// Whether it is the same request: files of the same content (wherever they lie), the same chains of them, and
     /// the same options except those of the machine.
-    pub fn asks(
+    pub fn is_same_request(
         &self,
         [receptor, ligand]: [&InputRecord; 2],
         native: Option<&NativeRecord>,
