@@ -24,15 +24,15 @@ pub enum SearchError {
         /// Its range.
         bound: String,
     },
-    /// An effect was asked for that the inputs cannot feed.
+    /// A requested effect for which the inputs lack data.
     #[error("there can be no {effect}: {reason}")]
     Effect {
         /// The effect.
         effect: Effect,
-        /// What is missing.
+        /// What the inputs lack.
         reason: String,
     },
-    /// Two rings were asked for of a molecule that is none.
+    /// Two rings requested of a molecule that is not a ring.
     #[error("{symmetry} lays two rings together, and this molecule is no ring for it: {reason}")]
     Ring {
         /// The symmetry.
@@ -49,11 +49,11 @@ pub enum SearchError {
         allowed: u64,
         /// Grid spacing that would fit, if any does.
         spacing: Option<f64>,
-        /// Resolution for which that spacing is fine enough, where it is a coarser one than was asked for.
+        /// Resolution for which that spacing is fine enough, where it is coarser than the requested one.
         resolution: Option<f64>,
-        /// The pass length that goes with it, where one was asked for.
+        /// The pass length that goes with it, where one was requested.
         pass_length: Option<f64>,
-        /// Whether that resolution is so much coarser than was asked for that it shows little.
+        /// Whether that resolution is so much coarser than the requested one that it shows little.
         shows_little: bool,
     },
     /// The modes that a score is to be made of do not fit into the memory allowed.
@@ -81,7 +81,7 @@ pub enum SearchError {
 }
 
 impl SearchError {
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
             Self::Knots(_) => "check the structure's coordinates and radii".to_owned(),
@@ -141,7 +141,8 @@ impl SearchError {
             Self::Ring { symmetry, .. } => {
                 let folds = symmetry.folds().unwrap_or(1);
                 format!(
-                    "dock the single molecule with --symmetry C{folds} first and give a complex of that run, such as its top/rank_0001.pdb: copies one after \
+                    "dock the single molecule with --symmetry C{folds} first and give a complex of that run, \
+                     such as its top/rank_0001.pdb: copies one after \
                      another, each with all its chains"
                 )
             }

@@ -1,4 +1,4 @@
-//! What a pose is as two solids: surface that it buries, volume that it lets overlap.
+//! Geometry of a pose as two solids: surface that it buries, volume that it lets overlap.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_union;

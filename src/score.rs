@@ -42,7 +42,8 @@ pub struct ScoreOptions {
     pub memory: Option<u64>,
 }
 
-/// Bytes that a mode takes, conjugates counted once, besides those of each function: as measured, less than a tenth from it.
+/// Bytes that a mode takes, conjugates counted once, besides those of each function: as measured, less than a tenth
+/// from it.
 const BYTES_A_MODE: u64 = 1040;
 /// Bytes that a mode takes for each function of the ligand.
 const BYTES_A_FUNCTION: u64 = 71;
@@ -70,7 +71,8 @@ pub struct Rung {
     pub seconds_new_rotation: f64,
 }
 
-/// Derivatives by rho: how score and slices change with all radius sums, per Å. On B&I's r axis they are minus those by r.
+/// Derivatives by rho: how score and slices change with all radius sums, per Å. On B&I's r axis they are minus those
+/// by r.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OffsetSensitivity {
     /// Of the score, all three slices moved together.
@@ -99,8 +101,8 @@ pub struct PoseScore {
     pub exact: f64,
     /// Its weighted terms by the effect's name.
     pub terms: BTreeMap<&'static str, f64>,
-    /// The largest score over all translations of the grid at this rotation, from all modes; where nothing scores above zero, the
-    /// largest magnitude instead.
+    /// The largest score over all translations of the grid at this rotation, from all modes; where nothing scores
+    /// above zero, the largest magnitude instead.
     pub scale: f64,
     /// The ladder, by rising number of modes.
     pub rows: Vec<Rung>,

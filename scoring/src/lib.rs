@@ -15,7 +15,7 @@
 //! - A higher score is better.
 //! - Fourier: f^(w) = sum f(x) exp(-2 pi i w.x); the inverse carries 1 / volume.
 //! - The score is G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), where g(rho) is the correlation's slice at radius sum
-//!   r + s + rho (Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text, see [`affinity`]).
+//!   r + s + rho. Source: Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text ([`affinity`]).
 //! - Further effects are weighted terms that add to it, in the same sense and through the same filter.
 //! - Errors are relative: of a score to the best exact score, of a slice to its largest value.
 //!

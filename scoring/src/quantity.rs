@@ -7,7 +7,7 @@ pub enum Quantity {
     Score,
     /// One unweighted slice: 0, 1 or 2 for rho = 0, r0, 2 r0. Any other panics.
     Slice(usize),
-    /// dG / d rho, all three offsets moved by the same length: the score's change with the knots' radii, per Å.
+    /// Change of the score with the knots' radii, per Å: dG / d rho, all three offsets moved by the same length.
     ScoreByOffset,
     /// dg / d rho of one slice, per Å: -dg / dr on B&I's r axis, which runs the other way.
     SliceByOffset(usize),

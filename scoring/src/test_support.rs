@@ -1,4 +1,4 @@
-//! What unit tests of several modules are made of.
+//! Test data that unit tests of several modules share.
 
 /// Numbers in [0, 1) from a linear congruence: the same everywhere and for ever.
 pub struct Numbers(pub u64);

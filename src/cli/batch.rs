@@ -20,12 +20,14 @@ use crate::cli::messages::failure::Failure;
 
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///
-/// A pair whose directory holds its run already, of the same inputs and options, is not docked again, so that a batch which was stopped goes on where it
-/// was. A pair that fails is told of and the others go on. DIR/results.csv has a row a pair and is written anew after each.
+/// A pair whose directory holds its run already, of the same inputs and options, is not docked again, so that a batch
+/// which was stopped goes on where it was. A pair that fails is reported, and the others go on. DIR/results.csv has a
+/// row a pair and is written anew after each.
 #[derive(Args, Debug)]
 pub struct Batch {
-    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further columns named as options of
-    /// `knotdock dock` that take a value (native, active_receptor, rotations ...). Files are looked for from the table's folder.
+    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further
+    /// columns named as options of `knotdock dock` that take a value (native, active_receptor, rotations ...). Files
+    /// are looked for from the table's folder.
     #[arg(value_name = "PAIRS.CSV")]
     pairs: PathBuf,
     /// Directory of the batch, in which each pair's run has a directory of its name [default: knotdock_PAIRS].
@@ -95,7 +97,7 @@ impl Batch {
             if count == 1 { "goes" } else { "go" },
             directory.display()
         ));
-        let mut told: Vec<Value> = Vec::new();
+        let mut entries: Vec<Value> = Vec::new();
         let (mut waiting, mut table): (Vec<Dock>, Vec<PairResult>) = (Vec::new(), Vec::new());
         for pair in pairs {
             waiting.push(pair.dock);
@@ -123,7 +125,7 @@ impl Batch {
                 };
             }
             table[index].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
-            told.push(entry);
+            entries.push(entry);
             write_results(results, &table, &others)?;
         }
         let done = table
@@ -141,7 +143,7 @@ impl Batch {
         console.result(&json!({
             "directory": directory.display().to_string(),
             "results": results.display().to_string(),
-            "pairs": told,
+            "pairs": entries,
         }))?;
         Ok(code)
     }

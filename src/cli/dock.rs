@@ -17,12 +17,12 @@ use crate::cli::messages::failure::Failure;
 
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
-/// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input and options give the
-/// same bytes for any number of threads.
+/// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input
+/// and options give the same bytes for any number of threads.
 #[derive(Args, Debug)]
 pub struct Dock {
-    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
-    /// residues too) or a mesh (.stl, .obj, .ply or .off).
+    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
+    /// FILE:H:1-120,L residues too) or a mesh (.stl, .obj, .ply or .off).
     #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// What moves, likewise and of the same kind.
@@ -43,13 +43,15 @@ pub struct Dock {
     rerun: Option<PathBuf>,
     #[command(flatten)]
     options: OptionArguments<OfDock>,
-    /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to be within X: rms over the best
-    /// grid poses, as a share of the best score.
-    #[arg(long, value_name = "X", value_parser = above_zero, conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry", help_heading = WITHIN)]
+    /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to
+    /// be within X: rms over the best grid poses, as a share of the best score.
+    #[arg(long, value_name = "X", value_parser = above_zero, help_heading = WITHIN)]
+    #[arg(conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry")]
     accuracy: Option<f64>,
-    /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are planned as are
-    /// expected to fit, but no more than 56,250; where the machine is slower than expected the search stops earlier, and
-    /// run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast this machine is.
+    /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
+    /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search
+    /// stops earlier. run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast
+    /// this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
     #[command(flatten)]
@@ -59,8 +61,8 @@ pub struct Dock {
 /// Heading of the options that choose others.
 const WITHIN: &str = "Within an error or a time";
 
-/// Arguments that say where a run is and where it goes. Beside options of the machine, only these go with `--rerun`, and a batch sets them
-/// for its pairs.
+/// Arguments that say where a run is and where it goes. Beside options of the machine, only these go with `--rerun`,
+/// and a batch sets them for its pairs.
 pub const PLACE: [&str; 3] = ["rerun", "output", "force"];
 
 /// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
@@ -155,7 +157,8 @@ mod tests {
     use super::*;
     use knotdock::options::definitions;
 
-    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the machine are not.
+    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the
+    /// machine are not.
     #[test]
     fn rerun_goes_with_nothing_that_is_recorded() {
         let run = |word: &str| {

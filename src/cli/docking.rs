@@ -1,4 +1,4 @@
-//! A docking run: prepared, told, carried out and written.
+//! A docking run: planned, described, carried out and written.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -29,7 +29,7 @@ use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
-    assumed, error_warning, few_rotations_warning, regions_text, told,
+    assumed, error_warning, few_rotations_warning, outcome_text, regions_text,
 };
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::timings::timings_text;
@@ -49,7 +49,7 @@ pub struct Docking {
 }
 
 impl Docking {
-    /// Plans what was asked for, to be written into a directory, in place of a run there if that is forced.
+    /// Plans the requested run. It is written into `directory`, and replaces a run there only if `force` is true.
     pub fn prepare(
         mut request: Request,
         wanted: Wanted,
@@ -115,7 +115,8 @@ impl Docking {
         run.then_some(self.directory.as_path())
     }
 
-    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the same options.
+    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
+    /// same options.
     pub fn is_done(&self) -> bool {
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
             return false;
@@ -129,7 +130,7 @@ impl Docking {
         let inputs = self.request.bodies.records();
         self.directory.join("poses.csv").is_file()
             && run.is_of_this_program()
-            && run.asks(inputs, native.as_ref(), &options)
+            && run.is_same_request(inputs, native.as_ref(), &options)
     }
 
     /// Docks, and writes the run; its JSON object.
@@ -212,7 +213,7 @@ impl Docking {
     /// Reports the run: effects, errors, times and the best clusters.
     fn report(&self, outcome: &DockOutcome, quality: &[Column], console: Console) {
         let plan = &self.prepared.plan;
-        console.say(format!("\n{}", told(plan, outcome)));
+        console.say(format!("\n{}", outcome_text(plan, outcome)));
         console.detail(format!("\n{}", timings_text(outcome)));
         if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);

@@ -24,7 +24,8 @@ pub struct Evaluate {
     /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz.
     #[arg(value_name = "DIR|POSES.CSV")]
     poses: PathBuf,
-    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json, and read as the run read it].
+    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json, and read as the run
+    /// read it].
     #[arg(long, value_name = "FILE")]
     receptor: Option<String>,
     /// The ligand that was docked, likewise.

@@ -22,7 +22,8 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::metal_bound;
 use crate::cli::messages::failure::Failure;
 
-/// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges assumed.
+/// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges
+/// assumed.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
@@ -43,7 +44,8 @@ pub struct Inspect {
     options: OptionArguments<OfInspect>,
 }
 
-/// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about 0.3% of the total.
+/// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about
+/// 0.3% of the total.
 fn surface_points(atoms: usize) -> usize {
     (4_000_000 / atoms.max(1)).clamp(100, 960)
 }
@@ -56,9 +58,9 @@ impl Inspect {
         let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
         let format = self.checked_outputs(&structure)?;
-        let (input, listed) = if self.atoms.is_some() {
-            let (input, listed) = Input::read_with_fates(&self.file, &reading)?;
-            (input, Some(listed))
+        let (input, fates) = if self.atoms.is_some() {
+            let (input, fates) = Input::read_with_fates(&self.file, &reading)?;
+            (input, Some(fates))
         } else {
             let [input] = Input::read_all([&self.file], &reading)?;
             (input, None)
@@ -78,9 +80,9 @@ impl Inspect {
             labels_text(&found, ph),
             counts_text(&found.counts)
         ));
-        if let (Some(path), Some(listed)) = (&self.atoms, listed) {
-            atom_table::write(path, &listed)?;
-            console.say(format!("{} atoms in {}", listed.len(), path.display()));
+        if let (Some(path), Some(fates)) = (&self.atoms, fates) {
+            atom_table::write(path, &fates)?;
+            console.say(format!("{} atoms in {}", fates.len(), path.display()));
         }
         if let (Some(path), Some(format)) = (&self.write, format) {
             molecule_file::write(path, format, molecule)?;

@@ -28,10 +28,11 @@ use messages::console::Console;
 use messages::failure::Failure;
 use messages::suggestions;
 
-/// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses, and samples meshes.
+/// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,
+/// and samples meshes.
 ///
-/// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, of meshes in the unit of their files, angles in degrees.
-/// Exit codes: 0 done, 2 bad input, 1 any other failure.
+/// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, of meshes in the unit of
+/// their files, angles in degrees. Exit codes: 0 done, 2 bad input, 1 any other failure.
 #[derive(Debug, Parser)]
 #[command(name = "knotdock", version = version())]
 struct Cli {

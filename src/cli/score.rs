@@ -20,12 +20,12 @@ use crate::cli::messages::failure::Failure;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
 ///
-/// The number of modes m counts three-dimensional frequencies with their conjugates, and doubles until the error is below 1e-3
-/// of the exact value or of the scale, the best score at this rotation.
+/// The number of modes m counts three-dimensional frequencies with their conjugates, and doubles until the error is
+/// below 1e-3 of the exact value or of the scale, the best score at this rotation.
 #[derive(Args, Debug)]
 pub struct Score {
-    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
-    /// residues too.
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
+    /// FILE:H:1-120,L residues too.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
     /// The molecule that moves, likewise.

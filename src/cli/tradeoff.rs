@@ -23,7 +23,8 @@ use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 
-/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given, and with combinations.
+/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
+/// and with combinations.
 ///
 /// Writes tradeoff.csv, tradeoff.json and tradeoff.svg into a directory, and says which setting to take.
 #[derive(Args, Debug)]
@@ -85,7 +86,7 @@ impl TradeoffCommand {
         let machine = machine(&first.plan);
         let inputs = request.inputs(first.sampling.as_deref())?;
         let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
-        let progress = Told {
+        let progress = SweepConsole {
             line: console.progress(),
             console,
         };
@@ -222,12 +223,12 @@ fn table(tradeoff: &Tradeoff) -> String {
 }
 
 /// Lines on how far the sweep is, and the bar of the search that runs.
-struct Told {
+struct SweepConsole {
     line: ProgressLine,
     console: Console,
 }
 
-impl Progress for Told {
+impl Progress for SweepConsole {
     fn stage(&self, name: &str, total: u64) {
         self.line.stage(name, total);
     }
@@ -237,7 +238,7 @@ impl Progress for Told {
     }
 }
 
-impl SweepProgress for Told {
+impl SweepProgress for SweepConsole {
     fn begins(&self, settings: usize, seconds: f64) {
         self.line.clear();
         self.console.say(format!(

@@ -28,8 +28,8 @@ fn requested(effect: Effect, options: &DockOptions) -> Option<bool> {
 /// One decision for each effect between two molecules, in the order of [`Effect::ALL`].
 ///
 /// # Errors
-/// [`SearchError`] when an effect is requested that the inputs lack something for, and when residues are named without the effect
-/// that scores them.
+/// [`SearchError`] when an effect is requested that the inputs lack something for, and when residues are named
+/// without the effect that scores them.
 pub(super) fn of_molecules(
     inputs: &EffectInputs,
     options: &DockOptions,

@@ -1,4 +1,5 @@
-//! What each effect costs: the fields of the compressed functions that it adds, and the time of a rotation with and without it.
+//! Timings of the effects: the fields of the compressed functions that it adds, and the time of a rotation with and
+//! without it.
 
 use crate::dock::effect_decisions::Decision;
 use crate::dock::outcome::EffectCost;

@@ -1,4 +1,4 @@
-//! What a docking search hands on: ranked poses, the plan it followed, the errors it measured and what it cost.
+//! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// What orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
+    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
     pub score: f64,
     /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
     pub search_score: f64,
@@ -23,9 +23,10 @@ pub struct RankedPose {
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
     pub cluster_size: Option<usize>,
-    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at least the best pose's.
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
+    /// least the best pose's.
     pub cluster_score: Option<f64>,
-    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the climb.
+    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the ascent.
     pub refined: bool,
     /// Index in the rotation set of the grid pose that this row came from.
     pub rotation: usize,
@@ -33,7 +34,8 @@ pub struct RankedPose {
     pub score_grid: f64,
     /// B&I's own sum (no low-pass) at `pose`.
     pub score_unfiltered: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the effect is off.
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
+    /// effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
     pub slices: [f64; 3],
@@ -43,11 +45,13 @@ pub struct RankedPose {
     pub other_copies: Option<f64>,
     /// Sum that ranks poses: `score`, the pose terms and `other_copies`.
     pub pose_score: f64,
-    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not differ.
+    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
+    /// differ.
     pub z_score: Option<f64>,
 }
 
-/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores anything.
+/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores
+/// anything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredError {
     /// Grid poses over which it was measured.
@@ -56,15 +60,17 @@ pub struct MeasuredError {
     pub rms: f64,
     /// Largest of the same.
     pub worst: f64,
-    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| / |best exact score|.
+    /// Mean share of the unfiltered shape score that the low-pass removed over the same poses, |G - G_unfiltered| /
+    /// |best exact score|.
     pub low_pass_share: f64,
 }
 
 /// Scores below this are none: a pair of balls that touch earns about one.
 const NOTHING: f64 = 1e-6;
 
-/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by more than `ringing` of that. Transforms ring about
-/// zero by their tolerance where no pose scores (lambda = 0, or no skin); exact sums do not.
+/// What errors of scores are shares of: the best score, or the largest magnitude where nothing scores above zero by
+/// more than `ringing` of that. Transforms ring about zero by their tolerance where no pose scores (lambda = 0, or no
+/// skin); exact sums do not.
 pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -> f64 {
     let (best, largest) = scores
         .into_iter()
@@ -79,7 +85,8 @@ pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -
 }
 
 impl MeasuredError {
-    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact score.
+    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact
+    /// score.
     pub(crate) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
         let poses = peaks.len().min(exact.len());
         if best < NOTHING {
@@ -106,7 +113,7 @@ impl MeasuredError {
     }
 }
 
-/// What one term of the score cost.
+/// Cost of one term of the score.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectCost {
     /// The term.
@@ -115,7 +122,8 @@ pub struct EffectCost {
     pub on: bool,
     /// Why it was on or off.
     pub reason: String,
-    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out would save.
+    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out
+    /// would save.
     pub rank: usize,
     /// Milliseconds that it adds to a rotation on one thread, likewise, peaks not counted.
     #[serde(skip)]
@@ -129,7 +137,7 @@ pub struct StageTime {
     pub name: &'static str,
     /// Wall-clock seconds.
     pub wall_seconds: f64,
-    /// CPU seconds of the whole process, where the system tells.
+    /// CPU seconds of the whole process, where the system reports them.
     pub cpu_seconds: Option<f64>,
 }
 
@@ -152,9 +160,9 @@ pub struct DockOutcome {
     pub rank: usize,
     /// Error of the compressed functions at the probe rotations, relative to their best score.
     pub rank_error: f64,
-    /// What each term cost.
+    /// Cost of each term.
     pub effects: Vec<EffectCost>,
-    /// What a finer search about the best rotations covered, where one was asked for.
+    /// Coverage of a finer search about the best rotations, where one was requested.
     pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,
@@ -166,7 +174,8 @@ pub struct DockOutcome {
 mod tests {
     use super::*;
 
-    /// A listed pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored 100: they looked 200 times smaller.
+    /// A reported pose deep in overlap, of -20,000, once set the scale of the errors of a run whose best pose scored
+    /// 100: they looked 200 times smaller.
     #[test]
     fn errors_are_shares_of_the_best_score_and_of_magnitudes_only_where_nothing_scores() {
         assert_eq!(error_scale([100.0, 30.0, -20_000.0], 0.0), 100.0);

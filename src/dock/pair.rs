@@ -36,7 +36,7 @@ pub enum PairError {
 }
 
 impl PairError {
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
             Self::Search(error) => error.remedy(),
@@ -74,7 +74,7 @@ pub struct PreparedPair {
     pub plan: DockPlan,
     /// Points of the ligand whose RMSD makes clusters.
     pub points: Vec<[f64; 3]>,
-    /// How meshes were sampled.
+    /// Report on the sampling of the meshes.
     pub sampling: Option<Arc<Sampling>>,
     /// What sampling (of meshes) and planning took.
     pub timing: Vec<StageTime>,
@@ -144,8 +144,8 @@ impl<'a> Preparer<'a> {
         }
     }
 
-    /// Samples what has to be and plans. Of meshes, `options` have all lengths; a sampling that is at hand is used again, with the time
-    /// that it took.
+    /// Samples what has to be and plans. Of meshes, `options` have all lengths; a sampling that is at hand is used
+    /// again, with the time that it took.
     ///
     /// # Errors
     /// [`PairError`].

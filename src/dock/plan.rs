@@ -53,14 +53,14 @@ pub struct DockPlan {
     pub stop_frequency: f64,
     /// Distinct radii of receptor and ligand.
     pub radii: [usize; 2],
-    /// What plays the part of an Ångström, in `unit`.
+    /// Length that stands for one Ångström, in `unit`.
     #[serde(skip)]
     pub(crate) angstrom: f64,
     /// Bytes that everything but rotations in flight takes.
     pub fixed_bytes: u64,
     /// Bytes that a rotation in flight takes.
     pub bytes_in_flight: u64,
-    /// Which effects are on, and why.
+    /// Effects that are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
     /// Residues that should be in contact.

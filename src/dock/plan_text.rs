@@ -11,7 +11,8 @@ impl std::fmt::Display for DockPlan {
         let rotations = self.search.space.sampled(self.rotations);
         write!(
             f,
-            "{} {rotations} ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes below {:.finer$} per {unit}, \
+            "{} {rotations} ({:.1} degrees covering radius), grid {} x {} x {} at {:.digits$} {unit}, {} modes \
+             below {:.finer$} per {unit}, \
              window of {} on {} x {} x {}, lifted axis -{K}..{K}; about {:.0} MB with {} in flight",
             self.rotations,
             self.covering_radius_degrees,

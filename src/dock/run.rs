@@ -65,8 +65,8 @@ impl Clock {
     }
 }
 
-/// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`] of a
-/// molecule, the centres of the balls of a mesh.
+/// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
+/// of a molecule, the centres of the balls of a mesh.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
@@ -79,8 +79,9 @@ pub fn dock(
 }
 
 /// Docks as planned, with as many of the rotations as a deadline leaves time for, if there is one.
-/// [`DockOutcome::stopped`] says how many those were: planned with it as [`DockOptions::stopped`] and docked without a
-/// deadline, the outcome is the same. Graphics processors search all.
+///
+/// [`DockOutcome::stopped`] says how many those were. A run planned with it as [`DockOptions::stopped`] and docked
+/// without a deadline has the same outcome. Graphics processors search all rotations.
 ///
 /// [`DockOptions::stopped`]: crate::options::DockOptions::stopped
 ///
@@ -141,7 +142,7 @@ fn dock_in<T: Real>(
     let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
     // Poses closer than neighbouring samples of the search are one place to it.
     let step = body.step(plan.spacing, plan.search.rotation_step());
-    let listed = deduplicated(&candidates, &clusters, &body, step);
+    let distinct = deduplicated(&candidates, &clusters, &body, step);
     clock.lap("cluster");
 
     let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
@@ -156,7 +157,7 @@ fn dock_in<T: Real>(
     let ranking = report(
         pose_scorer,
         &candidates,
-        (&clusters, &listed),
+        (&clusters, &distinct),
         plan.options.ranking.no_cluster,
         2.0 * plan.options.kernel.tolerance * best_peak.abs(),
         progress,
@@ -180,7 +181,7 @@ fn dock_in<T: Real>(
     })
 }
 
-/// What a run computes with.
+/// Prepared engine, spectra and scorer of a run.
 struct Prepared<T: Real> {
     spectra: ReceptorSpectra<T>,
     engine: ScanEngine<T>,
@@ -213,13 +214,13 @@ impl<T: Real> Prepared<T> {
     }
 }
 
-/// What a search found.
+/// Peaks of a search, with its coverage and errors.
 struct Found {
     /// The best peaks, best first.
     peaks: Vec<Peak>,
     /// Rotations of the set that were searched.
     searched: usize,
-    /// What a finer search covered.
+    /// Coverage of a finer search.
     fine: Option<FineSearched>,
 }
 
@@ -309,12 +310,12 @@ struct Check {
 
 impl Check {
     fn new(scorer: &ExactScorer, grid_poses: &[Pose]) -> Self {
-        let begun = Instant::now();
+        let started = Instant::now();
         let at_grid: Vec<ExactScore> = grid_poses
             .par_iter()
             .map(|pose| scorer.score(&printed(pose)))
             .collect();
-        let seconds = begun.elapsed().as_secs_f64() / at_grid.len() as f64;
+        let seconds = started.elapsed().as_secs_f64() / at_grid.len() as f64;
         Self { at_grid, seconds }
     }
 

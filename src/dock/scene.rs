@@ -41,7 +41,7 @@ impl std::fmt::Display for LengthUnit {
 pub struct Scene {
     /// Unit of all lengths.
     pub unit: LengthUnit,
-    /// Length in that unit that stands for an Ångström: first and last steps of climbs are shares of it.
+    /// Length in that unit that stands for an Ångström: first and last steps of refinement are shares of it.
     pub angstrom: f64,
     /// The receptor, labelled where an effect needs it.
     pub receptor: Knots,
@@ -51,7 +51,7 @@ pub struct Scene {
     pub terms: Vec<Term>,
     /// One decision for each effect, in the order of [`Effect::ALL`].
     pub decisions: Vec<Decision>,
-    /// What was assumed in labelling receptor and ligand.
+    /// Assumptions in labelling receptor and ligand.
     pub labels: [LabelReport; 2],
     /// Residues that should be in contact.
     pub active: ActiveResidues,
@@ -61,18 +61,19 @@ pub struct Scene {
     pub ring_axis: Option<RingAxis>,
 }
 
-/// Score of a contact of an active atom in the search, times the number of active residues, as a share of the weight of active residues.
+/// Score of a contact of an active atom in the search, times the number of active residues, as a share of the weight
+/// of active residues.
 ///
-/// A residue in contact has about 70 contacts. So the contacts of all active residues earn about a quarter of that weight, however
-/// many there are.
+/// A residue in contact has about 70 contacts. So the contacts of all active residues earn about a quarter of that
+/// weight, however many there are.
 const PULL: f64 = 4e-3;
 
 impl Scene {
     /// The scene of two molecules.
     ///
     /// # Errors
-    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the molecules lack
-    /// something for.
+    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the
+    /// molecules lack something for.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,

@@ -1,8 +1,9 @@
-//! What touches what: the native's interface, and the share of its contacts that a pose keeps.
+//! Residue contacts: the native's interface, and the share of its contacts that a pose keeps.
 //!
-//! Two residues are in contact when any two of their heavy atoms are less than 5 Å apart; a residue belongs to the
-//! interface when a heavy atom of it is less than 10 Å from one across (DockQ 2.1.3 `constants.py`; the CAPRI
-//! definitions, Méndez et al., Proteins 52 (2003) 51-67).
+//! Two residues are in contact when any two of their heavy atoms are nearer than 5 Å. A residue belongs to the
+//! interface when one of its heavy atoms is less than 10 Å from a heavy atom of the other side.
+//!
+//! Sources: DockQ 2.1.3 `constants.py`; the CAPRI definitions, Méndez et al., Proteins 52 (2003) 51-67.
 
 use std::collections::HashMap;
 
@@ -28,7 +29,7 @@ pub(super) struct AcrossPair {
     pub contact: bool,
 }
 
-/// All pairs of residues less than 10 Å apart, by receptor and then ligand residue.
+/// All pairs of residues nearer than 10 Å, ordered by receptor and then ligand residue.
 ///
 /// Cost: every pair of residues once, and every pair of atoms of those whose bounding balls come near.
 pub(super) fn pairs_across(receptor: &[Residue], ligand: &[Residue]) -> Vec<AcrossPair> {

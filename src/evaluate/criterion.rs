@@ -8,7 +8,7 @@ use super::dockq::Capri;
 /// Interface RMSD in Å up to which a pose is near-native.
 const NEAR_NATIVE_INTERFACE_RMSD: f64 = 2.5;
 
-/// What a pose must be to count as found.
+/// Criterion for a pose that counts as found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Criterion {

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-/// DockQ from the share of native contacts and the interface and ligand RMSD in Å:
-/// (fnat + 1 / (1 + (irmsd / 1.5)^2) + 1 / (1 + (lrmsd / 8.5)^2)) / 3, from 0 to 1.
+/// DockQ, from 0 to 1, by the share of native contacts and the interface and ligand RMSD in Å.
+///
+/// It is (fnat + 1 / (1 + (irmsd / 1.5)^2) + 1 / (1 + (lrmsd / 8.5)^2)) / 3.
 ///
 /// Source: Basu & Wallner, PLoS ONE 11 (2016) e0161879; Mirabello & Wallner, Bioinformatics 40 (2024) btae586.
 pub fn dockq(fnat: f64, irmsd: f64, lrmsd: f64) -> f64 {
@@ -15,7 +16,7 @@ pub fn dockq(fnat: f64, irmsd: f64, lrmsd: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Capri {
-    /// None of the others.
+    /// None of the other classes.
     Incorrect,
     /// fnat >= 0.1 and (lrmsd <= 10 Å or irmsd <= 4 Å).
     Acceptable,

@@ -107,7 +107,7 @@ pub enum EvaluateError {
 }
 
 impl EvaluateError {
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::NoResidues { .. } => {

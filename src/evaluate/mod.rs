@@ -6,20 +6,20 @@
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
 //! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
 //!   residues are matched.
-//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's chains, and
-//!   of the copies that the native holds those are taken that superpose, touch and have most contacts. Where identical
+//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's
+//!   chains. Of the native's copies those are taken that superpose, touch and have most contacts. Where identical
 //!   chains of that complex can be matched in several ways, each pose gets the one with the best DockQ.
 //! - **Backbone** is N, CA, C and O, and phosphate and sugar in nucleic acids, of matched residues, where both have the
 //!   atom. Hydrogens, waters, ions, cofactors and glycans play no part.
 //! - `irmsd`: backbone of the native's interface residues (any heavy atom within 10 Å across) after superposing them.
-//! - `lrmsd`: backbone of the smaller side after superposing the larger on the native's. As in DockQ 2.1.3 the smaller side
-//!   is the one of fewer native residues, and of two equal ones the receptor. So figures of unequal sides are the same
-//!   whichever is called the receptor.
+//! - `lrmsd`: backbone of the smaller side after superposing the larger on the native's. As in DockQ 2.1.3 the
+//!   smaller side is the one of fewer native residues, and of two equal ones the receptor. So figures of unequal
+//!   sides are the same whichever is called the receptor.
 //! - `fnat`: share of the native's residue contacts (any heavy atoms within 5 Å) that the pose has too. Contacts of
 //!   residues without a match count as lost.
-//! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside one of
-//!   the same kind it may pair the wrong one (LEU 8 of 1PPE's unbound ligand with LEU 7, 8 being absent from the native),
-//!   and then our figures are those that it gives for the pairs that the numbers name.
+//! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside
+//!   one of the same kind it may pair the wrong one. (LEU 8 of 1PPE's unbound ligand is paired with LEU 7, since the
+//!   native lacks 8.) Then our figures are those that it gives for the pairs that the numbers name.
 //! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
 //!
 //! # Cost
@@ -67,7 +67,7 @@ const MIN_INTERFACE_SHARE: f64 = 0.5;
 /// Fewest backbone atoms that fix a superposition.
 const MIN_ATOMS: usize = 3;
 
-/// How near a pose is to the native. All numbers are finite.
+/// Quality of a pose against the native. All numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseQuality {
     /// Interface RMSD, in Å.
@@ -103,7 +103,7 @@ impl Arrangement {
     }
 }
 
-/// A receptor, a ligand and their native, made ready to judge poses.
+/// A receptor, a ligand and their native, prepared to evaluate poses.
 #[derive(Clone, Debug)]
 pub struct Evaluator {
     first: Arrangement,
@@ -115,8 +115,9 @@ impl Evaluator {
     /// Matches the user's receptor and ligand, as docked, with the native.
     ///
     /// # Errors
-    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, the native no contacts, a side does not
-    /// fit the native's, or too little of the native's interface or of a docked side is matched.
+    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, or when the native has no
+    /// contacts. Also when a side does not fit the native's, or too little of the native's interface or of a docked
+    /// side is matched.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,
@@ -155,7 +156,7 @@ impl Evaluator {
         })
     }
 
-    /// What was matched with what.
+    /// Report on the matching.
     pub fn report(&self) -> &MatchReport {
         &self.report
     }
@@ -218,7 +219,7 @@ fn arrange(
     Ok((Arrangement { rmsds, contacts }, report))
 }
 
-/// What was matched of receptor and ligand.
+/// Report on the matching of receptor and ligand.
 fn side_matches(
     [receptor, ligand]: [&Residues; 2],
     way: &Way,

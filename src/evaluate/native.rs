@@ -14,11 +14,11 @@ use crate::evaluate::matching::placements::placements;
 /// The known answer that poses are judged by.
 #[derive(Clone, Copy, Debug)]
 pub enum Native<'a> {
-    /// One file with the whole complex, perhaps in several copies. Its chains go to the side whose chains they match and
-    /// superpose on; of several complexes the one with the largest interface is taken. Where receptor and ligand are the
-    /// same chain, both ways round are tried for every pose.
+    /// One file with the whole complex, perhaps in several copies. Its chains go to the side whose chains they match
+    /// and superpose on; of several complexes the one with the largest interface is taken. Where receptor and ligand
+    /// are the same chain, both ways round are tried for every pose.
     Complex(&'a Molecule),
-    /// The two sides apart, in one common frame.
+    /// The two sides as separate molecules, in one common frame.
     Pair {
         /// The native's receptor.
         receptor: &'a Molecule,
@@ -27,7 +27,8 @@ pub enum Native<'a> {
     },
 }
 
-/// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part in it.
+/// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part
+/// in it.
 const MIN_DOCKED_SHARE: f64 = 0.25;
 const ENOUGH_RESIDUES: usize = 50;
 /// Share of what the first way matches that another must match: paralogues would pass for each other.
@@ -65,11 +66,13 @@ pub(super) struct Ways {
     pub complexes: Vec<NativeComplex>,
 }
 
-/// The ways to see the docked sides in the native: all of one complex, so that every pose may be given the best of them.
+/// The ways to see the docked sides in the native: all of one complex, so that every pose may be given the best of
+/// them.
 ///
 /// # Errors
 /// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::Unmatched`] when no chain is the
-/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
+/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and
+/// [`EvaluateError::NoContact`].
 pub(super) fn ways(
     receptor: &Residues,
     ligand: &Residues,
@@ -278,8 +281,10 @@ fn complexes(receptor: PlacedCopy, ligand: PlacedCopy, all: &[Combination]) -> V
     found
 }
 
-/// The residues of the complex that belong to each side, segment by segment: of a segment of which both sides match a part,
-/// each residue goes to the side whose nearest matched residue is nearer in the sequence.
+/// The residues of the complex that belong to each side, segment by segment.
+///
+/// Both sides may match a part of one segment. Then each residue goes to the side whose nearest matched residue is
+/// nearer in the sequence.
 fn split(complex: &Residues, receptor: &Placement, ligand: &Placement) -> [Part; 2] {
     let placements = [receptor, ligand];
     let segments = placements.map(Placement::native_segments);
@@ -323,7 +328,8 @@ fn unused(complex: &Residues, split: &[Part; 2]) -> Vec<String> {
         .collect()
 }
 
-/// A placement whose residues and segments of the native are those of a group, which holds the segments and members given.
+/// A placement whose residues and segments of the native are those of a group, which holds the segments and members
+/// given.
 fn in_group(placement: &Placement, group: &[(usize, Vec<usize>)]) -> Placement {
     let members = group.iter().flat_map(|(_, members)| members).copied();
     let places: HashMap<usize, usize> = members.zip(0..).collect();

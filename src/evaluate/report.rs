@@ -1,4 +1,4 @@
-//! What was matched with what, for the user to judge how far the figures reach.
+//! Report on the matching: which parts of the native and of the docked molecules the figures cover.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ const GOOD_DOCKED_SHARE: f64 = 0.7;
 /// Backbone RMSD in Å of a docked side with the native's above which it is.
 const GOOD_FIT: f64 = 5.0;
 
-/// How a chain's residues were matched.
+/// Method by which a chain's residues were matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MatchMethod {
@@ -54,7 +54,7 @@ pub struct SideMatch {
     pub interface_residues: usize,
     /// Those of them that are matched.
     pub interface_matched: usize,
-    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot mend.
+    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot correct.
     pub backbone_rmsd: f64,
     /// Chain by chain, the one with most matched residues first.
     pub chains: Vec<ChainMatch>,
@@ -94,7 +94,8 @@ pub struct MatchReport {
     pub permutations: usize,
     /// Chains of a native complex that belong to neither side.
     pub unused_native_chains: Vec<String>,
-    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by contacts.
+    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by
+    /// contacts.
     pub complexes: Vec<NativeComplex>,
     /// What the user should know before trusting the figures: a docked side of which less than 70% is matched, or whose
     /// backbone lies more than 5 Å RMSD from the native's.

@@ -34,7 +34,7 @@ pub(super) struct Side<'a> {
 }
 
 impl Side<'_> {
-    fn misfit(&self, keep: impl Fn(usize) -> bool) -> Superposition {
+    fn superposition(&self, keep: impl Fn(usize) -> bool) -> Superposition {
         let pairs = self
             .pairs
             .iter()
@@ -53,7 +53,7 @@ pub(super) struct Rmsds {
     pub ligand: f64,
 }
 
-/// What the RMSDs of any pose are computed from.
+/// Data from which the RMSDs of any pose are computed.
 #[derive(Clone, Debug)]
 pub(super) struct RmsdForms {
     receptor: Superposition,
@@ -80,10 +80,10 @@ impl RmsdForms {
         let receptor_near: HashSet<_> = near.iter().map(|pair| pair.receptor).collect();
         let ligand_near: HashSet<_> = near.iter().map(|pair| pair.ligand).collect();
         Self {
-            receptor: receptor.misfit(|_| true),
-            ligand: ligand.misfit(|_| true),
-            receptor_interface: receptor.misfit(|native| receptor_near.contains(&native)),
-            ligand_interface: ligand.misfit(|native| ligand_near.contains(&native)),
+            receptor: receptor.superposition(|_| true),
+            ligand: ligand.superposition(|_| true),
+            receptor_interface: receptor.superposition(|native| receptor_near.contains(&native)),
+            ligand_interface: ligand.superposition(|native| ligand_near.contains(&native)),
             ligand_is_smaller: ligand_is_smaller(receptor.native, ligand.native),
         }
     }
@@ -98,7 +98,8 @@ impl RmsdForms {
         [&self.receptor_interface, &self.ligand_interface].map(|side| side.count as usize)
     }
 
-    /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can mend.
+    /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can
+    /// correct.
     pub fn of_the_parts(&self) -> (f64, f64) {
         (
             self.receptor.rmsd(&self.receptor.best),

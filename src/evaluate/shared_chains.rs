@@ -1,4 +1,5 @@
-//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it already.
+//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it
+//! already.
 
 use std::collections::HashSet;
 
@@ -26,8 +27,8 @@ pub struct SharedChains {
     pub rest: Vec<String>,
 }
 
-/// The chains of `one` that `other` holds, if it holds all of them and further chains beside. Two copies of one molecule, as of a homodimer, hold
-/// nothing beside one another.
+/// The chains of `one` that `other` holds, if it holds all of them and further chains beside. Two copies of one
+/// molecule, as of a homodimer, hold nothing beside one another.
 pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
     let one = Residues::of(one, "molecule").ok()?;
     let other = Residues::of(other, "molecule").ok()?;
@@ -120,7 +121,7 @@ mod tests {
         let found = shared_chains(&ligand, &complex).unwrap();
         assert_eq!(found.pairs, [("A".to_owned(), "I".to_owned())]);
         assert_eq!(found.rest, ["E"]);
-        // Two chains of one name cannot be told apart by it.
+        // Two chains of one name cannot be distinguished by it.
         let merged = of(&[("A", &enzyme), ("A", &inhibitor)]);
         assert_eq!(shared_chains(&ligand, &merged).unwrap().rest, [""; 0]);
         assert_eq!(shared_chains(&of(&[("E", &enzyme)]), &ligand), None);

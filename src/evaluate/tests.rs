@@ -95,7 +95,7 @@ fn square(chain: &str, x: f64) -> Vec<Atom> {
 
 #[test]
 fn two_squares_by_hand() {
-    // Pulled apart from 4 to 6 Å along the axis: superposed, every atom is 1 Å off; the ligand alone is 2 Å off; the
+    // Separated from 4 to 6 Å along the axis: superposed, every atom is 1 Å off; the ligand alone is 2 Å off; the
     // only contact is lost.
     let (receptor, ligand) = (square("A", 0.0), square("B", 4.0));
     let evaluator = evaluator((&receptor, &ligand), (&receptor, &ligand)).unwrap();
@@ -140,7 +140,7 @@ fn dockq_superposes_the_larger_side() {
     assert!((quality.lrmsd - smaller).abs() < 1e-9);
     assert!(
         smaller - backbone_shift(&ligand, &pose) > 5.0,
-        "the case must tell the two apart"
+        "the case must distinguish the two"
     );
     let (fnat, irmsd) = (quality.fnat, quality.irmsd);
     assert!((quality.dockq - dockq(fnat, irmsd, smaller)).abs() < 1e-12);
@@ -214,13 +214,13 @@ fn swapped_identical_chains_find_the_best_order() {
 }
 
 #[test]
-fn merged_chains_match_those_kept_apart() {
+fn merged_chains_match_separate_ones() {
     // An antibody's H and L as one chain with numbers that begin again, against two chains in the native.
     let (heavy, antigen) = bound();
     let light = helix("L", &random_sequence(23, 35), [0.0, 10.0, 3.0]);
     let merged = [heavy.clone(), renamed(&light, "A")].concat();
-    let apart = [light, renamed(&heavy, "H")].concat();
-    let evaluator = evaluator((&merged, &antigen), (&apart, &antigen)).unwrap();
+    let separate = [light, renamed(&heavy, "H")].concat();
+    let evaluator = evaluator((&merged, &antigen), (&separate, &antigen)).unwrap();
     assert_eq!(evaluator.report().receptor.matched, 75);
     assert_perfect(evaluator.evaluate(&Pose::identity()));
 }
@@ -274,7 +274,8 @@ fn half_an_interface_is_an_error() {
     assert!(error.remedy().contains("--native-receptor"));
 }
 
-/// Found by a review: where each side had the half of the interface that the other lacked, the interface RMSD of every pose was 0.
+/// Found by a review: where each side had the half of the interface that the other lacked, the interface RMSD of
+/// every pose was 0.
 #[test]
 fn halves_of_an_interface_that_do_not_meet_are_an_error() {
     let (receptor, ligand) = both_ends();
@@ -308,8 +309,8 @@ fn strangers_and_lone_sides_are_errors() {
     let (receptor, ligand) = bound();
     let error = evaluator((&ligand, &receptor), (&receptor, &ligand)).unwrap_err();
     assert_eq!(error, EvaluateError::Unmatched { side: "receptor" });
-    let apart = moved(&ligand, &translation(100.0, 0.0, 0.0));
-    let error = evaluator((&receptor, &ligand), (&receptor, &apart)).unwrap_err();
+    let separate = moved(&ligand, &translation(100.0, 0.0, 0.0));
+    let error = evaluator((&receptor, &ligand), (&receptor, &separate)).unwrap_err();
     assert_eq!(error, EvaluateError::NoContact);
     let dot = vec![atom("B", 1, "GLY", "CA", [4.0, 0.0, 0.0])];
     let error = evaluator((&square("A", 0.0), &dot), (&square("A", 0.0), &dot)).unwrap_err();

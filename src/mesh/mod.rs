@@ -2,23 +2,29 @@
 //!
 //! # Conventions
 //!
-//! Lengths are in the unit of the mesh files, which must be one. h is the spacing of a part's grid, eps = sqrt(3) h / 2 the bound within which
-//! the sampler knows its surface ([`knotdock_structures::sampling::grid`]); A is the receptor, B the ligand.
+//! Lengths are in the unit of the mesh files, which must be one. The spacing of a part's grid is h. The value eps =
+//! sqrt(3) h / 2 is the bound within which the sampler knows its surface ([`knotdock_structures::sampling::grid`]). A
+//! is the receptor, B the ligand.
 //!
 //! # Why balls of one radius
 //!
-//! A sum over pairs of balls counts pairs. Over balls of very different size that is no volume: a large ball that overlaps another by
-//! its whole volume counts as much as two tiny ones that touch, and the many balls of an edge outweigh the one that fills the middle. So parts
-//! that dock are sampled by balls of one radius on a lattice ([`lattice()`]), with weights fitted so that their bumps add up to one
-//! inside and zero outside: the sum over pairs is then an integral over both volumes, however the lattices lie, and the kernel is that of
-//! molecules, B&I's cone, whose balls are all of about one size. (For balls of mixed radii touching means too little at large radii; a skin of fixed
-//! width would mend that but not the counting. docs/mesh_docking.md has the figures.)
+//! A sum over pairs of balls counts pairs. Over balls of very different size that is no volume. A large ball that
+//! overlaps another by its whole volume counts as much as two tiny ones that touch. The many balls of an edge
+//! outweigh the one that fills the middle.
+//!
+//! So parts that dock are sampled by balls of one radius on a lattice ([`lattice()`]). Weights are fitted so that
+//! their bumps add up to one inside and zero outside. The sum over pairs is then an integral over both volumes,
+//! however the lattices lie. The kernel is that of molecules, B&I's cone, whose balls are all of about one size.
+//!
+//! For balls of mixed radii touching means too little at large radii. A skin of fixed width would fix that but not
+//! the counting. docs/mesh_docking.md has the figures.
 //!
 //! # Which lengths
 //!
-//! Two flat faces a gap g apart score, per area, E(g) = pi times the integral from g on of K(d) d (d - g)^2, K the ranking kernel.
-//! With radii of [`RADIUS`], a resolution of [`RESOLUTION`] (both in units of r0) and lambda = 9, E is greatest at g = r0, is above half of that from
-//! 0.65 to 1.55 r0, and below zero under 0.3 r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
+//! Two flat faces with a gap g between them score, per area, E(g) = pi times the integral from g on of K(d) d (d -
+//! g)^2. K is the ranking kernel. The radii are [`RADIUS`], the resolution is [`RESOLUTION`] (both in units of r0)
+//! and lambda is 9. Then E is greatest at g = r0, above half of that from 0.65 to 1.55 r0, and below zero under 0.3
+//! r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
 
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
@@ -43,12 +49,12 @@ pub const RESOLUTION: f64 = 4.5 / 2.2;
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 /// Widest cell of the lattice in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
-/// What plays the part of an Ångström, in offsets.
+/// Length that stands for one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 
-/// How two meshes are sampled. Lengths in the files' unit.
+/// Options on sampling two meshes. Lengths in the files' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions {
     /// Nodes along each edge of each part's grid, n = m^(1/3).
@@ -92,7 +98,8 @@ pub enum MeshSceneError {
     },
     /// A part is thinner than the two grids resolve together.
     #[error(
-        "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of both parts) to which the two are sampled"
+        "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of both \
+         parts) to which the two are sampled"
     )]
     Thin {
         /// Which part.
@@ -108,7 +115,7 @@ pub enum MeshSceneError {
         if .offset < .low { "finer than the parts are sampled" } else { "too coarse for the parts" }
     )]
     Offset {
-        /// The offset asked for, or taken by default.
+        /// The offset requested, or the default.
         offset: f64,
         /// Least.
         low: f64,
@@ -128,7 +135,7 @@ impl MeshSceneError {
         }
     }
 
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Sample { .. } => {
@@ -140,10 +147,12 @@ impl MeshSceneError {
                 "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
             }
             Self::Thin { .. } => {
-                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut it down to what is near the joint"
+                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut \
+                 it down to what is near the joint"
             }
             Self::Offset { .. } => {
-                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; where one part is much larger than the \
+                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; \
+                 where one part is much larger than the \
                  other, cut it down to what is near the joint"
             }
         }
@@ -185,8 +194,9 @@ pub struct MeshPair {
     pub offset: f64,
 }
 
-/// The offset where none is given: 2 (`eps_A` + `eps_B`), the least clearance that the sampling vouches for, but no more than twice the
-/// smaller feature size, so that the skin does not fill what it is to feel.
+/// The default offset: 2 (`eps_A` + `eps_B`), but no more than twice the smaller feature size.
+///
+/// The former is the least clearance that the sampling resolves. The latter keeps the skin from filling the features.
 pub fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
     let sampled = 2.0 * (epsilons[0] + epsilons[1]);
     sampled.min(2.0 * features[0].min(features[1]))

@@ -1,4 +1,4 @@
-//! What no run can do, refused: values out of range, and options that do not go together.
+//! Checks of options. They refuse values out of range, and options that do not go together.
 
 use super::definition::{Definition, Scope};
 use super::text::{self, OptionError};
@@ -22,8 +22,8 @@ impl DockOptions {
         })
     }
 
-    /// The options of a search for rings: residues are alike on both sides, and rotations are axes, of which there are fewer unless their
-    /// number is given.
+    /// The options of a search for rings: residues are alike on both sides, and rotations are axes, of which there
+    /// are fewer unless their number is given.
     pub fn of_rings(mut self, rotations_given: bool) -> Self {
         let Some(symmetry) = self.search.symmetry else {
             return self;

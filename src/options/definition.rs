@@ -1,4 +1,4 @@
-//! What is known of each option: its name, subject, scope, help and default.
+//! Definitions of all options: name, subject, scope, help and default.
 //!
 //! All of it is read off the command line that clap derives from the structs of options.
 
@@ -136,7 +136,8 @@ mod tests {
         invented: InventedOptions,
     }
 
-    /// The new option is in the help, the command line, the defaults, the record, the file and the checks, and can be varied by name.
+    /// The new option is in the help, the command line, the defaults, the record, the file and the checks, and can be
+    /// varied by name.
     #[test]
     fn a_new_option_arrives_everywhere() {
         let mut command = WithInvented::augment_args(Command::new("dock"));
@@ -190,8 +191,8 @@ mod tests {
         assert!(given.iter().all(|option| option.scope() == Scope::Meshes));
     }
 
-    /// The heading of each option is the name of its struct's field, and its name that of its own field: so the command line, files and records
-    /// agree. Options of the machine are in no record.
+    /// The heading of each option is the name of its struct's field, and its name that of its own field: so the
+    /// command line, files and records agree. Options of the machine are in no record.
     #[test]
     fn names_and_headings_are_those_of_the_fields() {
         let record = serde_json::to_value(DockOptions::default()).unwrap();

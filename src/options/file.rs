@@ -37,9 +37,9 @@ pub struct ConfigError {
     pub path: PathBuf,
     /// 1-based line, where one is at fault.
     pub line: Option<u64>,
-    /// What is wrong.
+    /// The fault, in words.
     pub message: String,
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub remedy: String,
 }
 
@@ -63,7 +63,7 @@ pub fn read<T: Args>(path: &Path) -> Result<Vec<Entry>, ConfigError> {
     })
 }
 
-/// What is wrong with a part of a file.
+/// The fault in a part of a file.
 struct Wrong {
     span: Option<Range<usize>>,
     message: String,

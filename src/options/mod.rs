@@ -1,7 +1,7 @@
 //! The options of a docking run, each defined once.
 //!
-//! An option is a field of one of the structs here, a struct a subject. The field's doc comment is its help. `default_value_t` is its
-//! default, `value_parser` its range, `value_name` its unit. From the field come:
+//! An option is a field of one of the structs here, a struct a subject. The field's doc comment is its help.
+//! `default_value_t` is its default, `value_parser` its range, `value_name` its unit. From the field come:
 //!
 //! | what | how |
 //! |---|---|
@@ -15,9 +15,10 @@
 //!
 //! # To add an option
 //!
-//! Add a field, and the code that uses it. The field, the option on the command line and the key in files have the same name. The heading
-//! of the struct is the name of its table in files; `(molecules)` or `(meshes)` behind it says what the options have an effect on. The
-//! tests of [`definition`] hold both, and let an option of a struct of their own arrive everywhere.
+//! Add a field, and the code that uses it. The field, the option on the command line and the key in files have the
+//! same name. The heading of the struct is the name of its table in files; `(molecules)` or `(meshes)` behind it says
+//! what the options have an effect on. The tests of [`definition`] hold both, and let an option of a struct of their
+//! own arrive everywhere.
 
 pub mod check;
 pub mod definition;
@@ -119,7 +120,7 @@ impl Default for DockOptions {
     }
 }
 
-/// What is known of each option, in their order.
+/// Definitions of all options, in their order.
 pub fn definitions() -> &'static [Definition] {
     static ALL: OnceLock<Vec<Definition>> = OnceLock::new();
     ALL.get_or_init(definitions_of::<DockOptions>)

@@ -1,4 +1,4 @@
-//! What a run writes.
+//! Options on what a run writes.
 
 use clap::Args;
 use serde::{Deserialize, Serialize};

@@ -13,9 +13,9 @@ pub struct PotentialFileError {
     pub path: PathBuf,
     /// 1-based line, where one is at fault.
     pub line: Option<u64>,
-    /// What is wrong.
+    /// The fault, in words.
     pub message: String,
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub remedy: String,
 }
 

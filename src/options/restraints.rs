@@ -1,4 +1,4 @@
-//! What is known of the contacts.
+//! Options on known contacts.
 
 use clap::{Args, ValueEnum};
 use knotdock_structures::molecule::ResidueSelection;
@@ -16,28 +16,28 @@ pub struct RestraintOptions {
     /// What a contact costs that a blocked atom makes: score.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 1.0)]
     pub restraint_weight: f64,
-    /// What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining regions and what
-    /// lies within 5 Å of them, or whole, all of it.
+    /// What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining
+    /// regions and what lies within 5 Å of them, or whole, all of it.
     #[arg(long, value_enum, value_name = "cdrs|whole", hide_possible_values = true, default_value_t = AntibodySurface::Cdrs)]
     pub antibody: AntibodySurface,
-    /// Residues of the receptor to keep free of contact: H:1-50,52,52A,L for a range with all that is inserted in it, a residue, an
-    /// inserted one and a chain. A chain without a name is _; after a residue its chain's name may be left out, unless another chain
-    /// is called so.
+    /// Residues of the receptor to keep free of contact: H:1-50,52,52A,L for a range with all that is inserted in it,
+    /// a residue, an inserted one and a chain. A chain without a name is _; after a residue its chain's name may be
+    /// left out, unless another chain is called so.
     #[arg(long, value_name = "RESIDUES")]
     pub block_receptor: Option<ResidueSelection>,
     /// Residues of the ligand to keep free of contact, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub block_ligand: Option<ResidueSelection>,
-    /// Active residues of the receptor, thought to be in contact: poses that touch them rank higher, by --active-weight. In the search
-    /// each contact of theirs earns a 250th of that, divided by their number.
+    /// Active residues of the receptor, thought to be in contact: poses that touch them rank higher, by
+    /// --active-weight. In the search each contact of theirs earns a 250th of that, divided by their number.
     #[arg(long, value_name = "RESIDUES")]
     pub active_receptor: Option<ResidueSelection>,
     /// Active residues of the ligand, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub active_ligand: Option<ResidueSelection>,
-    /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues that does: score.
-    /// Peptidases are detected from their sequence, and this counts where the contact effect is on, no residue is active and the
-    /// other is neither peptidase nor antibody; 0 for none.
+    /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues
+    /// that does: score. Peptidases are detected from their sequence, and this counts where the contact effect is on,
+    /// no residue is active and the other is neither peptidase nor antibody; 0 for none.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
     pub peptidase_weight: f64,
 }

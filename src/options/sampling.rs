@@ -1,4 +1,4 @@
-//! How meshes are sampled.
+//! Options on sampling meshes.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! How densely and on what is searched.
+//! Options on the search: its density, and the hardware that it runs on.
 
 use clap::{Args, ValueEnum};
 use knotdock_scoring::symmetry::Symmetry;
@@ -11,24 +11,24 @@ use super::values::{count, rotations, share};
 #[command(next_help_heading = "Search")]
 #[serde(deny_unknown_fields)]
 pub struct SearchOptions {
-    /// Rotations of the ligand, near uniform over all: their number, or their angle. An angle such as 15deg stands for the field's
-    /// count 3600 (15/D)^3, so that 6deg gives 56,250. With `dock --symmetry` axes, by default 900 over half a sphere or 90 across a
-    /// ring's own.
+    /// Rotations of the ligand, near uniform over all: their number, or their angle. An angle such as 15deg stands
+    /// for the field's count 3600 (15/D)^3, so that 6deg gives 56,250. With `dock --symmetry` axes, by default 900
+    /// over half a sphere or 90 across a ring's own.
     #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
     pub rotations: usize,
-    /// Search again, among this many rotations (or this angle, likewise), about the best: their peaks take the place of the best
-    /// rotations' own.
+    /// Search again, among this many rotations (or this angle, likewise), about the best: their peaks take the place
+    /// of the best rotations' own.
     #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS))]
     pub fine_rotations: Option<usize>,
     /// Share of the finer rotations that are searched.
     #[arg(long, value_name = "X", value_parser = share, default_value_t = 0.05)]
     pub fine_share: f64,
-    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is reported is in
-    /// double precision either way.
+    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is
+    /// reported is in double precision either way.
     #[arg(long, value_enum, value_name = "single|double", hide_possible_values = true, default_value_t = Precision::Single)]
     pub precision: Precision,
-    /// What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single precision; of
-    /// several the environment variable WGPU_ADAPTER_NAME names one.
+    /// What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single
+    /// precision; of several the environment variable WGPU_ADAPTER_NAME names one.
     #[arg(long, value_enum, value_name = "cpu|gpu", hide_possible_values = true, default_value_t = EngineChoice::Cpu)]
     pub engine: EngineChoice,
     /// Peaks kept of each rotation.
@@ -37,14 +37,14 @@ pub struct SearchOptions {
     /// Poses kept of all rotations.
     #[arg(long, value_name = "N", value_parser = count(1..=10_000_000), default_value_t = 2000)]
     pub poses: usize,
-    /// Best poses to refine off the grid [default: 600 with shape alone, none beside other effects, where tighter fits make no better
-    /// a ranking].
+    /// Best poses to refine off the grid [default: 600 with shape alone, none beside other effects, where tighter
+    /// fits make no better a ranking].
     #[arg(long, value_name = "N")]
     pub refine: Option<usize>,
-    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies about an axis. Where
-    /// RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings face to face. --rotations then counts
-    /// axes, and each pose is where the second copy or ring goes. Residues that --block-receptor and --active-receptor name are those
-    /// of every copy, or of both rings.
+    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies about an
+    /// axis. Where RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings face to
+    /// face. The option --rotations then counts axes, and each pose is where the second copy or ring goes. Residues
+    /// that --block-receptor and --active-receptor name are those of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn")]
     pub symmetry: Option<Symmetry>,
 }
@@ -52,8 +52,8 @@ pub struct SearchOptions {
 /// Maximum number of rotations of a set.
 const MAX_ROTATIONS: usize = 10_000_000;
 
-/// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on the ligand's random start
-/// orientation (docs/defaults.md). Beside other effects refining cost ranks.
+/// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on the
+/// ligand's random start orientation (docs/defaults.md). Beside other effects refining cost ranks.
 pub const REFINED_BY_SHAPE: usize = 600;
 
 /// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.
@@ -62,7 +62,8 @@ pub const AXES: usize = 900;
 /// Axes of two rings by default: of D2 at steps of one degree, of Dn of 2 / n degrees.
 pub const AXES_ACROSS: usize = 90;
 
-/// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision whatever it is.
+/// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision
+/// whatever it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {

@@ -26,10 +26,12 @@ pub struct TermOptions {
     /// Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
     pub contact_potential: Option<Potential>,
-    /// Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py --fine writes it.
+    /// Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py --fine
+    /// writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::fine_contact, value_hint = ValueHint::FilePath)]
     pub fine_contact_potential: Option<DistanceBinnedPotential>,
-    /// Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py writes it.
+    /// Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py writes
+    /// it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
     pub atom_pair_potential: Option<AtomPairPotential>,
     /// Weights of the pose terms.

@@ -44,8 +44,8 @@ pub(super) fn defaults<T: Args>() -> T {
     }
 }
 
-/// The words that give an option its value in `options`. None for a value of `None`, a flag that is off and a table, which was checked
-/// when it was read.
+/// The words that give an option its value in `options`. None for a value of `None`, a flag that is off and a table,
+/// which was checked when it was read.
 fn words_of(option: &Definition, options: &Value) -> Result<Vec<OsString>, OptionError> {
     let Some(value) = value_of(option, options) else {
         return Ok(Vec::new());

@@ -47,7 +47,8 @@ impl Scale {
             .collect()
     }
 
-    /// Powers of two within the axis, as exponents: every one, or every second or third where they would stand too close.
+    /// Powers of two within the axis, as exponents: every one, or every second or third where they would stand too
+    /// close.
     pub fn powers_of_two(self) -> Vec<i32> {
         let doubling = 2f64.log10();
         let step = (((self.high - self.low) / doubling / 8.0).ceil() as i32).max(1);

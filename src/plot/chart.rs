@@ -51,7 +51,7 @@ pub struct Axis {
     pub named: Option<(f64, &'static str)>,
 }
 
-/// How the points of a curve are shown.
+/// Style of a curve's points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// A line and filled discs.

@@ -27,7 +27,8 @@ pub(super) fn text_width(text: &str) -> f64 {
 
 /// A place for each label beside its point, in order; `None` where there is no room for it.
 ///
-/// `points` are those of the labels and `others` further ones, in pixels; labels stay within the `frame` (left, upper, right, lower).
+/// `points` are those of the labels and `others` further ones, in pixels; labels stay within the `frame` (left,
+/// upper, right, lower).
 pub(super) fn place(
     points: &[([f64; 2], &str)],
     others: &[[f64; 2]],

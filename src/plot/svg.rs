@@ -71,7 +71,8 @@ impl Svg {
         );
     }
 
-    /// Square pixels of an edge length in rows of `width`, the uppermost row first; neighbours of one colour become one rectangle.
+    /// Square pixels of an edge length in rows of `width`, the uppermost row first; neighbours of one colour become
+    /// one rectangle.
     pub fn pixels(&mut self, edge: f64, width: usize, colours: &[Option<Colour>]) {
         put!(self, "<g shape-rendering=\"crispEdges\">");
         for (row, colours) in colours.chunks(width.max(1)).enumerate() {

@@ -3,7 +3,7 @@
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::Symmetry;
 
-/// What a run puts together.
+/// Arrangement of the bodies of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrangement {
     /// A receptor and a ligand.

@@ -24,7 +24,7 @@ pub fn axis_set(count: usize) -> Vec<Unit<Vector3<f64>>> {
 
 /// Largest angle in radians from any axis to the nearest of the set; axes have no sign.
 ///
-/// It is taken over a fixed sample of directions, so it is a lower bound, within a few per cent.
+/// It is computed over a fixed sample of directions, so it is a lower bound, within a few per cent.
 pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
     // About 1e8 comparisons at most.
     let probes = (100_000_000 / axes.len().max(1)).clamp(64, 20_000);
@@ -46,7 +46,8 @@ pub fn axes_radius(axes: &[Unit<Vector3<f64>>]) -> f64 {
 mod tests {
     use super::*;
 
-    /// n caps of the covering radius hide the half sphere, so that their area is at least its own; and the set is not much worse than that.
+    /// n caps of the covering radius cover the half sphere, so their area is at least its own. The set is not much
+    /// worse than that.
     #[test]
     fn axes_cover_the_half_sphere_evenly() {
         for count in [20, 300, 900, 3600, 10_000] {

@@ -2,7 +2,7 @@
 
 use knotdock_scoring::se3::Pose;
 
-/// Which poses describe the same complex as a pose M.
+/// Poses that describe the same complex as a pose M.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Equivalents {
     /// No others.

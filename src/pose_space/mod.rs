@@ -1,7 +1,8 @@
 //! The poses that a run may have: free ones, rings (Cn), and two rings about each other (Dn).
 //!
-//! All that differs between the three is in [`PoseSpace`]: the rotations to sample, the voxels that count, how a pose is
-//! refined, and which copies a pose stands for. [`Arrangement`] is the part of it that the options alone decide.
+//! All that differs between the three is in [`PoseSpace`]. It holds the rotations to sample, the voxels that count,
+//! how a pose is refined, and which copies a pose stands for. [`Arrangement`](arrangement::Arrangement) is the part
+//! of it that the options alone decide.
 
 pub mod arrangement;
 pub mod axes;

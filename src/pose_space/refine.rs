@@ -19,7 +19,7 @@ pub struct AscentLimits {
     pub angle: f64,
     /// Radius of gyration of the ligand, Å: an angle times this is a length, so that both kinds of step compare.
     pub gyration: f64,
-    /// What plays the part of an Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
+    /// Length that stands for one Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
     pub angstrom: f64,
 }
 
@@ -65,8 +65,8 @@ pub(crate) fn printed(pose: &Pose) -> Pose {
 
 /// Maximizes a score from `start`. Returned are the best pose found and its score.
 ///
-/// `score` gives value and gradient (per Å, per radian). `moved` applies a rotation and a shift to a pose: to the ligand
-/// about its centre ([`rigid_body`]), or to the two bodies of a ring together.
+/// `score` gives value and gradient (per Å, per radian). `moved` applies a rotation and a shift to a pose: to the
+/// ligand about its centre ([`rigid_body`]), or to the two bodies of a ring together.
 pub fn maximize(
     start: Pose,
     ligand_center: Vector3<f64>,

@@ -1,4 +1,5 @@
-//! Rings of copies: their score by the fast path and its ascent, about any axis (Cn) or about axes across a ring's own (Dn).
+//! Rings of copies: their score by the fast path and its ascent, about any axis (Cn) or about axes across a ring's
+//! own (Dn).
 
 use super::refine::{AscentLimits, maximize};
 use knotdock_scoring::exact::{ExactScorer, PoseGradient};
@@ -85,10 +86,10 @@ mod tests {
     use nalgebra::{Unit, UnitQuaternion};
     use std::f64::consts::PI;
 
-    /// Four copies so near the axis that those across it feel each other: the gradient is what moves of the molecule gain, by the exact sum over all pairs, and a
-    /// ascent ends higher, on a ring.
+    /// Four copies so near the axis that those across it interact. The gradient agrees with moves of the molecule by
+    /// the exact sum over all pairs. An ascent ends higher, on a ring.
     #[test]
-    fn copies_across_the_axis_are_climbed_with_the_rest() {
+    fn copies_across_the_axis_are_maximized_with_the_rest() {
         let centers = vec![
             [0.0, 0.0, 0.0],
             [2.6, 0.4, 1.1],
@@ -98,8 +99,8 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
         let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let field = PotentialGrid::new(&plan, &folded, &knots);
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let field = PotentialGrid::new(&plan, &spectra, &knots);
         let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
@@ -171,10 +172,10 @@ mod tests {
         ring.map_positions(|[x, y, z]| [x + 30.0, y - 20.0, z + 9.0])
     }
 
-    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis, and the ascent from one ends where neither a turn about that axis nor a
-    /// shift along it gains anything by the exact sum.
+    /// Two rings of two strands: the grid's peaks lie by half turns across the ring's axis. The ascent from one ends
+    /// at a maximum of the exact sum, by rotation about that axis and by shift along it.
     #[test]
-    fn of_two_rings_peaks_are_dihedral_and_climbs_end_on_tops() {
+    fn of_two_rings_peaks_are_dihedral_and_ascents_end_on_maxima() {
         let ring = two_strands();
         let options = DockOptions::default().changed(|options| {
             options.search.symmetry = Some("D2".parse().unwrap());
@@ -183,7 +184,7 @@ mod tests {
         });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
-        let folded = ReceptorSpectra::<f32>::new(
+        let spectra = ReceptorSpectra::<f32>::new(
             &plan.search.engine,
             &plan.receptor,
             &plan.ligand,
@@ -192,7 +193,7 @@ mod tests {
         let search = &plan.search;
         let chosen = choose_rank(
             &search.engine,
-            &folded,
+            &spectra,
             &plan.ligand,
             &search.rotations.coarse,
         );
@@ -220,7 +221,7 @@ mod tests {
             assert!(off.norm() < 1.8 * plan.spacing, "{off}");
         }
 
-        let field = PotentialGrid::new(&plan.search.engine, &folded, &plan.ligand);
+        let field = PotentialGrid::new(&plan.search.engine, &spectra, &plan.ligand);
         let scorer = plan.exact_scorer().unwrap();
         let limits = AscentLimits {
             evaluations: 60,

@@ -118,16 +118,16 @@ mod tests {
     use knotdock_structures::Knots;
     use std::sync::Arc;
 
-    /// The voxels that stay are those about whose position the pose can slide both ways along its axis, wherever the molecule stands in its file; and each
-    /// row's largest value is its own.
+    /// The filter keeps the voxels about whose position the pose can slide both ways along its axis, wherever the
+    /// molecule stands in its file. Each row's largest value is its own.
     #[test]
     fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
         let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let voxels = VoxelFilter::new(&engine, None);
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "C3".parse().unwrap();
@@ -166,8 +166,8 @@ mod tests {
         }
     }
 
-    /// Where the axis must cross a ring's own, voxels stay about which the pose moves a point of that axis both ways aside, too: a line of them is left, which
-    /// holds the half turns at all heights.
+    /// Where the axis must cross a ring's own, the filter keeps the voxels about which the pose also moves a point of
+    /// that axis both ways aside. They form a line, which holds the half turns at all heights.
     #[test]
     fn of_two_rings_voxels_along_their_axis_stay() {
         let copies = [1.0, -1.0].map(|side| {
@@ -179,8 +179,8 @@ mod tests {
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let folded = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
-        let engine = CpuEngine::new(Arc::clone(&plan), &folded, &knots, folded.full_rank());
+        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "D2".parse().unwrap();
         for across in axis.across(5) {

@@ -65,7 +65,8 @@ impl ActiveResidues {
 impl AssumedSite {
     /// The favoured sites of one side, if the other has none, and no side has an exclusive site.
     ///
-    /// Sites with excluded atoms are left out. An antibody against an enzyme may bind anywhere, so its exclusive site leaves no assumption.
+    /// Sites with excluded atoms are left out. An antibody against an enzyme may bind anywhere, so its exclusive site
+    /// leaves no assumption.
     fn of(sites: [&[Site]; 2], roles: [&[ResidueRole]; 2]) -> Option<Self> {
         let of_role =
             |side: usize, role: SiteRole| sites[side].iter().filter(move |s| s.role == role);
@@ -123,8 +124,8 @@ mod tests {
         read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
     }
 
-    /// Trypsin is detected on either side, and its inhibitor is not. There are no active residues without a weight, without the contact
-    /// effect, with an excluded site or with other residues named.
+    /// Trypsin is detected on either side, and its inhibitor is not. There are no active residues without a weight,
+    /// without the contact effect, with an excluded site or with other residues named.
     #[test]
     fn the_active_site_of_a_peptidase_is_active() {
         let (trypsin, inhibitor) = (example("receptor_unbound"), example("ligand_unbound"));
@@ -188,7 +189,8 @@ mod tests {
     /// The heavy chain of trastuzumab as CA atoms. It is an antibody also where all of it may bind.
     #[test]
     fn an_antibody_against_a_peptidase_may_be_anywhere() {
-        let sequence = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLRAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
+        let sequence = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLR\
+            AEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
         let names =
             "ALA CYS ASP GLU PHE GLY HIS ILE LYS LEU MET ASN PRO GLN ARG SER THR VAL TRP TYR";
         let names: Vec<&str> = names.split(' ').collect();

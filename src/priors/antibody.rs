@@ -61,7 +61,7 @@ impl VariableKind {
 /// A variable domain of an antibody.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VariableDomain {
-    /// Which chain it belongs to.
+    /// Kind of the chain that it belongs to.
     pub kind: VariableKind,
     /// The file's name of the chain that it stands in; may be empty.
     pub chain: String,
@@ -72,7 +72,7 @@ pub struct VariableDomain {
     pub cdrs: [Vec<String>; 3],
 }
 
-/// What an antibody is and where it binds.
+/// An antibody: its variable domains and its binding site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Antibody {
     /// Its variable domains, in file order.
@@ -290,10 +290,12 @@ mod tests {
     use knotdock_structures::molecule::{Atom, Format};
 
     /// Variable domains of trastuzumab (its heavy and its kappa chain).
-    const HEAVY: &str = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSLRAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
+    const HEAVY: &str = "EVQLVESGGGLVQPGGSLRLSCAASGFNIKDTYIHWVRQAPGKGLEWVARIYPTNGYTRYADSVKGRFTISADTSKNTAYLQMNSL\
+        RAEDTAVYYCSRWGGDGFYAMDYWGQGTLVTVSS";
     const KAPPA: &str = "DIQMTQSPSSLSASVGDRVTITCRASQDVNTAVAWYQQKPGKAPKLLIYSASFLYSGVPSRFSGSRSGTDFTLTISSLQPEDFATYYCQQHYTTPPTFGQGTKVEIK";
     /// Hen egg-white lysozyme, which they have nothing in common with.
-    const LYSOZYME: &str = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSDITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
+    const LYSOZYME: &str = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSAL\
+        LSSDITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
 
     /// Alpha carbons 3.8 Å apart on a line, numbered from `first`.
     fn chain(name: &str, sequence: &str, first: i64) -> Vec<Atom> {

@@ -16,7 +16,7 @@ pub use peptidase::ActiveSite;
 
 use knotdock_structures::molecule::Molecule;
 
-/// How a site enters the score of a pose.
+/// Role of a site in the score of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteRole {
     /// The molecule binds here alone: contacts of its other atoms take off the score.
@@ -28,7 +28,7 @@ pub enum SiteRole {
 /// A part of a molecule that mostly binds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Site {
-    /// How it enters the score.
+    /// Role in the score.
     pub role: SiteRole,
     /// Its residues in file order, each by the indices of those atoms that belong to the site.
     pub residues: Vec<Vec<usize>>,
@@ -46,7 +46,7 @@ pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
     sites.flatten().collect()
 }
 
-/// What `knotdock inspect` reports of a molecule.
+/// Sites found in a molecule, for the report of `knotdock inspect`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Findings {
     /// The entry in JSON.

@@ -19,8 +19,8 @@ use serde_json::json;
 use super::peptidase_families::{Anchor, families};
 use super::{Findings, Prior, Site, SiteRole};
 
-/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md, "Active
-/// sites").
+/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md,
+/// "Active sites").
 pub const WEIGHT: f64 = 500.0;
 
 /// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
@@ -277,17 +277,19 @@ mod tests {
                 pieces.collect::<Vec<_>>().concat()
             };
             assert_eq!(sites(atoms(&numbers)), [(family, named(residues))]);
-            // The same segments of a chain whose catalytic residues stand apart are chance.
+            // The same segments of a chain whose catalytic residues are not together are chance.
             if pieces.len() > 1 {
                 assert_eq!(sites(atoms(&numbers[..1])), [], "{family}");
             }
         }
     }
 
-    /// Whole enzymes with their catalytic residues in crystal numbering: family, number of the first residue, sequence, residues.
+    /// Whole enzymes with their catalytic residues in crystal numbering: family, number of the first residue,
+    /// sequence, residues.
     ///
-    /// Bovine chymotrypsinogen A (2CGA), subtilisin BPN' (1SBT), papain (9PAP), porcine pepsin A (4PEP), the protease of HIV-1 as a
-    /// dimer (3HVP), the catalytic domain of human collagenase MMP-1 (1HFC) and bovine carboxypeptidase A (5CPA).
+    /// Bovine chymotrypsinogen A (2CGA), subtilisin BPN' (1SBT), papain (9PAP), porcine pepsin A (4PEP), the protease
+    /// of HIV-1 as a dimer (3HVP), the catalytic domain of human collagenase MMP-1 (1HFC) and bovine carboxypeptidase
+    /// A (5CPA).
     const ENZYMES: [(&str, i64, &str, &[&str]); 7] = [
         (
             "S1",
@@ -346,7 +348,8 @@ mod tests {
         ),
     ];
 
-    /// In each whole enzyme the patterns fit at the catalytic residues that its crystal structure shows, and nowhere else.
+    /// In each whole enzyme the patterns fit at the catalytic residues that its crystal structure shows, and nowhere
+    /// else.
     ///
     /// All residues stand together here, so the patterns alone decide.
     #[test]
@@ -362,8 +365,8 @@ mod tests {
         }
     }
 
-    /// Their relatives by the same segments: urokinase, a peptidase of Streptomyces, furin, proteinase K, cathepsins B, L and D, the protease of HIV (of a family
-    /// next to A1), ADAM17 and carboxypeptidase B.
+    /// Their relatives by the same segments: urokinase, a peptidase of Streptomyces, furin, proteinase K, cathepsins
+    /// B, L and D, the protease of HIV (of a family next to A1), ADAM17 and carboxypeptidase B.
     #[test]
     fn relatives_are_detected_by_the_same() {
         for (family, segments) in [
@@ -421,7 +424,8 @@ mod tests {
     /// Hen egg-white lysozyme, an enzyme that cuts no proteins; a residue without its CA; nothing at all.
     #[test]
     fn what_is_no_peptidase_has_none() {
-        let lysozyme = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSDITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
+        let lysozyme = "KVFGRCELAAAMKRHGLDNYRGYSLGNWVCAAKFESNFNTQATNRNTDGSTDYGILQINSRWWCNDGRTPGSRNLCNIPCSALLSSD\
+            ITASVNCAKKIVSDGNGMNAWVAWRGTDVQAWIRGCRL";
         let all: Vec<i64> = (1..130).collect();
         assert_eq!(sites(chain("A", lysozyme, 1, &all)), []);
         let mut atoms = chain("A", "AAHELGHSLGLSHS", 216, &[218, 219]);

@@ -18,7 +18,8 @@ pub(crate) struct Restraints {
 }
 
 impl Restraints {
-    /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active are active.
+    /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active
+    /// are active.
     ///
     /// # Errors
     /// [`SearchError::Option`] when residues are named that a molecule does not have.
@@ -138,8 +139,8 @@ pub(crate) mod tests {
     use super::*;
     use knotdock_structures::molecule::{Atom, Format};
 
-    /// CA atoms of glycines 1 to 4, each `apart` Å from the next.
-    pub fn peptide(apart: f64) -> Molecule {
+    /// CA atoms of glycines 1 to 4, each `spacing` Å from the next.
+    pub fn peptide(spacing: f64) -> Molecule {
         let atom = |residue_number: i64| Atom {
             name: "CA".to_owned(),
             residue_name: "GLY".to_owned(),
@@ -148,7 +149,7 @@ pub(crate) mod tests {
             insertion_code: None,
             alternate_location: None,
             element: "C".to_owned(),
-            position: [apart * residue_number as f64, 0.0, 0.0],
+            position: [spacing * residue_number as f64, 0.0, 0.0],
             occupancy: 1.0,
             b_factor: 0.0,
             hetero: false,
@@ -191,7 +192,7 @@ pub(crate) mod tests {
 
     /// Residues that are both blocked and active are active.
     #[test]
-    fn active_residues_have_their_role_and_are_listed() {
+    fn active_residues_have_their_role_and_an_entry() {
         let molecule = peptide(10.0);
         let options = DockOptions::default().changed(|options| {
             options.restraints.block_receptor = Some("A:3-4".parse().unwrap());

@@ -1,4 +1,5 @@
-//! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form clusters.
+//! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form
+//! clusters.
 
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
@@ -29,7 +30,8 @@ pub(crate) struct Candidate {
     pub score_grid: f64,
 }
 
-/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the starts of the first.
+/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the
+/// starts of the first.
 pub(crate) fn candidates(
     peaks: &[Peak],
     placed: &[RefinedPose],
@@ -106,11 +108,11 @@ pub(crate) fn deduplicated(
         .map(|(candidate, &cluster)| {
             let others = &mut standing[cluster];
             let near = body.first_within(others, &candidate.pose, step);
-            let apart = near.is_none();
-            if apart && candidate.refined {
+            let is_distinct = near.is_none();
+            if is_distinct && candidate.refined {
                 others.push(body.place(&candidate.pose));
             }
-            apart
+            is_distinct
         })
         .collect()
 }
@@ -120,9 +122,10 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for the other.
+    /// A refined pose stands for all of its cluster about it; a grid pose for none, and of two clusters neither for
+    /// the other.
     #[test]
-    fn repeats_are_not_listed_within_their_cluster() {
+    fn a_cluster_has_no_repeats() {
         let body = RigidBody::new(&[[0.0; 3]]);
         let at = |x: f64| Pose {
             translation: Vector3::new(x, 0.0, 0.0),

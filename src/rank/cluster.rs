@@ -1,7 +1,8 @@
 //! Clusters of poses by the ligand's RMSD, in closed form.
 //!
-//! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')), c the images
-//! of the points' mean and C their covariance: O(1) a pair of poses.
+//! For two rigid poses of one body the mean square distance of its points is |c1 - c2|^2 + 2 (tr C - tr(R1 C R2')).
+//! Here c1 and c2 are the images of the points' mean, and C is their covariance. The cost is O(1) for a pair of
+//! poses.
 
 use crate::pose_space::equivalents::Equivalents;
 use knotdock_scoring::se3::Pose;
@@ -67,9 +68,11 @@ impl RigidBody {
         })
     }
 
-    /// RMSD in Å between two poses that are `shift` (Å) and a turn by `angle` (radians) about the body's middle apart, as the root of the mean square over axes.
+    /// RMSD in Å between two poses that differ by `shift` (Å) and by a rotation of `angle` (radians) about the body's
+    /// middle: root of the mean square over axes.
     ///
-    /// About a unit axis n the turn moves the points by 2 (1 - cos angle) (tr C - n' C n) in mean square, and n' C n is a third of tr C in the mean.
+    /// About a unit axis n the rotation moves the points by 2 (1 - cos angle) (tr C - n' C n) in mean square. The
+    /// mean of n' C n over axes is a third of tr C.
     pub fn step(&self, shift: f64, angle: f64) -> f64 {
         let turned = 4.0 / 3.0 * (1.0 - angle.cos()) * self.covariance.trace();
         (shift * shift + turned).sqrt()
@@ -99,8 +102,8 @@ impl RigidBody {
     }
 }
 
-/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius` (Å RMSD), or
-/// becomes the centre of a new one. Returns each pose's cluster, numbered from 0 in that order.
+/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius`
+/// (Å RMSD), or becomes the centre of a new one. Returns each pose's cluster, numbered from 0 in that order.
 pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
     let mut centres: Vec<PlacedBody> = Vec::new();
     poses
@@ -140,7 +143,7 @@ mod tests {
         assert!(body.mean_square(&body.place(&a), &body.place(&a)) < 1e-10);
     }
 
-    /// A third of a turn back is the same ring as a third forward, and only where rings are asked for.
+    /// A third of a turn back is the same ring as a third forward, and only where rings are requested.
     #[test]
     fn rings_are_one_with_their_inverses() {
         let body = RigidBody::new(&[[9.0, 0.0, 0.0], [10.0, 3.0, 0.0], [9.0, 1.0, 5.0]]);

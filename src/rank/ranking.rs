@@ -1,18 +1,19 @@
 //! The ranking: clusters by the fast path's scores, and every row that is reported by its exact score.
 //!
-//! The fast path's error is measured in every run and far below what sets clusters apart, while an exact sum costs as much as a whole
-//! rotation of the search. So poses are merged and clustered by the fast path's values (the grid's, or the receptor field's where a
-//! pose was refined); rows of the table carry exact scores.
+//! The fast path's error is measured in every run and is far below the differences between clusters. An exact sum
+//! costs as much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the
+//! grid's, or the receptor field's where a pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the score and the terms of rescoring together: the pose score; of rings with what copies beyond the
-//! neighbours add to it.
+//! Where poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings
+//! it includes what copies beyond the neighbours add.
 //!
-//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores: the best pose's where it stands alone, more where many
-//! good poses lie about it, as about a native one they do. T is a tenth of the run's best score: on training pairs anything from a
-//! twentieth to a fifth ranked better than the best pose alone (docs/defaults.md).
+//! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
+//! score where that pose stands alone. It is more where many good poses lie about it, as they do about a native one.
+//! T is a tenth of the run's best score: on training pairs anything from a twentieth to a fifth ranked better than
+//! the best pose alone (docs/defaults.md).
 //!
-//! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same score,
-//! so that such a cluster has many good poses; where a joint fits there is one place.
+//! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
+//! score, so that such a cluster has many good poses; where a joint fits there is one place.
 
 use crate::dock::outcome::RankedPose;
 use crate::dock::scene::LengthUnit;
@@ -25,14 +26,14 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
-/// What rows of the table are scored by.
+/// Scorer of the table's rows.
 #[derive(Clone, Copy)]
 pub(crate) struct PoseScorer<'a> {
     /// The exact score.
     pub scorer: &'a ExactScorer,
-    /// What poses are rescored with.
+    /// Terms that rescore poses.
     pub rescorer: Option<&'a Rescorer>,
-    /// Which effects are on, by effect.
+    /// Effects that are on.
     pub on: [bool; Effect::ALL.len()],
     /// The poses that are searched.
     pub space: &'a PoseSpace,
@@ -40,7 +41,7 @@ pub(crate) struct PoseScorer<'a> {
     pub cluster_temperature: f64,
 }
 
-/// What is reported of the ranking.
+/// The ranked rows, and the number of clusters.
 pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
@@ -58,10 +59,12 @@ pub(crate) fn cluster_temperature(unit: LengthUnit) -> f64 {
 /// Most rows that a thread takes at once: refined ones take longer and come first.
 const ROWS_TOGETHER: usize = 8;
 
-/// Exactly scored rows: every pose that is listed, ordered by their exact scores, or the best of each cluster, ordered by the clusters' scores, by which
-/// clusters are numbered; ties in the order given.
+/// Exactly scored rows: every distinct pose by exact score, or the best of each cluster by the cluster's score.
 ///
-/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are scored.
+/// Clusters are numbered by their scores. Ties stay in the order given.
+///
+/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are
+/// scored.
 pub(crate) fn report(
     pose_scorer: PoseScorer,
     candidates: &[Candidate],
@@ -70,7 +73,7 @@ pub(crate) fn report(
     margin: f64,
     progress: &dyn Progress,
 ) -> Ranking {
-    let (clusters, listed) = clusters;
+    let (clusters, distinct) = clusters;
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -79,13 +82,13 @@ pub(crate) fn report(
     let background = Background::of(candidates);
     let mut centres = vec![f64::NEG_INFINITY; count];
     let mut wanted: Vec<(&Candidate, usize)> = Vec::new();
-    for ((candidate, &cluster), &listed) in candidates.iter().zip(clusters).zip(listed) {
+    for ((candidate, &cluster), &is_distinct) in candidates.iter().zip(clusters).zip(distinct) {
         sizes[cluster] += 1;
         // The centre comes first, being the best by the fast path.
         centres[cluster] = centres[cluster].max(candidate.score);
         // Scores against the centre's, so that nothing overflows.
         weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
-        if listed && (every_pose || candidate.score >= centres[cluster] - margin) {
+        if is_distinct && (every_pose || candidate.score >= centres[cluster] - margin) {
             wanted.push((candidate, cluster));
         }
     }
@@ -141,14 +144,14 @@ pub(crate) fn report(
     }
 }
 
-/// What the run's kept poses score on the whole.
+/// Mean and spread of the scores of the run's kept poses.
 struct Background {
     mean: f64,
     /// Nothing where scores differ by no more than the fast path may be off by.
     deviation: Option<f64>,
 }
 
-/// Least spread of scores, as a share of the largest, that tells one pose from another.
+/// Least spread of scores, as a share of the largest, that distinguishes poses.
 const MIN_SPREAD: f64 = 1e-3;
 
 impl Background {
@@ -185,7 +188,7 @@ impl Candidate {
         let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
         let (pose, terms, others, refined) = if self.refined {
             let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
-            // A climb on the fast path's values that the exact sum does not confirm is undone.
+            // An ascent on the fast path's values that the exact sum does not confirm is undone.
             let before = match &self.terms {
                 Some(terms) => terms.score,
                 None => scorer.score_only(&self.start),
@@ -200,7 +203,7 @@ impl Candidate {
             (self.start, at_start(), others(&self.start), false)
         };
         let pose_terms = match rescorer {
-            // An undone climb leaves another pose than was rescored.
+            // An undone ascent leaves another pose than was rescored.
             Some(rescorer) if refined != self.refined => {
                 rescorer.score(&pose, &mut Workspace::default())
             }
@@ -280,14 +283,15 @@ mod tests {
         assert_eq!(with(&[2.0, 2.0]).z_score(2.0), None);
     }
 
-    /// A climb whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one stands.
+    /// An ascent whose gain the fast path saw and the exact sum does not is undone, and the row says so; a true one
+    /// stands.
     #[test]
-    fn an_undone_climb_is_reported_as_unrefined() {
+    fn an_undone_ascent_is_reported_as_unrefined() {
         let scorer = scorer();
         let exact = |x: f64| scorer.score_only(&at(x));
         let (touching, overlapping) = (4.2, 0.5);
         assert!(exact(touching) > exact(overlapping));
-        let climbed = |from: f64, to: f64| {
+        let ascent = |from: f64, to: f64| {
             let peak = Peak {
                 score: exact(from),
                 rotation: 0,
@@ -314,21 +318,21 @@ mod tests {
             );
             ranking.poses[0].clone()
         };
-        let undone = climbed(touching, overlapping);
+        let undone = ascent(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
         assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
-        let stands = climbed(overlapping, touching);
+        let stands = ascent(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
     }
 
-    /// Found by a user: a flat face slides on another at nearly the same score, and that cluster came before the joint that
-    /// fits, whose one pose had by 19% the best score of the run.
+    /// Found by a user: a flat face slides on another at nearly the same score. That cluster came before the joint
+    /// that fits, whose one pose had the best score of the run by 19%.
     #[test]
     fn company_counts_among_molecules_and_not_among_meshes() {
         let scorer = scorer();
         let score = |x: f64| scorer.score_only(&at(x));
-        // The best distance of the two atoms, and five farther apart that score nearly as much.
+        // The best distance of the two atoms, and five larger distances that score nearly as much.
         let tenths = (30..60).map(|tenths| f64::from(tenths) / 10.0);
         let best = tenths
             .max_by(|a, b| score(*a).total_cmp(&score(*b)))

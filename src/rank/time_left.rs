@@ -1,7 +1,7 @@
-//! How many poses there is time to rescore and score until a deadline.
+//! Number of poses that can be rescored and scored before a deadline.
 //!
-//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is done, on
-//! the machine as it then is, and the poses that scored least are left out where time is short.
+//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is
+//! done, on the machine as it then is, and the poses that scored least are left out where time is short.
 
 use crate::options::DockOptions;
 use crate::pose_space::refine::RefinedPose;
@@ -34,9 +34,9 @@ pub(crate) fn poses_in_time(
         let step = count.div_ceil(PROBES);
         let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
         let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
-        let begun = Instant::now();
+        let started = Instant::now();
         let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
-        begun.elapsed().as_secs_f64() / probed.max(1) as f64
+        started.elapsed().as_secs_f64() / probed.max(1) as f64
     });
     // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {

@@ -1,9 +1,10 @@
 //! Coarse to fine: rotations of a finer set about the best of the coarse one.
 //!
-//! Each rotation of the finer set belongs to the nearest rotation of the coarse one, in whose *cell* it lies. The coarse rotations' cells are
-//! searched in the order of their best peaks, until a given share of the finer set has been. In a searched cell the best peaks of all its rotations, coarse
-//! and fine, take the place of the coarse rotation's own, as many and as far apart: the list of poses is as long and as widely spread as before, its
-//! best regions at better places. (Keeping every fine peak would fill the list with copies of the best few.)
+//! Each rotation of the finer set belongs to the nearest rotation of the coarse one, in whose *cell* it lies. The
+//! coarse rotations' cells are searched in the order of their best peaks, until a given share of the finer set has
+//! been. In a searched cell the best peaks of all its rotations, coarse and fine, replace the coarse rotation's own.
+//! They are as many and as widely spaced, so the list of poses keeps its length and its spread, with better poses in
+//! its best regions. (Keeping every fine peak would fill the list with copies of the best few.)
 
 use crate::error::SearchError;
 use crate::pose_space::rotations::RotationSample;
@@ -17,7 +18,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What a finer search covered.
+/// Coverage of a finer search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FineSearched {
     /// Rotations of the finer set that were searched.
@@ -26,7 +27,8 @@ pub struct FineSearched {
     pub cells: usize,
 }
 
-/// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both, best first, and what was searched.
+/// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both,
+/// best first, and what was searched.
 ///
 /// # Errors
 /// As [`scan`].
@@ -92,7 +94,8 @@ pub(crate) fn search_finer<T: Real>(
     Ok((peaks, FineSearched { rotations, cells }))
 }
 
-/// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's peaks may.
+/// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's
+/// peaks may.
 fn spaced(
     peaks: &[Peak],
     count: usize,

@@ -19,8 +19,8 @@ impl std::fmt::Debug for Deadline {
 }
 
 impl Deadline {
-    /// A run that ends at `end`. `rotation` is the seconds on the clock that a rotation of the search is expected to take,
-    /// all threads working, and `rest` what follows a search of so many rotations.
+    /// A run that ends at `end`. `rotation` is the seconds on the clock that a rotation of the search is expected to
+    /// take, all threads working, and `rest` what follows a search of so many rotations.
     pub fn new(
         end: Instant,
         rotation: f64,
@@ -40,13 +40,13 @@ impl Deadline {
             .as_secs_f64()
     }
 
-    /// Whether a search that began at `begun` and has done so many rotations must stop.
-    pub(crate) fn is_reached(&self, begun: Instant, done: usize) -> bool {
-        self.must_stop(begun.elapsed().as_secs_f64(), self.left(), done)
+    /// Whether a search that began at `started` and has done so many rotations must stop.
+    pub(crate) fn is_reached(&self, started: Instant, done: usize) -> bool {
+        self.must_stop(started.elapsed().as_secs_f64(), self.left(), done)
     }
 
-    /// Whether the seconds left are no more than the rest of the run takes at the pace of the search. Other programs slow
-    /// the rest as they slowed the search.
+    /// Whether the seconds left are no more than the rest of the run takes at the pace of the search. Other programs
+    /// slow the rest as they slowed the search.
     fn must_stop(&self, searching: f64, left: f64, done: usize) -> bool {
         let pace = match done {
             0 => 1.0,

@@ -1,4 +1,4 @@
-//! What a search covers, on what it runs and what it keeps.
+//! Plan of a search: what it covers, where it runs and what it keeps.
 
 use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
@@ -6,7 +6,7 @@ use crate::pose_space::rotations::RotationSample;
 use knotdock_scoring::engine::Plan;
 use std::sync::Arc;
 
-/// What a search covers, on what it runs and what it keeps.
+/// Plan of a search: what it covers, where it runs and what it keeps.
 #[derive(Clone, Debug)]
 pub struct SearchPlan {
     /// Grid, modes and terms of the correlations.

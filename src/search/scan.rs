@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// What a scan found.
+/// Peaks that a scan found.
 pub(crate) struct Scanned {
     /// The best peaks, best first.
     pub peaks: Vec<Peak>,
@@ -86,8 +86,8 @@ fn scan_on_card(
     })
 }
 
-/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first ones, at
-/// least one, whatever the threads: each takes the next one and searches it to its end.
+/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first
+/// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
     plan: &SearchPlan,
     engine: &CpuEngine<T>,
@@ -98,10 +98,10 @@ fn scan_on_cores<T: Real>(
 ) -> Scanned {
     let filter = plan.space.voxel_filter(engine);
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let begun = Instant::now();
+    let started = Instant::now();
     let take = || {
         let done = searched.load(Ordering::Relaxed);
-        let is_late = |deadline: &Deadline| deadline.is_reached(begun, done);
+        let is_late = |deadline: &Deadline| deadline.is_reached(started, done);
         if next.load(Ordering::Relaxed) > 0 && deadline.is_some_and(is_late) {
             return None;
         }

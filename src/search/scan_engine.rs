@@ -1,4 +1,4 @@
-//! What a run correlates with: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
+//! Engines of a run: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
 
 use crate::error::SearchError;
 use crate::options::EngineChoice;

@@ -1,8 +1,8 @@
-//! Which rotations are searched, in which order, and until when.
+//! Schedule of the rotations: which are searched, in which order, and until when.
 //!
-//! A search within a time stops between two rotations. What it has searched by then is the first part of an order in which
-//! every first part covers all orientations about evenly, and how many those were is recorded: searched again, the same
-//! rotations give the same bytes.
+//! A search within a time stops between two rotations. What it has searched by then is the first part of an order in
+//! which every first part covers all orientations about evenly. The number of these rotations is recorded: searched
+//! again, they give the same bytes.
 
 use crate::pose_space::rotations::RotationGroup;
 use crate::search::plan::SearchPlan;
@@ -58,7 +58,8 @@ mod tests {
         }
     }
 
-    /// A first part covers as a set of that size does, or nearly; the set's own order leaves half of the orientations out.
+    /// A first part covers as a set of that size does, or nearly; the set's own order leaves half of the orientations
+    /// out.
     #[test]
     fn a_first_part_covers_all_orientations() {
         let set = rotation_set(3600);

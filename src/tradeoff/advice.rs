@@ -1,4 +1,4 @@
-//! Which setting to take, in words.
+//! Advice on which setting to take.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ const DOUBLING: f64 = 0.1;
 /// Share of the reference's rows that a setting may find fewer of than the default and still keep the answer.
 const KEEPS: f64 = 0.05;
 
-/// What to take, and what it gives up.
+/// Recommended setting, and what it gives up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
     /// The setting to take.
@@ -32,14 +32,14 @@ fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> S
     match quick {
         Some(quick) if keeps(&quick) => format!(
             " In half the time or less, {} ({}) finds {}, at an error of {:.1e}.",
-            told(quick),
+            setting_text(quick),
             seconds(quick.cost()),
             share(quick),
             quick.error.rms
         ),
         Some(quick) => format!(
             " No setting that takes half the time or less keeps the answer: the best, {} ({}), finds {}.",
-            told(quick),
+            setting_text(quick),
             seconds(quick.cost()),
             share(quick)
         ),
@@ -47,12 +47,14 @@ fn quick_text(quick: Option<&Measured>, keeps: impl Fn(&&Measured) -> bool) -> S
     }
 }
 
-/// The advice of a sweep: among settings whose error is within the default's tolerance the one that finds most of the reference's rows, where
-/// a doubling of the time must be worth a tenth of them. `None` for a sweep without settings.
+/// The advice of a sweep; `None` for a sweep without settings.
 ///
-/// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default does, less
-/// 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and fewer rotations find
-/// fewer poses at no larger an error.
+/// Among settings whose error is within the default's tolerance it is the one that finds most of the reference's
+/// rows. A doubling of the time must be worth a tenth of them.
+///
+/// Only settings that keep the answer are advised: those that find as many of the reference's rows as the default
+/// does, less 5 in 100. The error alone does not say so. It is measured over the poses that a setting found, and
+/// fewer rotations find fewer poses at no larger an error.
 pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let default = tradeoff.measured.first()?;
     let tolerance = default.setting.options.kernel.tolerance;
@@ -72,7 +74,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     let mut text = format!(
         "Take {}: {} of processor time ({} on the clock), an error of {:.1e} of the best score, and {} of the first {FIRST} rows of the \
          reference, which has {} times the rotations of the default, within {:.3} of one of its own.",
-        told(take),
+        setting_text(take),
         seconds(take.cost()),
         seconds(take.wall_seconds()),
         take.error.rms,
@@ -107,7 +109,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     if let Some(sharper) = sharper {
         text += &format!(
             " Where the error matters, {} ({}) brings it to {:.1e}.",
-            told(sharper),
+            setting_text(sharper),
             seconds(sharper.cost()),
             sharper.error.rms
         );
@@ -118,7 +120,7 @@ pub fn advice(tradeoff: &Tradeoff) -> Option<Advice> {
     if let Some(wider) = wider {
         text += &format!(
             " Where time allows, {} ({}) finds {}.",
-            told(wider),
+            setting_text(wider),
             seconds(wider.cost()),
             share(wider)
         );
@@ -143,7 +145,7 @@ fn rotations_ratio(tradeoff: &Tradeoff) -> usize {
 }
 
 /// A setting by its name, and its options where the name is not all of them.
-fn told(run: &Measured) -> String {
+fn setting_text(run: &Measured) -> String {
     let setting = &run.setting;
     match setting.parameter {
         Parameter::Default => "the default".to_owned(),
@@ -228,8 +230,8 @@ mod tests {
         advice(&tradeoff).unwrap().text
     }
 
-    /// Found by a user: 600 rotations were "more exact", since the few poses that they found happened to have half the error,
-    /// while they found 56% of the reference's rows.
+    /// Found by a user: 600 rotations were "more exact", since the few poses that they found happened to have half
+    /// the error, while they found 56% of the reference's rows.
     #[test]
     fn what_loses_the_answer_is_not_advised() {
         let few = measured(Parameter::Option("rotations"), 600, 1.5, 5e-4, 0.56);

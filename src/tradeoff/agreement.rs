@@ -1,11 +1,11 @@
-//! How much of what one search ranks first another one ranks first too.
+//! Agreement of two searches: the share of one's first rows that the other one finds.
 
 use knotdock_scoring::se3::Pose;
 
 use crate::rank::cluster::RigidBody;
 
-/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit. 1 where there is nothing
-/// to find.
+/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit.
+/// 1 where there is nothing to find.
 pub fn agreement(body: &RigidBody, reference: &[Pose], found: &[Pose], radius: f64) -> f64 {
     if reference.is_empty() {
         return 1.0;
@@ -20,7 +20,7 @@ pub fn agreement(body: &RigidBody, reference: &[Pose], found: &[Pose], radius: f
     hits.count() as f64 / reference.len() as f64
 }
 
-/// How one score compares with another over the same poses.
+/// Comparison of two scores over the same poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// Root mean square of the difference, as a share of the second's largest magnitude.

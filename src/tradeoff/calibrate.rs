@@ -1,4 +1,5 @@
-//! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are timed.
+//! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are
+//! timed.
 
 use knotdock_scoring::effect::{Effect, contact, electrostatics};
 use knotdock_scoring::terms::pose;
@@ -20,10 +21,11 @@ use knotdock_structures::molecule::LabelReport;
 const LATTICE: f64 = 2.6;
 /// Radii of the two bodies, Å.
 const BODIES: [f64; 2] = [19.0, 9.7];
-/// How many times more knots touch in a pose of two proteins than in one of two balls: the example pair's exact sums against the made-up
-/// one's, on one machine.
+/// How many times more knots touch in a pose of two proteins than in one of two balls: the example pair's exact sums
+/// against the made-up one's, on one machine.
 const FLATTER: f64 = 1.4;
-/// Dockings of each setting, of which the fastest counts stage by stage: whatever else runs on a machine only ever slows one down.
+/// Dockings of each setting, of which the fastest counts stage by stage: whatever else runs on a machine only ever
+/// slows one down.
 const ROUNDS: usize = 3;
 /// Radii of knots, Å, in turn.
 const RADII: [f64; 7] = [1.4, 1.5, 1.6, 1.65, 1.7, 1.8, 1.9];
@@ -182,7 +184,8 @@ fn body(radius: f64) -> Result<Knots, KnotsError> {
         .with_atom_kinds(kinds.collect())
 }
 
-/// Coefficients from timed runs; what a run does not tell comes from the built-in model, sped up or slowed down as the rest is.
+/// Coefficients from timed runs; what a run does not tell comes from the built-in model, sped up or slowed down as
+/// the rest is.
 fn fit(runs: &[Timed]) -> CostModel {
     let built_in = CostModel::BUILT_IN;
     // Least squares of relative errors: seconds of a rotation over N log2 N against the rank.

@@ -46,8 +46,8 @@ impl Change {
         Ok(changed)
     }
 
-    /// Further arguments that a run with the `default` options needs to have `changed` ones. They give lengths that would follow from
-    /// the change otherwise, and a finer set of rotations that it has made finer still.
+    /// Further arguments that a run with the `default` options needs to have `changed` ones. They give lengths that
+    /// would follow from the change otherwise, and a finer set of rotations that it has made finer still.
     pub fn companions(&self, default: &DockOptions, changed: &DockOptions) -> String {
         let (pass_length, finer) = (changed.kernel.pass_length, changed.search.fine_rotations);
         match (self.option, pass_length, finer) {

@@ -15,7 +15,7 @@ pub const MIN_ROTATIONS: usize = 600;
 /// Most: 6 degrees, beyond which rotations cost time and find nothing.
 pub const MAX_ROTATIONS: usize = 56_250;
 
-/// What was wanted.
+/// Requested accuracy and time of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Error of the fast path, rms over the best grid poses, as a share of the best score.
@@ -24,12 +24,12 @@ pub struct Wanted {
     pub budget: Option<f64>,
 }
 
-/// What was chosen, and what it is expected to cost and to give.
+/// The chosen setting, with its expected cost and quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
-    /// Error that was asked for.
+    /// Error that was requested.
     pub accuracy: Option<f64>,
-    /// Seconds that were asked for.
+    /// Seconds that were requested.
     pub budget_seconds: Option<f64>,
     /// Where the cost model came from: `built-in`, or the file that `knotdock calibrate` wrote.
     pub cost_model: String,
@@ -48,7 +48,7 @@ pub enum ChoiceError {
     /// More accuracy than there is.
     #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
     Accuracy {
-        /// What was wanted.
+        /// The requested error.
         wanted: f64,
         /// The least error.
         least: f64,
@@ -68,7 +68,7 @@ pub enum ChoiceError {
 }
 
 impl ChoiceError {
-    /// What the user may do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
             Self::Pair(error) => error.remedy(),

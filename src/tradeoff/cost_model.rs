@@ -1,4 +1,4 @@
-//! What a docking will cost and how far off its fast path will be, before it runs.
+//! Cost model: the expected time of a docking and the expected error of its fast path.
 //!
 //! # Time
 //!
@@ -8,7 +8,7 @@
 //! - preparing: `prepare` for each mode and effect, on the clock: threads share it in part;
 //! - in double precision these two times [`DOUBLE`];
 //! - an exact sum: `pair` for each pair of knots that can feel each other;
-//! - rescoring a pose, climbing a peak: `rescore`, `refine` for each knot of the ligand;
+//! - rescoring a pose, refining a peak: `rescore`, `refine` for each knot of the ligand;
 //! - the rotation set: `rotation` for each rotation, and `covering` to measure its covering radius.
 //!
 //! Coefficients are seconds of one thread while all are busy. The built-in ones are those of a
@@ -16,8 +16,8 @@
 //!
 //! # Error
 //!
-//! The fast path's error hangs on tolerance and spacing. [`LADDER`] holds settings of both, cheapest first, each with the error that
-//! it was measured to make.
+//! The fast path's error hangs on tolerance and spacing. [`LADDER`] holds settings of both, cheapest first, each with
+//! the error that it was measured to make.
 
 use serde::{Deserialize, Serialize};
 
@@ -50,9 +50,12 @@ pub struct CostModel {
 
 /// Exact sums made to measure a run's error.
 const CHECKED: f64 = 100.0;
-/// Poses that join a cluster for each that founds one, at 3,600 rotations and times the ligand's knots (the larger the ligand, the farther apart
-/// neighbouring rotations take it), and the power by which they rise with rotations: as counted on the example pair, 1AVX and 1EAW.
+/// Poses that join a cluster for each that begins one, at 3,600 rotations and times the ligand's knots.
+///
+/// The larger the ligand, the farther neighbouring rotations move its atoms. As counted on the example pair, 1AVX and
+/// 1EAW.
 const JOINING: f64 = 500.0;
+/// Power by which that number rises with rotations, as counted on the same pair.
 const CROWDING: f64 = 0.7;
 /// Ligand knots that feel the receptor in a pose that touches, per root of all: as timed on the same pairs.
 const TOUCHING: f64 = 15.0;
@@ -66,8 +69,9 @@ const FINE: f64 = 2.1;
 const PROBED: usize = 64;
 
 impl CostModel {
-    /// Coefficients of a two-core Intel Xeon at 2.50 GHz; `pair` is what it was there, 1.6e-8, times what the sum of pairs has gained since
-    /// (`benches/exact.rs`, score with slices over plain loop, on an AMD EPYC at 2.60 GHz: 0.71 then, 0.39 now).
+    /// Coefficients of a two-core Intel Xeon at 2.50 GHz; `pair` was 1.6e-8 there. It is multiplied by what the sum
+    /// of pairs has gained since (`benches/exact.rs`, score with slices over plain loop, on an AMD EPYC at 2.60 GHz:
+    /// 0.71 then, 0.39 now).
     pub const BUILT_IN: Self = Self {
         inverse: 2.7e-10,
         field: 9e-11,
@@ -113,7 +117,8 @@ impl CostModel {
         alone + searched + self.seconds_after_search(work, rotations, threads)
     }
 
-    /// Of these, the seconds that follow a search of so many rotations: finer rotations, rescoring, refining, exact sums.
+    /// Of these, the seconds that follow a search of so many rotations: finer rotations, rescoring, refining, exact
+    /// sums.
     pub fn seconds_after_search(&self, work: &Workload, rotations: usize, threads: usize) -> f64 {
         // Few rotations have fewer peaks than poses are kept.
         let count = rotations as f64;
@@ -126,7 +131,8 @@ impl CostModel {
         (finer + exact + rescored + refined) / threads as f64
     }
 
-    /// The most rotations, in fours, from `range` that fit into so many seconds; where none do, the fewest seconds that any of them take.
+    /// The most rotations, in fours, from `range` that fit into so many seconds; where none do, the fewest seconds
+    /// that any of them take.
     ///
     /// # Errors
     /// These seconds.
@@ -150,7 +156,7 @@ impl CostModel {
     }
 }
 
-/// How much there is to do in a run.
+/// Amount of work in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Workload {
     /// N log2 N of the grid's N points.
@@ -173,7 +179,8 @@ pub struct Workload {
     pub poses: f64,
     /// Peaks kept of each rotation.
     pub per_rotation: f64,
-    /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is listed.
+    /// Share of them that the fast path's error could put before the centre of their cluster; all where every pose is
+    /// a row.
     pub doubtful: f64,
     /// Poses rescored, each times the share of the pose terms' time that the acting terms take.
     pub rescored: f64,
@@ -242,7 +249,8 @@ impl Workload {
 
 /// Number of components that a tolerance needs.
 ///
-/// At 1e-2 each effect needs those of its definition, and shape one where all balls are alike. Where more error is allowed, fewer do.
+/// At 1e-2 each effect needs those of its definition, and shape one where all balls are alike. Where more error is
+/// allowed, fewer do.
 fn expected_rank(plan: &DockPlan) -> f64 {
     let tolerance = plan.options.kernel.tolerance;
     let share = match tolerance {
@@ -274,9 +282,10 @@ pub struct Rung {
     pub error: f64,
 }
 
-/// Cheapest first, the defaults before all: each error the largest measured on the example pair, 1AVX, 1EAW and 7CEI. `cargo bench --bench cost_model` sets
-/// what is made beside what is expected. Larger tolerances are left out, for they save next to nothing: every pose that the larger error leaves in doubt is scored exactly.
-/// So are wider spacings, which keep the same modes.
+/// Cheapest first, the defaults before all: each error the largest measured on the example pair, 1AVX, 1EAW and 7CEI.
+/// `cargo bench --bench cost_model` sets what is made beside what is expected. Larger tolerances are left out, for
+/// they save next to nothing: every pose that the larger error leaves in doubt is scored exactly. So are wider
+/// spacings, which keep the same modes.
 pub const LADDER: [Rung; 8] = [
     Rung::new(1e-2, 0.5, 1.8e-3),
     Rung::new(3e-3, 0.5, 1.2e-3),

@@ -1,7 +1,7 @@
 //! The Pareto front: what nothing else beats on both counts.
 
-/// Whether each of some (cost, loss) pairs is on the front: no other pair is at most as large in both and smaller in one. Pairs without a
-/// loss, or with a number that is not finite, are never on it and beat nothing.
+/// Whether each of some (cost, loss) pairs is on the front: no other pair is at most as large in both and smaller in
+/// one. Pairs without a loss, or with a number that is not finite, are never on it and beat nothing.
 pub fn front(pairs: &[(f64, Option<f64>)]) -> Vec<bool> {
     let finite = |&(cost, loss): &(f64, Option<f64>)| {
         let loss = loss.filter(|loss| loss.is_finite())?;

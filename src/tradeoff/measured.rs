@@ -1,11 +1,13 @@
-//! What a sweep measures of each setting.
+//! Measurements of each setting of a sweep.
 //!
 //! - **Time** by stage, on the clock and of all processors.
-//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking run measures it.
-//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's resolution and
-//!   sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set against it at the poses that the
-//!   reference ranks first.
-//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within the radius of clusters.
+//! - **Error** of the fast path: against the setting's own exact sum, over its 100 best grid poses, as every docking
+//!   run measures it.
+//! - **Definition**: some settings change what is summed. The *reference score* is the exact sum at the default's
+//!   resolution and sampling and at the finest tolerance, whose kernel is cut off last. A setting's exact sum is set
+//!   against it at the poses that the reference ranks first.
+//! - **Agreement**: the share of the reference's first 100 rows that have one of the setting's first 100 rows within
+//!   the radius of clusters.
 //! - **Ranks** of near poses, where a known complex is given.
 
 use serde::Serialize;
@@ -18,7 +20,7 @@ use crate::tradeoff::settings::{Refused, Setting};
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
 
-/// How a setting ranks poses near the known complex, by rows of its table.
+/// Ranks of poses near the known complex, by rows of its table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NativeRanks {
     /// Rank of the first acceptable pose ([`Criterion`](crate::evaluate::Criterion)).
@@ -31,7 +33,7 @@ pub struct NativeRanks {
     pub near_native: usize,
 }
 
-/// What a setting was measured to cost and to give.
+/// Measured cost and quality of a setting.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The setting.
@@ -72,18 +74,19 @@ impl Measured {
         self.timing.iter().map(|stage| stage.wall_seconds).sum()
     }
 
-    /// Seconds of all stages and processors, where the system tells.
+    /// Seconds of all stages and processors, where the system reports them.
     pub fn cpu_seconds(&self) -> Option<f64> {
         self.timing.iter().map(|stage| stage.cpu_seconds).sum()
     }
 
-    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock where the system does
-    /// not tell.
+    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock
+    /// where the system does not tell.
     pub fn cost(&self) -> f64 {
         self.cpu_seconds().unwrap_or_else(|| self.wall_seconds())
     }
 
-    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's resolution and sampling.
+    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's
+    /// resolution and sampling.
     pub fn same_score(&self, default: &DockOptions) -> bool {
         let options = &self.setting.options;
         (

@@ -1,8 +1,9 @@
-//! What accuracy costs in time: settings around a default, each run and measured, and which of them is worth taking.
+//! Tradeoff of accuracy and time: settings around a default, each run and measured, and which of them is worth taking.
 //!
 //! # Conventions
 //!
-//! - Time is that of all stages of a run, in seconds; settings are compared by processor time. Errors are shares of the best exact score.
+//! - Time is that of all stages of a run, in seconds; settings are compared by processor time. Errors are shares of
+//!   the best exact score.
 //! - Sampling, planning and searching are those of `knotdock dock`: nothing is modelled that can be run.
 
 pub mod advice;

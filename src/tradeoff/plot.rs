@@ -1,4 +1,5 @@
-//! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the fronts marked.
+//! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the
+//! fronts marked.
 
 use crate::plot::chart::{Axis, ChartError, Colour, Panel, Series, Style, draw};
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
@@ -9,7 +10,7 @@ const NONE_MISSED: f64 = 0.5;
 
 const FRONT: Colour = [0x88, 0x88, 0x88];
 
-/// Colours that stay apart for colour-blind readers too (Okabe and Ito, and Tol's bright scheme).
+/// Colours that colour-blind readers can distinguish too (Okabe and Ito, and Tol's bright scheme).
 fn colour(parameter: Parameter) -> Colour {
     match parameter {
         Parameter::Default => [0x00, 0x00, 0x00],
@@ -98,7 +99,8 @@ pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
     draw(&panels, columns)
 }
 
-/// A panel with the front as a dashed line, and a series for each parameter: filled discs on the front, hollow ones off it.
+/// A panel with the front as a dashed line, and a series for each parameter: filled discs on the front, hollow ones
+/// off it.
 fn panel(title: &str, up: Axis, points: &[Point]) -> Panel {
     let mut front: Vec<[f64; 2]> = points
         .iter()

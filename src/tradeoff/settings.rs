@@ -9,7 +9,7 @@ use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// What a setting changes of the default.
+/// Change of the default that a setting makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// Nothing.
@@ -197,7 +197,8 @@ pub struct Setting {
     pub name: String,
     /// What it changes.
     pub parameter: Parameter,
-    /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the default.
+    /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the
+    /// default.
     pub arguments: String,
     /// All options.
     pub options: DockOptions,
@@ -269,7 +270,8 @@ pub struct Planned {
     pub refined: usize,
 }
 
-/// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and settings out of range.
+/// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and
+/// settings out of range.
 ///
 /// # Errors
 /// [`SearchError::Option`] when the reference is out of range.

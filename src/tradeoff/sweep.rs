@@ -19,7 +19,7 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Tradeoff};
 use crate::tradeoff::settings::{Parameter, Planned, Refused, Setting, settings};
 
-/// Who is told how far a sweep has come.
+/// Receiver of a sweep's progress.
 pub trait SweepProgress: Progress {
     /// The default has run: so many settings, and about so many seconds for all.
     fn begins(&self, settings: usize, seconds: f64);
@@ -31,10 +31,12 @@ pub trait SweepProgress: Progress {
     fn refused(&self, refused: &Refused);
 }
 
-/// Sweeps `parameters` around `default`, whose lengths, of meshes, are all filled in, and which `first` is prepared with.
+/// Sweeps `parameters` around `default`, whose lengths, of meshes, are all filled in, and which `first` is prepared
+/// with.
 ///
 /// # Errors
-/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are listed with the reason.
+/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are reported with the
+/// reason.
 pub fn sweep(
     pair: Pair,
     first: PreparedPair,
@@ -229,7 +231,8 @@ fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
     }
 }
 
-/// About how many seconds on the clock all settings take, going by what the default took: transforms grow as the grid does, and exact sums stay.
+/// About how many seconds on the clock all settings take, going by what the default took: transforms grow as the grid
+/// does, and exact sums stay.
 fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
     let work = |plan: &DockPlan| {
         let points = plan.grid.iter().product::<usize>() as f64;
@@ -252,8 +255,8 @@ fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
     seconds.sum()
 }
 
-/// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among all. The
-/// reference agrees with itself, so it is on neither and beats nothing.
+/// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among
+/// all. The reference agrees with itself, so it is on neither and beats nothing.
 fn mark_fronts(measured: &mut [Measured], default: &DockOptions) {
     let other = |run: &Measured| run.setting.parameter != Parameter::Reference;
     let errors: Vec<(f64, Option<f64>)> = measured

@@ -302,7 +302,7 @@ mod tests {
         assert!(same.protrusion().abs() < 1e-12);
     }
 
-    /// Twice as many balls as have all lines, apart from each other and off any lattice: their volumes add up.
+    /// Twice as many balls as have all lines, separate and off any lattice: their volumes add up.
     #[test]
     fn many_balls_need_fewer_lines() {
         let side = 28;

@@ -1,4 +1,4 @@
-//! What unit tests of several modules are made of.
+//! Test data that unit tests of several modules share.
 
 use crate::molecule::{Atom, Format, InputSpec, Molecule, ReadOptions, read};
 

@@ -1,4 +1,4 @@
-//! Which balls an engine cannot resolve: the low-pass or the grid leaves too little of them to count on.
+//! Balls that an engine cannot resolve: the low-pass or the grid leaves too little of them to count on.
 //!
 //! The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than
 //! points: what is left of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so

@@ -36,7 +36,7 @@ use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-/// What a user of the baseline may set.
+/// Options of the baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UniformGridOptions {
     /// Double skin, bump exponent and low-pass (the trim has no meaning here).

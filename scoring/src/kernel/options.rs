@@ -1,10 +1,10 @@
-//! What defines a kernel, and which kernels cannot be built.
+//! Options of a kernel, and the errors of those that cannot be built.
 
 use super::cone::Trim;
 use knotdock_structures::numeric::bump::{AlphaError, Bump};
 use serde::{Deserialize, Serialize};
 
-/// What defines the ranking kernel. Lengths in the unit of the knots (Å for molecules).
+/// Options of the ranking kernel. Lengths in the unit of the knots (Å for molecules).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KernelOptions {
     /// Weight of overlap against contact, B&I's lambda (dimensionless).

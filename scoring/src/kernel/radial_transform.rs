@@ -2,7 +2,7 @@
 //!
 //! psi^(q) = 4 pi * integral over 0..1 of x^2 psi(x) sinc(2 q x) dx, with sinc(z) = sin(pi z) / (pi z).
 //!
-//! A ball of radius sigma has the transform sigma^3 psi^(q sigma), which continues to sigma < 0 as an odd function.
+//! A ball of radius sigma has the transform sigma^3 psi^(q sigma). This continues to sigma < 0 as an odd function.
 
 use knotdock_structures::numeric::{Bump, double_exponential};
 use std::f64::consts::PI;

@@ -1,11 +1,11 @@
 //! Rings: n copies of one molecule about an axis, each the image of the one before it by the same pose.
 //!
-//! Such a pose M turns by 2 pi / n about an axis and does not slide along it, so that M^n is the identity. With u the
-//! axis' direction, t the translation and p the axis' point nearest the origin: u.t = 0, t = p - R p and p = (t +
-//! cot(pi / n) u x t) / 2.
+//! Such a pose M turns by 2 pi / n about an axis and does not slide along it, so that M^n is the identity. Let u be
+//! the axis' direction, t the translation and p the axis' point nearest the origin. Then u.t = 0, t = p - R p and p =
+//! (t + cot(pi / n) u x t) / 2.
 //!
-//! The same pose takes the
-//! first copy to the second and any copy to the next, so its score is that of each pair of neighbours.
+//! The same pose takes the first copy to the second and any copy to the next, so its score is that of each pair of
+//! neighbours.
 //!
 //! Where the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies
 //! a ring and keeps it a ring.

@@ -22,7 +22,7 @@ pub fn forward<const D: usize>(
     output
 }
 
-/// Type 2, the adjoint of [`forward`]: v_j = sum_k f_k exp(+2 pi i k.x_j), O(points x modes).
+/// Type 2 transform, the adjoint of [`forward`]: v_j = sum_k f_k exp(+2 pi i k.x_j), O(points x modes).
 pub fn adjoint<const D: usize>(
     points: &[[f64; D]],
     values: &[Complex64],

@@ -1,4 +1,4 @@
-//! Where the two bodies of a pair lie, and the box.
+//! Places of the two bodies of a pair, and the box.
 
 use nalgebra::{UnitQuaternion, Vector3};
 

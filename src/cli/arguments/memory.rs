@@ -1,4 +1,4 @@
-//! How much memory is free, and how much was taken.
+//! Memory that is free, and memory that was used.
 
 use std::fs;
 use std::path::{Path, PathBuf};

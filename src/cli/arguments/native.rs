@@ -16,9 +16,10 @@ use crate::cli::messages::failure::Failure;
 /// Options that name the known complex.
 #[derive(Args, Debug)]
 pub struct NativeArguments {
-    /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the largest
-    /// interface is taken, and FILE:A,B picks chains.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["native_receptor", "native_ligand"], help_heading = HEADING)]
+    /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the
+    /// largest interface is taken, and FILE:A,B picks chains.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = HEADING)]
+    #[arg(conflicts_with_all = ["native_receptor", "native_ligand"])]
     native: Option<String>,
     /// Receptor of the known complex; FILE:H,L picks chains.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_ligand", help_heading = HEADING)]

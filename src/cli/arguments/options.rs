@@ -83,7 +83,8 @@ impl<S: Selection> Args for OptionArguments<S> {
             .value_hint(ValueHint::FilePath)
             .value_parser(value_parser!(PathBuf))
             .help(
-                "Options of `knotdock dock` from a file in TOML: tables named as the headings of its help, such as [search], and lines such as \
+                "Options of `knotdock dock` from a file in TOML: tables named as the headings of its help, such \
+                 as [search], and lines such as \
                  fine_rotations = 14400; what is typed as well wins",
             );
         let own = definitions().iter().filter(|option| S::has(option));

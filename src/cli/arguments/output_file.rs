@@ -1,4 +1,4 @@
-//! Where a single file may be written: never over one that is read, and over another only on request.
+//! Checks of an output file: never over one that is read, and over another only on request.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,8 @@ use knotdock::output::files::whole_file::is_stream;
 
 use crate::cli::messages::failure::Failure;
 
-/// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless `force` is true.
+/// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless
+/// `force` is true.
 pub fn check_output<'a>(
     file: &Path,
     read: impl IntoIterator<Item = &'a Path>,

@@ -1,4 +1,4 @@
-//! What every command line of the program has.
+//! Options that every command has.
 
 use clap::{Args, Command};
 
@@ -38,7 +38,8 @@ pub fn is_of_program(word: &str) -> bool {
     })
 }
 
-/// A command in which a negative number is the value of the option before it, so that the error can say what is wrong with it.
+/// A command in which a negative number is the value of the option before it, so that the error can say what is wrong
+/// with it.
 pub fn with_negative_numbers(command: Command) -> Command {
     command.mut_args(|argument| {
         let takes_value = argument.get_action().takes_values();

@@ -129,7 +129,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                     .remedy(remedy),
             )
         }
-        // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a ligand asks for.
+        // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a
+        // ligand asks for.
         Err(error) if first_paragraph(&error).contains("--rerun") => Err(Failure::input(
             "--rerun cannot come after --: what is docked is the table's to say",
         )
@@ -162,7 +163,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// The command line of a pair; an error comes with what to do about it, where the field's word for something is at fault.
+/// The command line of a pair; an error comes with what to do about it, where the field's word for something is at
+/// fault.
 fn command(
     row: &PairRow,
     run: &Path,

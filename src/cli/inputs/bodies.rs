@@ -125,7 +125,8 @@ impl Bodies {
         }
     }
 
-    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not among these.
+    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not
+    /// among these.
     pub fn plan(
         &self,
         options: &mut DockOptions,
@@ -158,10 +159,10 @@ impl Bodies {
                     alpha: options.kernel.alpha,
                 };
                 let solids = inputs.each_ref().map(|input| &input.solid);
-                let sampling =
-                    Sampling::of(solids, &sampling).map_err(|error| located(&error, inputs))?;
+                let sampling = Sampling::of(solids, &sampling)
+                    .map_err(|error| mesh_failure(&error, inputs))?;
                 sampling.pair.defaults(options, given);
-                console.say(told(&sampling.pair));
+                console.say(sampling_text(&sampling.pair));
                 PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
             }
         }
@@ -231,8 +232,9 @@ impl Bodies {
     }
 }
 
-/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An option at its default
-/// is no different from one that is not given. Weights of effects that are off are not refused: they say what the effect would weigh.
+/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An
+/// option at its default is no different from one that is not given. Weights of effects that are off are not refused:
+/// they say what the effect would weigh.
 fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Failure> {
     let Some(option) = options.without_effect(are_meshes) else {
         return Ok(());
@@ -249,7 +251,7 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
 }
 
 /// A failure that names the mesh at fault.
-fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
     let failure = Failure::input(error).remedy(error.remedy());
     match error.part() {
         Some(part) => failure.at(&inputs[part].record.path),
@@ -257,8 +259,8 @@ fn located(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
     }
 }
 
-/// How meshes were sampled.
-fn told(pair: &MeshPair) -> String {
+/// Report on the sampling of the meshes.
+fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
         let weights = match &part.weights {
             Some(fit) => format!(
@@ -277,7 +279,8 @@ fn told(pair: &MeshPair) -> String {
         )
     });
     format!(
-        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one radius, so the kernel is the cone",
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one \
+         radius, so the kernel is the cone",
         pair.offset
     )
 }

@@ -41,8 +41,8 @@ impl Input {
         Self::of(&spec, options)
     }
 
-    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside or
-    /// above which inputs are looked for that are no longer where they were.
+    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside
+    /// or above which inputs are looked for that are no longer where they were.
     pub fn recorded(
         record: &InputRecord,
         run: &Path,
@@ -63,7 +63,8 @@ impl Input {
         })
     }
 
-    /// As [`Input::read`], with every atom listed, kept or dropped. Of a file by itself the user's word on pLDDT is taken.
+    /// Reads one structure like [`Input::read`], and returns the fate of every atom, kept or dropped. With
+    /// `--min-plddt` the B column counts as pLDDT.
     pub fn read_with_fates(
         text: &str,
         options: &ReadOptions,
@@ -76,9 +77,9 @@ impl Input {
             trust_plddt: options.min_plddt.is_some(),
             ..options.clone()
         };
-        let (molecule, listed) = read_bytes_with_fates(&spec, bytes, &options)?;
+        let (molecule, fates) = read_bytes_with_fates(&spec, bytes, &options)?;
         check_used(&options, [&molecule])?;
-        Ok((Self { record, molecule }, listed))
+        Ok((Self { record, molecule }, fates))
     }
 
     /// Reads structures that are docked together, `FILE` or `FILE:H,L` each.
@@ -103,8 +104,8 @@ impl Input {
         Self::all(&specs.collect::<Result<Vec<_>, Failure>>()?, options)
     }
 
-    /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as predictions; where none is, the
-    /// user's word is taken for all whose B values can be pLDDT.
+    /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as
+    /// predictions; where none is, the user's word is taken for all whose B values can be pLDDT.
     ///
     /// # Errors
     /// Where one cannot be read, and where an option does nothing to any.
@@ -162,8 +163,10 @@ impl Input {
     }
 }
 
-/// Refuses options that did nothing to the molecules read with them: `--min-plddt` where none is a predicted model, `--assembly` where no file
-/// says anything of one, `--model` where none has several, `--drop-residue` of a name that none has.
+/// Refuses options that did nothing to the molecules read with them.
+///
+/// These are `--min-plddt` where none is a predicted model, `--assembly` where no file describes one, `--model` where
+/// none has several models, and `--drop-residue` of a name that none has.
 fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
@@ -222,7 +225,8 @@ fn check_used<'a>(
             "--assembly is for files that describe their biological assemblies, and none does here",
         )
         .remedy(
-            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in _pdbx_struct_assembly_gen (mmCIF)",
+            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in \
+             _pdbx_struct_assembly_gen (mmCIF)",
         ));
     }
     if options.model != ModelChoice::default() && !several {

@@ -1,4 +1,4 @@
-//! What a docking run is asked for, whether on the command line or by an earlier run's `run.json`.
+//! Request of a docking run, from the command line or from an earlier run's `run.json`.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
-/// A run as asked for, by options or by a run.json.
+/// A requested run, by options or by a run.json.
 pub struct Request {
     /// What stays and what moves.
     pub bodies: Bodies,
@@ -50,7 +50,7 @@ impl Request {
         })
     }
 
-    /// What an earlier run was asked for, from its run.json.
+    /// The request of an earlier run, from its run.json.
     pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
         let run = RecordedRun::read(path)?;
         if !run.is_of_this_program() {

@@ -1,8 +1,8 @@
 //! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
 //! output and every word on standard error; under `--quiet` no words but errors.
 //!
-//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not written. A disk that is full
-//! does not stop one either, but the command fails in the end.
+//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
+//! written. A disk that is full does not stop one either, but the command fails in the end.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
@@ -39,7 +39,7 @@ impl Console {
             let mut stream = io::stdout();
             let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
             if let Err(error) = written {
-                // Only the first is told.
+                // Only the first failure is reported.
                 let _ = LOST.set(error);
             }
         }
@@ -69,8 +69,8 @@ impl Console {
         write_line(&mut io::stderr(), &text.to_string());
     }
 
-    /// Writes the command's JSON object, if that was asked for: what cannot be written is a failure then, for the object is all there is, unless its reader
-    /// has gone.
+    /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
+    /// object is all there is, unless its reader has gone.
     pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
         if !self.json {
             return Ok(());

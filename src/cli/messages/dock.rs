@@ -12,7 +12,7 @@ use knotdock_scoring::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.
-pub fn told(plan: &DockPlan, outcome: &DockOutcome) -> String {
+pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
     let mut lines: Vec<String> = outcome.effects.iter().map(effect_text).collect();
     if let Some(site) = plan.active_site() {
         lines.push(site_text(site));
@@ -126,7 +126,8 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
     }
     (worst > tolerance).then(|| {
         format!(
-            "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of {tolerance:e}: what is reported is exact, but \
+            "the fast path was off by {worst:.1e} of the best score at worst, more than the tolerance of \
+             {tolerance:e}: what is reported is exact, but \
              other poses may have been missed; use a lower --tolerance or a finer --spacing than {:.4}",
             plan.spacing
         )

@@ -1,4 +1,4 @@
-//! What went wrong, as a person or a program is told it, and the exit code that goes with it.
+//! Failures: what went wrong, as text or as JSON, and the exit code that goes with it.
 
 use std::path::{Path, PathBuf};
 

@@ -42,7 +42,8 @@ fn warning(shared: &SharedChains, [side, other]: [&str; 2], holder: &Input) -> S
         }
     };
     format!(
-        "the {side} holds the {other} already: its {} {} {has} the sequence of {} {} of the {other}, and fills the place where that would dock; {remedy}",
+        "the {side} holds the {other} already: its {} {} {has} the sequence of {} {} of the {other}, and fills \
+         the place where that would dock; {remedy}",
         plural(names.len()),
         names.join(", "),
         plural(others.len()),

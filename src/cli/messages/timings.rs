@@ -3,7 +3,8 @@
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::output::tables::report::align;
 
-/// A line a stage, with its time on the clock and of all processors, and a line an effect, with what it adds to a rotation on one thread.
+/// A line a stage, with its time on the clock and of all processors, and a line an effect, with what it adds to a
+/// rotation on one thread.
 pub fn timings_text(outcome: &DockOutcome) -> String {
     let mut stages = vec![["stage", "wall s", "CPU s"].map(str::to_owned).to_vec()];
     stages.extend(outcome.timing.iter().map(|stage| {

@@ -1,7 +1,7 @@
 //! `knotdock sample`: a mesh as balls.
 
 mod files;
-mod told;
+mod sample_report;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -22,13 +22,13 @@ use serde_json::json;
 
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use told::{Told, weights_text};
+use sample_report::{SampleReport, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
 ///
-/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1: A1 lies inside the solid, A2 is
-/// A1 grown by epsilon and covers it, A3 is A2 without what is redundant; each is within epsilon of the solid, which is
-/// measured. Lengths are in the file's unit.
+/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1. A1 lies inside
+/// the solid, A2 is A1 grown by epsilon and covers it, and A3 is A2 without redundant balls. Each is within epsilon
+/// of the solid, which is measured. Lengths are in the file's unit.
 #[derive(Args, Debug)]
 pub struct Sample {
     /// The mesh: .stl, .obj, .ply or .off.
@@ -46,9 +46,9 @@ pub struct Sample {
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
     set: Option<SetChoice>,
-    /// Refuse meshes that are not closed, have triangles that face the wrong way, are there several times or bound
-    /// nothing, parts within others that face outward, or of which something was left out on reading; and closed
-    /// ones that the balls do not come within epsilon of.
+    /// Refuse doubtful meshes: meshes that are not closed, with triangles that face the wrong way, are there several
+    /// times or bound nothing, or with inner parts that face outward. Meshes of which something was left out on
+    /// reading are refused too, and closed ones that the balls do not come within epsilon of.
     #[arg(long)]
     strict: bool,
     /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.
@@ -57,7 +57,8 @@ pub struct Sample {
     /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
     #[arg(long, value_parser = above_zero)]
     alpha: Option<f64>,
-    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set covers.
+    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set
+    /// covers.
     #[arg(long, value_name = "BALLS", value_parser = at_least_one, conflicts_with = "weights")]
     level: Option<usize>,
     /// The table of balls to write.
@@ -138,19 +139,19 @@ impl Sample {
         sampling.steps.insert(0, reading);
 
         let start = Instant::now();
-        let referee = HausdorffMeter::new(&solid, &sampling.field);
+        let meter = HausdorffMeter::new(&solid, &sampling.field);
         let fits: Vec<Fit> = sampling
             .sets
             .iter()
-            .map(|set| referee.measure(&set.balls))
+            .map(|set| meter.measure(&set.balls))
             .collect();
         let step = Step::since("measuring the fit", start);
         sampling.steps.push(step);
 
         let mut warnings = report.warnings();
         if report.is_closed() {
-            let told = Told::new(&sampling, &fits, &solid, &referee);
-            let doubts = told.doubts();
+            let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
+            let doubts = reported.doubts();
             self.warn(doubts.clone(), &console)?;
             warnings.extend(doubts);
         }
@@ -159,7 +160,7 @@ impl Sample {
             console.warn(&unseen);
             warnings.push(unseen);
         }
-        let finished = self.finish(&sampling, &referee)?;
+        let finished = self.finish(&sampling, &meter)?;
         sampling.steps.extend(finished.step);
         let frame = solid.frame();
         let fitted = finished.fitted.as_ref();
@@ -168,27 +169,27 @@ impl Sample {
             .map_err(|error| Failure::input(error).at(&self.mesh))?;
         let written = self.write(&solid, &knots, &finished.balls, export)?;
 
-        let told = Told::new(&sampling, &fits, &solid, &referee);
-        console.say(format!("\n{}", told.text()));
+        let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
+        console.say(format!("\n{}", reported.text()));
         if let Some(fitted) = fitted {
             console.say(format!("\n{}", weights_text(fitted)));
         }
         if let Some(fit) = &finished.level {
-            console.say(format!("\n{}", told.level(finished.balls.len(), fit)));
+            console.say(format!("\n{}", reported.level(finished.balls.len(), fit)));
         }
         console.say(format!(
             "\nWrote {} balls to {}",
             knots.len(),
             written.join(", ")
         ));
-        let mut object = told.object();
+        let mut object = reported.object();
         object["knots"] = json!(self.output.display().to_string());
         object["files"] = json!(written);
         object["balls"] = json!(knots.len());
         object["set"] = json!(chosen_name(&self, &sampling));
         object["mesh"] = json!(report);
         object["warnings"] = json!(warnings);
-        object["level"] = json!(finished.level.map(|fit| told.fit(&fit)));
+        object["level"] = json!(finished.level.map(|fit| reported.fit(&fit)));
         object["weights"] = json!(finished.fitted);
         console.result(&object)?;
         Ok(())
@@ -207,8 +208,8 @@ impl Sample {
         Ok(())
     }
 
-    /// The balls to write: of the chosen set, weighed or thinned out as was asked for.
-    fn finish(&self, sampling: &Sampling, referee: &HausdorffMeter) -> Result<Finished, Failure> {
+    /// The balls to write: the chosen set, weighted or thinned out as requested.
+    fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Failure> {
         let start = Instant::now();
         let mut finished = Finished {
             balls: self.chosen(sampling)?.balls.clone(),
@@ -224,7 +225,7 @@ impl Sample {
                 .at(&self.mesh)
                 .remedy("sample it on a finer --grid, or leave out --weights fitted"));
             }
-            let (field, volume) = (&sampling.field, referee.volume());
+            let (field, volume) = (&sampling.field, meter.volume());
             let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA)).map_err(|error| {
                 Failure::input(error).remedy("give --alpha a number above zero")
             })?;
@@ -235,7 +236,7 @@ impl Sample {
             if let Some(tree) = SphereTree::new(&finished.balls) {
                 finished.balls = tree.level(count);
             }
-            finished.level = Some(referee.measure(&finished.balls));
+            finished.level = Some(meter.measure(&finished.balls));
             finished.step = Some(Step::since("sphere tree", start));
         }
         Ok(finished)

@@ -1,9 +1,9 @@
-//! Which residues of one chain are which of another: by residue number where the numbers tell, by sequence otherwise.
+//! Alignment of two chains: by residue number where the numbers agree, by sequence otherwise.
 //!
-//! The sequence alignment is Gotoh's (J. Mol. Biol. 162 (1982) 705-708, affine gaps, time and memory of the product of
-//! the lengths) with free ends. Two equal residues that also agree in number score a little more than two that do not,
-//! so where a gap could stand in several places alike (in a run of glycines, at the edge of a missing loop) the numbers
-//! decide.
+//! The sequence alignment is Gotoh's (J. Mol. Biol. 162 (1982) 705-708, affine gaps, time and memory of the product
+//! of the lengths) with free ends. Two equal residues that also agree in number score a little more than two that do
+//! not. So the numbers decide where a gap could stand in several places alike: in a run of glycines, or at the edge
+//! of a missing loop.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,8 @@ const MATCH: f64 = 5.0;
 const MISMATCH: f64 = -2.0;
 /// Added to a match of equal numbers: less than any difference that the sequence itself makes.
 const SAME_NUMBER: f64 = 0.4;
-/// Opening costs more than one match gains, so that a loose end is not scattered one by one over a long chain.
+/// Opening costs more than one match gains, so that the residues of a free end are not scattered one by one over a
+/// long chain.
 const GAP_OPEN: f64 = -8.0;
 /// Missing loops are long and common: length costs little.
 const GAP_EXTEND: f64 = -0.1;
@@ -220,7 +221,7 @@ mod tests {
 
     #[test]
     fn off_by_one_over_a_run_is_matched_by_sequence() {
-        // The ligand of 1OPH in docking benchmark 5: numbers agree first, then run one apart.
+        // The ligand of 1OPH in docking benchmark 5: numbers agree first, then differ by one.
         let found = pairs(
             ("ACDEFGHIKL", &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]),
             ("ACDEFGHIKL", &[1, 2, 3, 5, 6, 7, 8, 9, 10, 11]),

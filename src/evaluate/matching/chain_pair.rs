@@ -1,6 +1,7 @@
-//! Which residues of a chain of the user's molecule are which of a chain of the native's: every chain with every chain.
+//! Alignments of every chain of the user's molecule with every chain of the native.
 //!
-//! Sequences alone do not say which of several copies a chain is; that is for [`placements`](crate::evaluate::matching::placements).
+//! Sequences alone do not say which of several copies a chain is; that is for
+//! [`placements`](crate::evaluate::matching::placements).
 
 use std::collections::HashMap;
 

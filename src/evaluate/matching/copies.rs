@@ -1,9 +1,9 @@
-//! Which copies of the native are the complex that poses are measured by.
+//! Choice of the native's copies: the complex by which poses are measured.
 //!
 //! A crystal's file holds several complexes, and neighbours that only touch in the crystal. Each side's
-//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination counts that matches nearly as
-//! much of both sides as the best does and whose sides touch. The one with most contacts is the complex; of several that
-//! stand alike, the one whose chain names agree.
+//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination
+//! counts that matches nearly as much of both sides as the best does and whose sides touch. The one with most
+//! contacts is the complex; of several that stand alike, the one whose chain names agree.
 
 use std::collections::HashMap;
 
@@ -70,7 +70,7 @@ pub(in crate::evaluate) fn combinations(
 ) -> Result<Vec<Combination>, Uncombined> {
     let mut counts = ContactCounts::new(receptor.native, ligand.native);
     let mut all = Vec::new();
-    let mut apart = false;
+    let mut any_disjoint = false;
     for (r, on_receptor) in receptor.placements.iter().enumerate() {
         let ours = on_receptor.native_segments();
         for (l, on_ligand) in ligand.placements.iter().enumerate() {
@@ -86,7 +86,7 @@ pub(in crate::evaluate) fn combinations(
             if !shared.is_empty() && overlap(on_receptor, on_ligand) {
                 continue;
             }
-            apart = true;
+            any_disjoint = true;
             let contacts = if shared.is_empty() {
                 let pairs = ours
                     .iter()
@@ -103,7 +103,7 @@ pub(in crate::evaluate) fn combinations(
             });
         }
     }
-    if !apart {
+    if !any_disjoint {
         return Err(Uncombined::OneCopy);
     }
     all.retain(|one| one.contacts > 0);

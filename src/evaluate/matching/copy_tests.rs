@@ -1,7 +1,8 @@
-//! Natives of several copies, chains under one name and chains in pieces, made of 1PPE (trypsin with a squash inhibitor).
+//! Natives of several copies, chains under one name and chains in pieces, made of 1PPE (trypsin with a squash
+//! inhibitor).
 //!
-//! DockQ 2.1.3 gives for [`POSE`] of the unbound partners against the plain native: iRMSD 1.672, LRMSD 3.834, fnat 0.620,
-//! DockQ 0.632. However the native is written, these stay.
+//! DockQ 2.1.3 gives for [`POSE`] of the unbound partners against the plain native: iRMSD 1.672, LRMSD 3.834, fnat
+//! 0.620, DockQ 0.632. However the native is written, these stay.
 
 use std::path::Path;
 
@@ -113,8 +114,8 @@ fn plain_native_gives_the_figures_of_dockq() {
     assert!(evaluator.report().warnings.is_empty());
 }
 
-/// Found with a crystal of two complexes: the first lacked a loop of one chain, so that the receptor was made of one chain
-/// of each, 41 Å from where they belong (dockq 0.389).
+/// Found with a crystal of two complexes: the first lacked a loop of one chain, so that the receptor was made of one
+/// chain of each, 41 Å from where they belong (dockq 0.389).
 #[test]
 fn copies_are_not_mixed_where_each_lacks_other_residues() {
     let docked = halves(&receptor(), "A", "B");
@@ -131,8 +132,8 @@ fn copies_are_not_mixed_where_each_lacks_other_residues() {
     assert!((quality.dockq - 0.632).abs() < 5e-3, "{quality:?}");
 }
 
-/// Found likewise: a lone second trypsin with two residues more than the one that the inhibitor is bound to was taken, and
-/// nothing touched.
+/// Found likewise: a lone second trypsin with two residues more than the one that the inhibitor is bound to was
+/// taken, and nothing touched.
 #[test]
 fn a_lone_copy_with_more_residues_is_not_taken() {
     let [one, inhibitor] = bound("E", "I");
@@ -190,10 +191,10 @@ fn the_largest_interface_wins_over_a_crystal_contact() {
     assert_as_dockq(&evaluator);
 }
 
-/// Found with both partners under one name: the inhibitor's first fifteen residues, whose numbers trypsin does not have,
-/// were counted to trypsin (dockq 0.495).
+/// Found with both partners under one name: the inhibitor's first fifteen residues, whose numbers trypsin does not
+/// have, were counted to trypsin (dockq 0.495).
 #[test]
-fn partners_under_one_name_are_told_apart() {
+fn partners_under_one_name_are_distinguished() {
     let [trypsin, inhibitor] = bound("A", "A");
     // As they are; running on, so that a bond is missing; after a gap as of a missing loop; the inhibitor first.
     for native in [
@@ -341,10 +342,10 @@ fn an_absurd_fit_is_an_error() {
     assert!(error.remedy().contains("--native FILE:A,B,C"));
 }
 
-/// A docked chain that the native's other chain holds a few residues of is elsewhere all the same; one of which a second
-/// copy has more is not.
+/// A docked chain that the native's other chain holds a few residues of is elsewhere all the same; one of which a
+/// second copy has more is not.
 #[test]
-fn chains_cut_at_other_places_are_told_from_copies() {
+fn chains_cut_at_other_places_are_no_copies() {
     let docked = halves(&receptor(), "A", "B");
     let [one, inhibitor] = bound("E", "C");
     let first = without(&one, 128..=300);
@@ -444,7 +445,7 @@ fn both_strands_of_a_duplex_docked_as_one_chain_are_matched() {
         let quality = evaluator.evaluate(&Pose::identity());
         assert!(quality.irmsd < 1e-9 && quality.lrmsd < 1e-9, "{quality:?}");
         assert_eq!(quality.fnat, 1.0);
-        // Strands kept apart in both, with the native's in the other order and under other names.
+        // Separate strands in both, with the native's in the other order and under other names.
         let swapped = [renamed(&native[1], "A"), renamed(&native[0], "B")].concat();
         let complex = [swapped, renamed(&protein, "P")];
         let evaluator = against(&protein, &native.concat(), &complex).unwrap();

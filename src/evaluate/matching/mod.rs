@@ -1,4 +1,4 @@
-//! Which residues of the docked molecules are which of the native: sequences, then superposition.
+//! Matching of the docked molecules' residues with the native's: by sequence, then by superposition.
 
 pub(super) mod alignment;
 pub(super) mod chain_pair;

@@ -15,14 +15,14 @@ const DISTINCTIVE: usize = 20;
 const DISTINCTIVE_PEPTIDE: (usize, f64) = (8, 0.9);
 /// What is left of two merged chains must have so many equal residues: fewer pair by chance.
 const MIN_OF_TWO_REMAINDERS: usize = 8;
-/// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other chain is
-/// a copy of what was matched already.
+/// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other
+/// chain is a copy of what was matched already.
 const MIN_OF_WHOLE: f64 = 0.9;
 
 /// Two chains of like sequence and their superposition.
 pub(in crate::evaluate) struct Candidate {
     pub pair: ChainPair,
-    pub misfit: Superposition,
+    pub superposition: Superposition,
 }
 
 /// Farthest, in Å RMSD, that so many residues may be from where the rest of the side has them.
@@ -97,9 +97,9 @@ impl<'a> Builder<'a> {
         theirs[pair.native].retain(|j| natives.binary_search(j).is_err());
         let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
         self.points.extend(added);
-        let misfit = Superposition::new(&self.points);
-        self.motion = misfit.best;
-        self.rmsd = misfit.rmsd(&misfit.best);
+        let superposition = Superposition::new(&self.points);
+        self.motion = superposition.best;
+        self.rmsd = superposition.rmsd(&superposition.best);
         self.chains.push(pair);
     }
 
@@ -125,8 +125,8 @@ impl<'a> Builder<'a> {
                 .filter_map(|candidate| {
                     let reach = reach(candidate.pair.pairs.len());
                     // The number of atoms, each counting less the farther it is.
-                    let worth = candidate.misfit.count
-                        - candidate.misfit.at(&self.motion) / (reach * reach);
+                    let worth = candidate.superposition.count
+                        - candidate.superposition.at(&self.motion) / (reach * reach);
                     (worth > 0.0).then_some((worth, candidate))
                 })
                 .reduce(|best, next| if next.0 > best.0 { next } else { best });
@@ -157,8 +157,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// What is left of two chains, of which one at least is matched in part, if it is alike and lies together; and what it
-    /// is worth.
+    /// What is left of two chains, of which one at least is matched in part, if it is alike and lies together; and
+    /// what it is worth.
     fn remainder(&self, user: usize, native: usize) -> Option<(f64, ChainPair)> {
         let whole = (self.is_whole_user(user), self.is_whole_native(native));
         if whole == (true, true) {
@@ -175,12 +175,12 @@ impl<'a> Builder<'a> {
         } else {
             Some(reach(equal))
         }?;
-        let misfit = Superposition::new(&backbone_pairs(
+        let superposition = Superposition::new(&backbone_pairs(
             self.user,
             self.native,
             pair.pairs.iter().copied(),
         ));
-        let worth = misfit.count - misfit.at(&self.motion) / (reach * reach);
+        let worth = superposition.count - superposition.at(&self.motion) / (reach * reach);
         (pair.is_alike() && worth > 0.0).then_some((worth, pair))
     }
 

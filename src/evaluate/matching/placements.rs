@@ -1,13 +1,13 @@
 //! The ways in which one docked side lies on the native: which of its chains is which copy, by superposition.
 //!
-//! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is superposed;
-//! then every other chain is given the native's chain that lies where it comes to stand, and what is left of chains that
-//! one file has merged likewise. Copies elsewhere in the crystal are never mixed, whatever their names, the order of the
-//! file and the residues that each copy lacks. For two identical chains these ways are their orders that fit; for a ring of
-//! n they are its n rotations.
+//! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is
+//! superposed; then every other chain is given the native's chain that lies where it comes to stand, and what is left
+//! of chains that one file has merged likewise. Copies elsewhere in the crystal are never mixed, whatever their
+//! names, the order of the file and the residues that each copy lacks. For two identical chains these ways are their
+//! orders that fit; for a ring of n they are its n rotations.
 //!
-//! A chain that finds nothing in its place is given the one chain of its sequence even if that stands elsewhere (a hinge, a
-//! domain that moved), unless the whole would fit no longer: then the placement is displaced.
+//! A chain that finds nothing in its place is given the one chain of its sequence, even if that stands elsewhere (a
+//! hinge, a domain that moved). Where the whole would then fit no longer, the placement is displaced.
 
 use crate::evaluate::matching::chain_pair::{ChainPair, align_all};
 use crate::evaluate::matching::placement::Placement;
@@ -38,9 +38,12 @@ pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec
         .into_iter()
         .filter(|pair| pair.pairs.len() >= least)
         .map(|pair| {
-            let misfit =
+            let superposition =
                 Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()));
-            Candidate { pair, misfit }
+            Candidate {
+                pair,
+                superposition,
+            }
         })
         .collect();
     let size = |candidate: &Candidate| candidate.pair.pairs.len();
@@ -134,10 +137,10 @@ mod tests {
         // that begin again or run on split the chain; a gap that may be a loop does not, and then what the first match
         // left is matched.
         let (heavy, light) = (random_sequence(3, 60), random_sequence(4, 50));
-        let apart = chains(&[("L", &light, 1, 12.0), ("H", &heavy, 1, 0.0)]);
+        let split = chains(&[("L", &light, 1, 12.0), ("H", &heavy, 1, 0.0)]);
         for second_number in [1, 61, 101, 501] {
             let merged = chains(&[("A", &heavy, 1, 0.0), ("A", &light, second_number, 12.0)]);
-            for (user, native) in [(&apart, &merged), (&merged, &apart)] {
+            for (user, native) in [(&split, &merged), (&merged, &split)] {
                 let mut sizes: Vec<_> =
                     matched(user, native).into_iter().map(|row| row.2).collect();
                 sizes.sort_unstable();
@@ -151,16 +154,16 @@ mod tests {
         // Eleven residues each: what is left of a merged chain used to count only from 20 on.
         let (one, other) = (random_sequence(11, 11), random_sequence(12, 11));
         let merged = chains(&[("B", &one, 1, 0.0), ("B", &other, 12, 12.0)]);
-        let apart = chains(&[("C", &one, 1, 0.0), ("D", &other, 1, 12.0)]);
+        let split = chains(&[("C", &one, 1, 0.0), ("D", &other, 1, 12.0)]);
         let sizes = |rows: Vec<(String, String, usize)>| -> usize {
             assert_eq!(rows.len(), 2);
             rows.iter().map(|row| row.2).sum()
         };
-        assert_eq!(sizes(matched(&merged, &apart)), 22);
-        assert_eq!(sizes(matched(&apart, &merged)), 22);
+        assert_eq!(sizes(matched(&merged, &split)), 22);
+        assert_eq!(sizes(matched(&split, &merged)), 22);
         let unsplit = chains(&[("B", &one, 1, 0.0), ("B", &other, 50, 12.0)]);
         assert_eq!(residues(&unsplit).segments.len(), 1);
-        assert_eq!(sizes(matched(&unsplit, &apart)), 22);
+        assert_eq!(sizes(matched(&unsplit, &split)), 22);
     }
 
     /// A loop that one copy lacks has no partner in another copy.

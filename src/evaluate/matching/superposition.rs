@@ -1,8 +1,8 @@
 //! Sums of squared distances of moved points to fixed ones as closed forms of the motion, and the best motion.
 //!
-//! For pairs (x_k, y_k) let A0 x + b0 be the best superposition of the x on the y, x' = x - mean(x) and
-//! e_k = A0 x_k + b0 - y_k its residuals, which add up to zero. For any motion A x + b, with D = A - A0 and
-//! d = A mean(x) + b - mean(y),
+//! For pairs (x_k, y_k) let A0 x + b0 be the best superposition of the x on the y. Let x' = x - mean(x). The
+//! residuals e_k = A0 x_k + b0 - y_k add up to zero. For any motion A x + b, with D = A - A0 and d = A mean(x) + b -
+//! mean(y),
 //!
 //! ```text
 //! sum_k |A x_k + b - y_k|^2 = sum |e|^2 + 2 D : sum e x'^T + (D sum x' x'^T) : D + n |d|^2,
@@ -28,7 +28,7 @@ pub(in crate::evaluate) type PointPair = (Point3<f64>, Point3<f64>);
 pub(in crate::evaluate) struct Superposition {
     /// Number n of pairs.
     pub count: f64,
-    /// The motion with the least misfit.
+    /// The motion with the smallest sum of squared distances.
     pub best: Pose,
     best_rotation: Matrix3<f64>,
     moving_center: Vector3<f64>,
@@ -101,8 +101,10 @@ impl Superposition {
         (self.at(motion) / self.count.max(1.0)).sqrt()
     }
 
-    /// The motion that brings the points of `self` as they are, and those of `other` after `pose`, together as near
-    /// their fixed points as a rigid motion can; and the root mean square distance, in Å, that remains.
+    /// Best common superposition of two sets of points, and the RMSD in Å that remains.
+    ///
+    /// The motion brings the points of `self` as they are, and those of `other` after `pose`, as near their fixed
+    /// points as a rigid motion can.
     pub fn superpose_with(&self, other: &Self, pose: &Pose) -> (Pose, f64) {
         let count = (self.count + other.count).max(1.0);
         let turned = pose.rotation.to_rotation_matrix();

@@ -1,7 +1,7 @@
 //! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
 //!
-//! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several chains
-//! were written under one name ([`segments`](crate::evaluate::residues::segments)).
+//! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several
+//! chains were written under one name ([`segments`](crate::evaluate::residues::segments)).
 
 pub(super) mod residue;
 pub(super) mod segments;
@@ -74,8 +74,8 @@ impl Residues {
         Ok(all)
     }
 
-    /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which the file
-    /// ends a chain.
+    /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which
+    /// the file ends a chain.
     fn add_chain(&mut self, name: &str, atoms: &[&Atom], ends: &[usize]) {
         let found = without_free_nucleotides(
             residue_runs(atoms)
@@ -209,7 +209,8 @@ mod tests {
         assert_eq!(residues.residues[0].kind, "MET");
     }
 
-    /// Found by a review: of force fields' names only some were known, and of old files' the atoms of the backbone were not.
+    /// Found by a review: of force fields' names only some were known, and of old files' the atoms of the backbone
+    /// were not.
     #[test]
     fn names_of_force_fields_and_old_files_are_known() {
         for (name, plain) in [("LSN", "LYS"), ("ASPP", "ASP"), ("RU", "U"), ("DA5", "A")] {

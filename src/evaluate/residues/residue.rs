@@ -11,10 +11,10 @@ pub(in crate::evaluate) const BACKBONE_ATOMS: [&str; 16] = [
     "C5'",
 ];
 
-/// What a residue is called in its file: number and insertion code.
+/// Identifier of a residue in its file: number and insertion code.
 pub(in crate::evaluate) type Number = (i64, Option<char>);
 
-/// How many of the [`BACKBONE_ATOMS`] are of proteins.
+/// Number of the [`BACKBONE_ATOMS`] that are of proteins.
 const OF_PROTEINS: usize = 4;
 /// Places of P and O3' among the [`BACKBONE_ATOMS`].
 pub(in crate::evaluate) const PHOSPHORUS: usize = 4;
@@ -27,7 +27,7 @@ pub(in crate::evaluate) const PHOSPHATE_BOND: f64 = 2.5;
 pub(in crate::evaluate) struct Residue {
     /// Author number and insertion code.
     pub number: Number,
-    /// Residue name with its chemical variants folded, so that equal strings mean the same residue (see [`kind`]).
+    /// Residue name without its chemical variants, so that equal strings mean the same residue (see [`kind`]).
     pub kind: String,
     /// Coordinates of the backbone atoms, in the order of [`BACKBONE_ATOMS`], in Å; `None` where the file has none.
     pub backbone: [Option<Point3<f64>>; BACKBONE_ATOMS.len()],
@@ -103,9 +103,9 @@ impl Residue {
 
 /// The name under which residues are compared.
 ///
-/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as methionine and
-/// S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the plain residue's, and nucleotides as their
-/// base ([`plain_residue_name`]).
+/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as
+/// methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the
+/// plain residue's, and nucleotides as their base ([`plain_residue_name`]).
 pub(in crate::evaluate) fn kind(name: &str) -> String {
     let plain = match name {
         "MSE" => "MET",

@@ -1,19 +1,20 @@
-//! Where one chain ends and another begins under one name.
+//! Boundaries of chains that share one name.
 //!
-//! Many programs write several chains under one name: an antibody's H and L, both partners of a complex, the two strands
-//! of a duplex. A new segment begins
+//! Many programs write several chains under one name: an antibody's H and L, both partners of a complex, the two
+//! strands of a duplex. A new segment begins
 //!
 //! - where a residue number comes again, or falls;
-//! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every gap;
-//! - where the backbone is broken though the numbers leave no room for what would be missing: consecutive numbers whose C
-//!   and N (O3' and P) are not bonded, or ends too far apart for the residues that the numbers leave out;
+//! - where the file itself ends a chain (a TER record), unless a missing loop may be there: PyMOL writes TER at every
+//!   gap;
+//! - where the backbone is broken and the numbers leave no room for unresolved residues: consecutive numbers without
+//!   a bond from C to N (O3' to P), or a gap too wide for the numbers;
 //! - where a nucleic acid follows a protein, or the reverse;
-//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 keep merged chains apart
-//!   (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
+//! - where the numbers leap by a hundred or more, which is how the makers of docking benchmark 5 distinguish merged
+//!   chains (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
 //!
-//! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers within a
-//! chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a gap of its own
-//! does no harm: all its pieces are matched.
+//! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers
+//! within a chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a
+//! gap of its own does no harm: all its pieces are matched.
 
 use std::collections::HashSet;
 
@@ -52,45 +53,45 @@ const CARBON: usize = 1;
 const NITROGEN: usize = 2;
 const FIVE_PRIME_OXYGEN: usize = 10;
 
-/// How two residues in a row are joined.
+/// Link between two residues in a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Link {
     Bonded,
-    /// So far apart, in Å; a missing residue spans at most so much.
-    Apart(f64, f64),
+    /// Distance in Å, and the most that a missing residue spans, in Å.
+    Distant(f64, f64),
     /// The atoms that would show it are not in the file.
     Unknown,
 }
 
-/// How `after` is joined to `before`.
+/// Link from `before` to `after`.
 fn link(before: &Residue, after: &Residue) -> Link {
-    let apart = |from: usize, to: usize| {
+    let measured = |from: usize, to: usize| {
         let ends = before.backbone[from].zip(after.backbone[to]);
         ends.map(|(from, to)| nalgebra::distance(&from, &to))
     };
-    let judge = |distance: f64, bond: f64, span: f64| {
+    let classify = |distance: f64, bond: f64, span: f64| {
         if distance <= bond {
             Link::Bonded
         } else {
-            Link::Apart(distance, span)
+            Link::Distant(distance, span)
         }
     };
     let is_protein = |residue: &Residue| residue.backbone[..PHOSPHORUS].iter().any(Option::is_some);
     let is_nucleic = |residue: &Residue| residue.backbone[PHOSPHORUS..].iter().any(Option::is_some);
     let [amino_acid, nucleotide] = SPANS;
     if (is_protein(before) && is_nucleic(after)) || (is_nucleic(before) && is_protein(after)) {
-        Link::Apart(f64::INFINITY, nucleotide)
-    } else if let Some(distance) = apart(CARBON, NITROGEN) {
-        judge(distance, PEPTIDE_BOND, amino_acid)
-    } else if let Some(distance) = apart(LINKING_OXYGEN, PHOSPHORUS) {
-        judge(distance, PHOSPHATE_BOND, nucleotide)
-    } else if let Some(distance) = apart(LINKING_OXYGEN, FIVE_PRIME_OXYGEN) {
-        judge(distance, OXYGENS, nucleotide)
-    } else if let Some(distance) = apart(ALPHA_CARBON, ALPHA_CARBON) {
+        Link::Distant(f64::INFINITY, nucleotide)
+    } else if let Some(distance) = measured(CARBON, NITROGEN) {
+        classify(distance, PEPTIDE_BOND, amino_acid)
+    } else if let Some(distance) = measured(LINKING_OXYGEN, PHOSPHORUS) {
+        classify(distance, PHOSPHATE_BOND, nucleotide)
+    } else if let Some(distance) = measured(LINKING_OXYGEN, FIVE_PRIME_OXYGEN) {
+        classify(distance, OXYGENS, nucleotide)
+    } else if let Some(distance) = measured(ALPHA_CARBON, ALPHA_CARBON) {
         if distance < *ALPHA_CARBONS.start() {
             Link::Unknown
         } else {
-            judge(distance, *ALPHA_CARBONS.end(), amino_acid)
+            classify(distance, *ALPHA_CARBONS.end(), amino_acid)
         }
     } else {
         Link::Unknown
@@ -109,8 +110,8 @@ fn has_bonds(residues: &[Residue]) -> bool {
     broken as f64 <= 1.0 + BROKEN * consecutive().count() as f64
 }
 
-/// Whether another chain begins with `after`; `ends` are the lines at which the file ends a chain, rising, and `bonds` says
-/// whether a missing bond means something.
+/// Whether another chain begins with `after`; `ends` are the lines at which the file ends a chain, rising, and
+/// `bonds` says whether a missing bond means something.
 fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) -> bool {
     let link = link(before, after);
     if link == Link::Bonded {
@@ -124,8 +125,8 @@ fn begins_chain(before: &Residue, after: &Residue, ends: &[usize], bonds: bool) 
         return true;
     }
     match link {
-        Link::Apart(..) if step == 1 && (bonds || is_ended) => true,
-        Link::Apart(distance, span) => {
+        Link::Distant(..) if step == 1 && (bonds || is_ended) => true,
+        Link::Distant(distance, span) => {
             let (residues, longest) = MAX_GAP_LENGTH;
             distance > f64::max(span * step as f64, UNCOUNTED)
                 || (is_ended && (step > residues || distance > longest))
@@ -234,7 +235,7 @@ mod tests {
             segments.map(|segment| segment.members.len()).collect()
         };
         assert_eq!(sizes((1..=30).chain(1001..=1025).collect()), [30, 25]);
-        // A loop of 99 missing residues, and a tag of five: one chain.
+        // A loop of 99 residues that the file lacks, and a tag of five: one chain.
         assert_eq!(sizes((1..=30).chain(129..=150).collect()), [52]);
         assert_eq!(sizes((1..=30).chain(501..=505).collect()), [35]);
     }
@@ -249,8 +250,9 @@ mod tests {
         let residues = Residues::of(&molecule(atoms), "receptor").unwrap();
         assert_eq!(residues.segments.len(), 2);
     }
-    /// Found with both partners of a complex under one name, the ligand's numbers starting again below the receptor's: the
-    /// ligand's first residues, whose numbers the receptor does not have, were counted to the receptor.
+    /// Found with both partners of a complex under one name, the ligand's numbers starting again below the
+    /// receptor's: the ligand's first residues, whose numbers the receptor does not have, were counted to the
+    /// receptor.
     #[test]
     fn falling_number_begins_a_segment() {
         assert_eq!(
@@ -284,8 +286,8 @@ mod tests {
         assert_eq!(sizes(atoms), [19, 19]);
     }
 
-    /// A gap in the numbers may be a missing loop or a second chain. A TER record decides where a loop would be long; in a
-    /// short gap it says nothing, for PyMOL writes it at each.
+    /// A gap in the numbers may be a missing loop or a second chain. A TER record decides where a loop would be long;
+    /// in a short gap it says nothing, for PyMOL writes it at each.
     #[test]
     fn end_of_a_chain_in_the_file_begins_a_segment() {
         let pieces = |second: i64, x: f64, ends: Vec<usize>| {
@@ -303,7 +305,8 @@ mod tests {
         assert_eq!(pieces(31, 9.0, vec![101]), [40]);
     }
 
-    /// Found with a file whose insertion codes were lost: a chain was cut into pieces so short that they matched anything.
+    /// Found with a file whose insertion codes were lost: a chain was cut into pieces so short that they matched
+    /// anything.
     #[test]
     fn numbers_that_come_again_within_a_bonded_chain_do_not_cut_it() {
         let mut atoms = beside(1, 30, 0.0);

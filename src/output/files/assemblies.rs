@@ -1,8 +1,8 @@
 //! Assemblies: two meshes in one OBJ file, the receptor as it was and the ligand in its place, one file a rank.
 //!
-//! The parts are the groups `receptor` and `ligand`. Coordinates are in the unit of the mesh files and in the receptor's frame, in the
-//! shortest digits that read back to the same f64. Vertices are those that were docked: coincident ones of the files are one, and triangles
-//! that faced inward are turned.
+//! The parts are the groups `receptor` and `ligand`. Coordinates are in the unit of the mesh files and in the
+//! receptor's frame, in the shortest digits that read back to the same f64. Vertices are those that were docked:
+//! coincident ones of the files are one, and triangles that faced inward are turned.
 
 use std::io;
 use std::path::Path;
@@ -16,7 +16,8 @@ use crate::output::records::program::VERSION;
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::PoseRow;
 
-/// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the rows.
+/// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the
+/// rows.
 ///
 /// # Errors
 /// [`FileError`] when the folder cannot be made or a file cannot be written.

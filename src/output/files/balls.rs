@@ -10,7 +10,8 @@ use crate::output::files::whole_file::{FileError, write_whole};
 /// Header of the table.
 pub const COLUMNS: &str = "x,y,z,r,weight";
 
-/// Writes the table: a row a knot, in the file's unit, 17 significant digits a number, which read back to the same double.
+/// Writes the table: a row a knot, in the file's unit, 17 significant digits a number, which read back to the same
+/// double.
 ///
 /// # Errors
 /// [`FileError`] when the file cannot be made or written.
@@ -121,8 +122,10 @@ pub enum PseudoAtomError {
     File(#[from] FileError),
 }
 
-/// Writes the balls as pseudo-atoms of a PDB file: HETATM records named `X` of residue `BAL`, a residue a ball, with the radius
-/// in the columns of the temperature factor and the weight in those of the occupancy. Three decimals are kept.
+/// Writes the balls as pseudo-atoms of a PDB file, with three decimals.
+///
+/// These are HETATM records named `X` of residue `BAL`, one residue for each ball. The radius is in the columns of
+/// the temperature factor and the weight in those of the occupancy.
 ///
 /// # Errors
 /// [`PseudoAtomError`] when a coordinate does not fit its columns or the file cannot be written.

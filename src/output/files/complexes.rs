@@ -84,7 +84,7 @@ pub fn write_complexes(
     }
     let chains = match chains {
         Some(chains) => chains,
-        // No complex was asked for: the names are what they would have been.
+        // No complex was requested: the names are what they would have been.
         None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
             .map_err(|error| FileError::writing(folder, io_error(error)))?,
     };

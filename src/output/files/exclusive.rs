@@ -12,8 +12,8 @@ pub struct ExclusiveLock {
 }
 
 impl ExclusiveLock {
-    /// Makes and locks a file; `None` where another process holds the lock. Where the file system knows no locks the file
-    /// is there all the same.
+    /// Makes and locks a file; `None` where another process holds the lock. Where the file system knows no locks the
+    /// file is there all the same.
     ///
     /// # Errors
     /// What the system says when the file cannot be made.

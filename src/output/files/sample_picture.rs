@@ -1,5 +1,5 @@
-//! A picture of a sampled solid (SVG): the depth and the skeletal density on a slice, the slice of the balls, and the balls
-//! from outside.
+//! A picture of a sampled solid (SVG): the depth and the skeletal density on a slice, the slice of the balls, and the
+//! balls from outside.
 //!
 //! The slice is the plane through the middle of the solid across the shortest edge of its bounding box.
 

@@ -1,9 +1,10 @@
 //! Whole files or none.
 //!
 //! A run is built in `DIR/.partial/` and its entries are renamed into `DIR` when all of them are written, `run.json`
-//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names, which
-//! the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A run that goes on holds a
-//! lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no other run takes its files for a killed one's.
+//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names,
+//! which the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A
+//! run that goes on holds a lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no
+//! other run takes its files for a killed one's.
 
 use std::fs;
 use std::io;
@@ -12,7 +13,7 @@ use std::path::{Path, PathBuf};
 use crate::output::files::exclusive::ExclusiveLock;
 use crate::output::files::whole_file::{FileError, PARTIAL};
 
-/// What a command puts into its directory.
+/// Files that a command puts into its directory.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Product {
     /// The entries, in the order in which they are moved there.
@@ -22,8 +23,9 @@ pub struct Product {
 }
 
 impl Product {
-    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none. `interrupted` says that a
-    /// staging folder was found there, so that entries without their record are a killed run's.
+    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none.
+    /// `interrupted` says that a staging folder was found there, so that entries without their record are a killed
+    /// run's.
     fn refuse_existing(
         &self,
         directory: &Path,
@@ -49,13 +51,13 @@ impl Product {
     }
 }
 
-/// What `knotdock dock` leaves.
+/// Files of `knotdock dock`.
 pub const RUN: Product = Product {
     entries: &["top", "poses.csv", "run.json"],
     record: "run.json",
 };
 
-/// What `knotdock tradeoff` leaves.
+/// Files of `knotdock tradeoff`.
 pub const TRADEOFF: Product = Product {
     entries: &["tradeoff.svg", "tradeoff.csv", "tradeoff.json"],
     record: "tradeoff.json",
@@ -64,7 +66,7 @@ pub const TRADEOFF: Product = Product {
 /// Why output could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum StagingError {
-    /// The directory holds a run and overwriting it was not asked for.
+    /// The directory holds a run, and overwriting it was not requested.
     #[error("{} already holds a run", .0.display())]
     ExistingRun(PathBuf),
     /// Another process is writing its run there.
@@ -86,7 +88,7 @@ pub enum StagingError {
 }
 
 impl StagingError {
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::ExistingRun(_) => {
@@ -125,7 +127,7 @@ pub struct Staging {
 /// The file in the staging folder that a run locks.
 const LOCK: &str = "lock";
 
-/// How far a staging has come, which says what its end has to tidy up.
+/// Progress of a staging, which decides what its end has to remove.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     /// Being filled: the folder goes, and the directory if it was made for it.
@@ -140,8 +142,9 @@ impl Staging {
     /// Makes `directory` if there is none and the staging folder in it, which also shows that it can be written to.
     ///
     /// # Errors
-    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is there
-    /// no run has written, [`StagingError::Busy`] when another run is being written there, [`StagingError::Write`] when nothing can be.
+    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is
+    /// there no run has written, [`StagingError::Busy`] when another run is being written there,
+    /// [`StagingError::Write`] when nothing can be.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
         Self::of(&RUN, directory, force)
     }
@@ -156,7 +159,8 @@ impl Staging {
         force: bool,
     ) -> Result<Self, StagingError> {
         let folder = directory.join(PARTIAL);
-        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its renames: what that left is ours.
+        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its
+        // renames: what that left is ours.
         let interrupted = folder.is_dir();
         product.refuse_existing(directory, interrupted, force)?;
         Self::claim(product, directory, interrupted, force)
@@ -234,7 +238,8 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is gone.
+        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is
+        // gone.
         if cfg!(windows) {
             self.lock = None;
         }
@@ -336,7 +341,8 @@ mod tests {
         );
     }
 
-    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its end.
+    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its
+    /// end.
     #[test]
     fn two_runs_do_not_share_a_directory() {
         let root = tempfile::tempdir().unwrap();
@@ -361,7 +367,8 @@ mod tests {
         );
     }
 
-    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced without --force.
+    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced
+    /// without --force.
     #[test]
     fn a_run_that_ends_before_the_lock_is_taken_is_not_replaced() {
         let root = tempfile::tempdir().unwrap();

@@ -17,7 +17,7 @@ pub enum FileError {
     Unwritable {
         /// The file or directory.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// A file could not be written although it could be made: a full disk, for instance.
@@ -25,7 +25,7 @@ pub enum FileError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
 }
@@ -47,7 +47,7 @@ impl FileError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Unwritable { .. } => "name a place that you may write to",
@@ -68,8 +68,9 @@ impl FileError {
     }
 }
 
-/// Whether a name is of something that is written to as it stands: a device, a pipe, or what the system gives to the process under such a name, which may be
-/// a regular file (`/dev/stdout`, redirected).
+/// Whether a name stands for something that is written to in place, such as a device or a pipe.
+///
+/// A name that the system gives to the process counts too. It may be a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
     let is_own = path.starts_with("/proc")
         || path.starts_with("/dev/fd")

@@ -30,7 +30,7 @@ pub enum CostModelError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// It is none that this version understands.
@@ -38,13 +38,13 @@ pub enum CostModelError {
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault, in words.
         message: String,
     },
 }
 
-/// Where the cost model is kept: knotdock/cost_model.json in `XDG_CACHE_HOME`, or else in .cache of the home folder. `None` where there is
-/// neither.
+/// Path of the cost model: knotdock/cost_model.json in `XDG_CACHE_HOME`, or else in .cache of the home folder.
+/// `None` where there is neither.
 pub fn default_path() -> Option<PathBuf> {
     // The standard has relative folders ignored.
     let folder = |name: &str| {

@@ -27,7 +27,7 @@ pub enum InputRecordError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// The file is not the one that the run read.

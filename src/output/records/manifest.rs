@@ -37,7 +37,7 @@ pub struct InputEntry {
     /// Atoms kept of a molecule.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub atoms: Option<usize>,
-    /// How a mesh was sampled.
+    /// Report on the sampling of a mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sampling: Option<SampledPart>,
     /// What was kept, dropped and altered.
@@ -68,7 +68,7 @@ pub struct Results {
     pub rotations: usize,
 }
 
-/// What an effect cost.
+/// Cost of an effect.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EffectTime {
     /// The effect.
@@ -88,7 +88,7 @@ impl EffectTime {
     }
 }
 
-/// What the run cost. Differs from run to run.
+/// Cost of the run. Differs from run to run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Timing {
     /// Start of the run, in seconds since 1970-01-01 UTC.
@@ -97,13 +97,13 @@ pub struct Timing {
     pub wall_seconds: f64,
     /// Stages of the search.
     pub stages: Vec<StageTime>,
-    /// What each effect cost.
+    /// Cost of each effect.
     pub effects: Vec<EffectTime>,
     /// The most memory that the process held, in bytes; `null` where the system does not say.
     pub peak_memory_bytes: Option<u64>,
 }
 
-/// Where and how the run was carried out. Differs from machine to machine.
+/// Machine, threads and memory of the run. Differs from machine to machine.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
     /// Operating system.
@@ -124,7 +124,7 @@ pub struct Machine {
     pub adapter: Option<Adapter>,
     /// The command line.
     pub command: Vec<String>,
-    /// What the plan was chosen by, where an accuracy or a time was asked for.
+    /// The basis of the plan, where an accuracy or a time was requested.
     pub chosen: Option<Chosen>,
 }
 
@@ -160,11 +160,11 @@ pub struct Manifest<'a> {
     machine: Machine,
 }
 
-/// What [`Manifest::new`] puts together.
+/// Parts of a [`Manifest`].
 pub struct ManifestParts<'a> {
     /// The input files.
     pub inputs: &'a Inputs,
-    /// What was asked for.
+    /// What was requested.
     pub options: &'a DockOptions,
     /// What was planned.
     pub plan: &'a DockPlan,
@@ -174,7 +174,7 @@ pub struct ManifestParts<'a> {
     pub results: Results,
     /// Chain names in the complexes; none of meshes.
     pub chains: Option<&'a ChainMap>,
-    /// How the native was matched, if there is one.
+    /// Report on the native's matching, if there is one.
     pub matching: Option<&'a MatchReport>,
     /// What it cost.
     pub timing: Timing,

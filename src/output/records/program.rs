@@ -1,4 +1,4 @@
-//! Which program wrote a record.
+//! The program that wrote a record.
 
 use serde::Serialize;
 

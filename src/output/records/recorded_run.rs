@@ -1,4 +1,4 @@
-//! What later commands take from a `run.json`.
+//! The part of a `run.json` that later commands read.
 
 use std::fs;
 use std::io;
@@ -11,7 +11,7 @@ use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::manifest::SCHEMA;
 use crate::output::records::program::{COMMIT, VERSION};
 
-/// What later commands take from a `run.json`.
+/// The part of a `run.json` that later commands read.
 #[derive(Debug)]
 pub struct RecordedRun {
     /// Version of the program that wrote it.
@@ -38,7 +38,7 @@ pub enum RecordedRunError {
     Open {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// The file is no manifest that this version understands.
@@ -48,7 +48,7 @@ pub enum RecordedRunError {
         path: PathBuf,
         /// 1-based line, where known.
         line: Option<u64>,
-        /// What is wrong.
+        /// The fault, in words.
         message: String,
     },
 }
@@ -138,9 +138,9 @@ impl RecordedRun {
         (self.version.as_str(), self.commit.as_str()) == (VERSION, COMMIT)
     }
 
-    /// Whether it asked the same of the same: files of the same content wherever they lie, the same chains of them, and the same options, those of the
-    /// machine aside.
-    pub fn asks(
+    /// Whether it is the same request: files of the same content (wherever they lie), the same chains of them, and
+    /// the same options except those of the machine.
+    pub fn is_same_request(
         &self,
         [receptor, ligand]: [&InputRecord; 2],
         native: Option<&NativeRecord>,

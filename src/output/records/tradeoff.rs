@@ -163,7 +163,7 @@ pub struct TradeoffRecord<'a> {
     machine: Machine,
 }
 
-/// What [`TradeoffRecord::new`] puts together.
+/// Parts of a [`TradeoffRecord`].
 pub struct TradeoffParts<'a> {
     /// The input files.
     pub inputs: &'a Inputs,
@@ -173,7 +173,7 @@ pub struct TradeoffParts<'a> {
     pub tradeoff: &'a Tradeoff,
     /// What to take.
     pub advice: Option<&'a Advice>,
-    /// How the native was matched, if there is one.
+    /// Report on the native's matching, if there is one.
     pub matching: Option<&'a MatchReport>,
     /// Where it ran.
     pub machine: Machine,

@@ -1,7 +1,7 @@
 //! The atoms of a structure file as a table: what was kept of it, and what was dropped and why.
 //!
-//! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file. `docs/formats.md`
-//! describes the columns.
+//! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file.
+//! `docs/formats.md` describes the columns.
 
 use std::io;
 use std::path::Path;
@@ -35,11 +35,11 @@ pub const COLUMNS: [&str; 16] = [
 ///
 /// # Errors
 /// [`FileError`].
-pub fn write(path: &Path, listed: &[AtomFate]) -> Result<(), FileError> {
+pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut table = csv::Writer::from_writer(&mut *file);
         table.write_record(COLUMNS).map_err(io::Error::other)?;
-        for entry in listed {
+        for entry in fates {
             table
                 .write_record(fields(entry))
                 .map_err(io::Error::other)?;

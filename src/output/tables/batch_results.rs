@@ -44,7 +44,7 @@ pub struct PairResult {
     pub outcome: Option<Result<RunSummary, String>>,
 }
 
-/// What a batch tells of a run.
+/// Report of a batch on one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunSummary {
     /// Poses kept and clusters among them, as run.json has them.
@@ -110,7 +110,8 @@ pub fn is_ours(path: &Path) -> bool {
     BufReader::new(file).read_line(&mut line).is_ok() && line.trim_end() == header().join(",")
 }
 
-/// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they stand.
+/// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they
+/// stand.
 ///
 /// # Errors
 /// What is wrong with the table, where one is there and cannot be read.

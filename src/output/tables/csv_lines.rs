@@ -1,15 +1,15 @@
-//! Lines of a CSV file by which faults in it are told.
+//! Line numbers of a CSV file, by which faults in it are reported.
 
-/// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty lines and, where a byte begins comments,
-/// over theirs.
+/// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty
+/// lines and, where a byte begins comments, over theirs.
 pub(crate) fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     position.line() + passed_over(rest.split(|&byte| byte == b'\n'), comment)
 }
 
-/// How many of the lines before a record the reader passes over. No line after the record's is read: rows that each went
-/// through the rest of their file would be quadratic.
+/// How many of the lines before a record the reader passes over. No line after the record's is read: rows that each
+/// went through the rest of their file would be quadratic.
 fn passed_over<'a>(
     lines: impl DoubleEndedIterator<Item = &'a [u8]> + Clone,
     comment: Option<u8>,

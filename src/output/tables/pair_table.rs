@@ -35,7 +35,7 @@ pub enum PairTableError {
         path: PathBuf,
         /// 1-based line, where known.
         line: Option<u64>,
-        /// What is wrong.
+        /// The fault, in words.
         message: String,
     },
     /// The file cannot be opened.
@@ -43,7 +43,7 @@ pub enum PairTableError {
     Open {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
 }
@@ -65,12 +65,13 @@ impl PairTableError {
     }
 }
 
-/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`, then at
-/// least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all are (`rings`).
+/// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`,
+/// then at least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all
+/// are (`rings`).
 ///
-/// Spreadsheets save what they call CSV in several ways: columns are separated by whichever of comma, semicolon and tab the
-/// header has most of, or by the one that a first line `sep=;` names; a byte order mark is passed over; column names may have
-/// capital letters, and blanks or `-` for `_`.
+/// Spreadsheets save what they call CSV in several ways. Columns are separated by whichever of comma, semicolon and
+/// tab the header has most of, or by the one that a first line `sep=;` names. A byte order mark is skipped. Column
+/// names may have capital letters, and blanks or `-` for `_`.
 ///
 /// # Errors
 /// [`PairTableError`].

@@ -1,8 +1,9 @@
 //! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
 //!
-//! Columns are found by name: those of [`pose_columns`](crate::output::tables::pose_columns), and whatever is appended. Quaternions are Hamilton's, active,
-//! right-handed, unit, `qw >= 0`; a ligand atom at x in its own file goes to R(q) x + t, in Å, in the receptor's file
-//! frame. Numbers are in the shortest digits that read back to the same f64; a missing value is an empty field.
+//! Columns are found by name: those of `pose_columns`, and whatever is
+//! appended. Quaternions are Hamilton's, active, right-handed, unit, `qw >= 0`; a ligand atom at x in its own file
+//! goes to R(q) x + t, in Å, in the receptor's file frame. Numbers are in the shortest digits that read back to the
+//! same f64; a missing value is an empty field.
 
 use std::io;
 use std::path::Path;

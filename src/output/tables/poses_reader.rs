@@ -17,7 +17,7 @@ pub enum PoseTableError {
     Open {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: io::Error,
     },
     /// The file is not CSV, or a row has more or fewer fields than the header.
@@ -27,7 +27,7 @@ pub enum PoseTableError {
         path: PathBuf,
         /// 1-based line, where known.
         line: Option<u64>,
-        /// What is wrong.
+        /// The fault, in words.
         message: String,
     },
     /// A column that places the ligand is missing.
@@ -88,7 +88,7 @@ impl PoseTableError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Open { .. } => "give the directory of a run, or its poses.csv",

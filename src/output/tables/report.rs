@@ -7,8 +7,8 @@ use crate::output::tables::fields::Column;
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
 
-/// The best clusters as a table: rank, score, size of the cluster, pose score and z-score of its best pose, and whatever
-/// columns are appended to the poses.
+/// The best clusters as a table: rank, score, size of the cluster, pose score and z-score of its best pose, and
+/// whatever columns are appended to the poses.
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
@@ -142,7 +142,8 @@ mod tests {
         );
     }
 
-    /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked wrong.
+    /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked
+    /// wrong.
     #[test]
     fn clusters_show_the_score_that_orders_them() {
         let in_company = |score: f64, cluster, cluster_score: f64| RankedPose {

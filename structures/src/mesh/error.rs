@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 pub struct MeshError {
     /// The path as given; none for a mesh made in memory.
     pub file: Option<PathBuf>,
-    /// What is wrong.
+    /// The fault, in words.
     pub kind: MeshErrorKind,
 }
 
-/// What is wrong with a mesh file or a mesh.
+/// A fault of a mesh file or a mesh.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshErrorKind {
     /// There is no such file.
@@ -46,7 +46,7 @@ pub enum MeshErrorKind {
     Syntax {
         /// 1-based line, in text formats.
         line: Option<usize>,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
     /// A coordinate is NaN, infinite, or so large that its square overflows.
@@ -115,7 +115,7 @@ impl MeshError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match &self.kind {
             MeshErrorKind::Missing => "check the path",

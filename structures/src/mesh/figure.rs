@@ -1,4 +1,4 @@
-//! How a measured figure of a mesh is printed.
+//! Format of a measured figure of a mesh.
 
 use std::fmt;
 

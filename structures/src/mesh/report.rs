@@ -1,4 +1,4 @@
-//! What a mesh file held and how sound its surface is.
+//! Report on a mesh file: its content, and the faults of its surface.
 
 use std::fmt;
 
@@ -27,7 +27,7 @@ pub struct MeshReport {
     pub degenerate_triangles: usize,
     /// Vertices joined with another across a seam, both being one but for the rounding of the file's numbers.
     pub seam_vertices: usize,
-    /// How far apart these may be along an axis, in the file's unit; 0 where none were joined.
+    /// Largest distance of these along an axis, in the file's unit; 0 where none were joined.
     pub weld_reach: f64,
     /// What was left out of the file, or read otherwise than it says: a sentence each.
     pub reading_notes: Vec<String>,
@@ -71,7 +71,7 @@ pub struct MeshReport {
     pub high: [f64; 3],
 }
 
-/// What reading altered.
+/// Report on what reading altered.
 pub(super) struct Altered {
     /// Triangles dropped with two corners in one place.
     pub collapsed: usize,

@@ -8,19 +8,12 @@
 //! - Hydrogens are dropped, and radii are united-atom radii, which stand for them, unless [`ReadOptions`] ask for them.
 //! - Lines are counted from 1 in the unpacked text.
 //!
-//! # Rooms
+//! # Modules
 //!
 //! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `record_filter` passes the atoms of
 //!   the wanted models in a form that pdbtbx is sure to read; `parse` calls pdbtbx. `assembly` builds an assembly where
 //!   one is requested. `select` applies the `policy` on chains, waters, additives, alternate locations and confidence.
 //!   The result is a [`Molecule`] with its [`ReadReport`].
-//! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
-//!   segments.
-//! - `chemistry`: tables of names, elements, radii, charges and contact types.
-//! - `write`: molecules and complexes as PDB or mmCIF.
-//!   wanted models, in a form that pdbtbx is sure to read) -> `parse` (pdbtbx) -> `assembly`, where one is requested ->
-//!   `select` (by `policy`: chains, waters, additives, alternate locations, confidence of predictions) -> [`Molecule`]
-//!   with its [`ReadReport`].
 //! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
 //!   segments.
 //! - `chemistry`: tables of names, elements, radii, charges and contact types.

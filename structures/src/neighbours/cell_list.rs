@@ -2,7 +2,7 @@
 
 use super::Bins;
 
-/// Most cells of a list: where points lie farther apart, its cells grow.
+/// Most cells of a list: where points are more widely spaced, its cells grow.
 const MAX_CELLS: f64 = 4e6;
 
 /// A point of a list, and what belongs to it.

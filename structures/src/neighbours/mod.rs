@@ -1,7 +1,7 @@
 //! Points near a point: lists of points by the cubic cell that they lie in.
 //!
 //! - [`CellList`] holds points that are all known beforehand, in one piece of memory: for hot loops.
-//! - [`SpatialHash`] takes points one at a time, however far apart they are.
+//! - [`SpatialHash`] takes points one at a time, at any distance from each other.
 //! - [`Bins`] is the counting sort below the first: items by the number of their bin, in any number of dimensions.
 //! - [`cell`] says which cell a point lies in and which cells touch it.
 //!

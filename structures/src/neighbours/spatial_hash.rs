@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::cell::{self, Cell, cell_of};
 
-/// What lies in each cubic cell of space. Lengths are in one unit throughout.
+/// Points in each cubic cell of space. Lengths are in one unit throughout.
 #[derive(Clone, Debug)]
 pub struct SpatialHash<T> {
     /// Where cell 0 begins on each axis.

@@ -36,7 +36,8 @@ pub fn monomials(nodes: &[f64], values: &[f64]) -> Vec<f64> {
     polynomial
 }
 
-/// Matrix (row a power, column a node) that turns values at `N` nodes into the coefficients of the polynomial through them.
+/// Matrix (row a power, column a node) that turns values at `N` nodes into the coefficients of the polynomial through
+/// them.
 ///
 /// Built once and applied to thousands of functions, it saves the divisions of [`monomials`]. Its columns are Lagrange
 /// polynomials: exact to rounding for up to about 8 nodes, and losing digits beyond.

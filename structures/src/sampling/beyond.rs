@@ -8,7 +8,7 @@ use crate::sampling::ball_tree::Ball;
 const WIDEST: f64 = 4.0;
 
 /// The volume of the union of `balls` outside the cube from `low` to `high` along each axis, by lines along x that
-/// are `step` apart, or farther where balls reach very far.
+/// are spaced by `step`, or more where balls reach very far.
 pub(super) fn volume_beyond(balls: &[Ball], low: f64, high: f64, step: f64) -> f64 {
     let end = |axis: usize, sign: f64| {
         let ends = balls

@@ -1,7 +1,7 @@
 //! Balls added so that no point of the solid is farther than eps from the balls inside it.
 //!
 //! Covering every inside node is not enough (see [`super::decomposition`]), and a needle or a shell may have none.
-//! Samples of the surface stand no farther than a tenth of eps apart. A sample farther than nine tenths of eps from all
+//! Samples of the surface are spaced by a tenth of eps at most. A sample farther than nine tenths of eps from all
 //! balls gets the ball of the deepest point that lies within that distance under it. Then inside points on a grid of
 //! half the spacing that are farther than eps get balls of their own.
 

@@ -1,9 +1,9 @@
 //! Spherical decomposition: B&I, Algorithm 1, with what its listing gets wrong put right.
 //!
-//! 1. **A1.** Nodes inside are taken by falling priority; each gives the ball of its distance to the surface, marks the
-//!    nodes in it as covered, and strikes from the queue the nodes x' with r(x') <= r(x) and |x - x'| - (r(x) - r(x'))
-//!    <= mu r(x'). This ends when every inside node is covered. Then [`super::cover`] adds balls until no point of the
-//!    surface is farther than eps from A1.
+//! 1. **A1.** Nodes inside are taken by falling priority. Each gives the ball of its distance to the surface and
+//!    marks the nodes in it as covered. It removes from the queue the nodes x' with r(x') <= r(x) and |x - x'| -
+//!    (r(x) - r(x')) <= mu r(x'). This ends when every inside node is covered. Then [`super::cover`] adds balls until
+//!    no point of the surface is farther than eps from A1.
 //! 2. **A2** is A1 grown by eps.
 //! 3. **A3** is A2 without the balls whose original lies in the grown ball of one that is kept, the largest first.
 //!
@@ -13,16 +13,16 @@
 //! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
 //!   |x - x'| <= r(x) - (1 - mu) r(x').
 //! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its
-//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which keeps
-//!   more balls.
-//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball: its own to begin with, and
-//!   chains of which each lies in the next, so that nothing need be left near the first.
-//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest to
-//!   x lies outside S: under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1 to 3
-//!   rest on it.
+//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which
+//!   keeps more balls.
+//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball, even in its own. It drops
+//!   chains of balls of which each lies in the next, so that nothing need be left near the first.
+//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest
+//!   to x lies outside S. Under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1
+//!   to 3 rest on it.
 //!
-//! What holds then for a closed mesh, with S(A) for the union of the balls: S(A1) in S in S(A2), S(A1) in S(A3) in
-//! S(A2), and each within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
+//! Let S(A) be the union of the balls. For a closed mesh then S(A1) in S in S(A2), and S(A1) in S(A3) in S(A2). Each
+//! is within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
 
 use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
@@ -241,7 +241,7 @@ mod tests {
             assert!(pair[1].grown(epsilon).holds(&pair[0]));
         }
         for scale in [1.0, 0.1] {
-            // Above and below the size from which balls are kept apart.
+            // Above and below the size from which balls are kept separate.
             let balls: Vec<Ball> = chain
                 .iter()
                 .map(|ball| Ball {

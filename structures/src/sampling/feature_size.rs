@@ -1,4 +1,4 @@
-//! How thick a solid is: its local feature size.
+//! Local feature size: the thickness of a solid.
 //!
 //! The local feature size at a point q of the surface is the radius of the largest ball inside the solid that touches
 //! the surface at q. That is the distance from q to the inner medial axis; Amenta and Bern, Discrete Comput. Geom. 22,

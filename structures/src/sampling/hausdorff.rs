@@ -1,10 +1,9 @@
-//! How near a set of balls comes to a solid: Hausdorff distances of the solids both ways, and volumes missed and
-//! outside.
+//! Fit of a set of balls to a solid: Hausdorff distances both ways, and volumes missed and outside.
 //!
-//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of the
-//! surface no farther than eps / 10 apart, and over the inside points of a grid of 8 m points: every node moved by a
-//! quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either side are no
-//! points of it.
+//! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of
+//! the surface spaced by eps / 10 at most, and over the inside points of a grid of 8 m points. The grid is every node
+//! moved by a quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either
+//! side are not points of it.
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
 //! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
@@ -29,7 +28,7 @@ use crate::sampling::outward::farthest;
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
-/// What [`HausdorffMeter::measure`] measures. Lengths and volumes are in the solid's unit and its cube.
+/// Result of [`HausdorffMeter::measure`]. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Farthest distance of a point of the solid from the balls.
@@ -284,7 +283,7 @@ impl<'a> HausdorffMeter<'a> {
         farthest.get()
     }
 
-    /// How far a ball is seen to reach out of the solid, and how far it can.
+    /// Distance of a ball outside of the solid: measured, and its upper bound.
     fn outward(&self, ball: &Ball) -> (f64, f64) {
         let nearest = self.solid.nearest(ball.center);
         let away = distance(nearest, ball.center);

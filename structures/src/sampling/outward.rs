@@ -1,9 +1,9 @@
-//! How far balls reach out of a solid: searched on their spheres.
+//! Largest distance of the balls outside of a solid, by a search on their spheres.
 //!
-//! The distance to the solid changes along a sphere by no more than one walks on it. So a patch of the sphere holds no
-//! point farther than d + s, if its middle is a distance d from the solid and none of its points is farther than s from
-//! the middle. Patches that can hold the farthest point are cut in four until they can better what is known by no more
-//! than a tolerance.
+//! The distance to the solid changes along a sphere by no more than one walks on it. Take a patch of the sphere whose
+//! middle is a distance d from the solid, and whose points are within s of the middle. It holds no point farther than
+//! d + s. Patches that can hold the farthest point are cut in four until they can exceed the known distance by no
+//! more than a tolerance.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -14,7 +14,7 @@ use crate::sampling::grid::{DepthField, Grid};
 use crate::sampling::skeletal_density::{Priority, priorities};
 use crate::sampling::{octree, packing, voxels};
 
-/// How balls are chosen.
+/// Method by which balls are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Behandish and Ilieş, Algorithm 1: see [`super::decomposition`].
@@ -27,7 +27,7 @@ pub enum Method {
     Voxels,
 }
 
-/// Which set of balls.
+/// Name of a set of balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SetName {
@@ -48,7 +48,7 @@ pub enum SetName {
 /// A set of balls.
 #[derive(Clone, Debug)]
 pub struct BallSet {
-    /// Which.
+    /// Name of the set.
     pub name: SetName,
     /// The balls, in the solid's unit.
     pub balls: Vec<Ball>,
@@ -59,7 +59,7 @@ pub struct BallSet {
 /// A step of sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Step {
-    /// What was done.
+    /// Name of the step.
     pub name: &'static str,
     /// Wall time, in seconds.
     pub seconds: f64,
@@ -82,9 +82,9 @@ pub struct Sampling {
     pub inside_nodes: usize,
     /// The sets of balls: A1, A2 and A3, or the one of another method.
     pub sets: Vec<BallSet>,
-    /// What Algorithm 1 added to cover the surface; none for other methods.
+    /// Balls that Algorithm 1 added to cover the surface; none for other methods.
     pub covering: Option<Covering>,
-    /// What took how long.
+    /// Times of the steps.
     pub steps: Vec<Step>,
 }
 

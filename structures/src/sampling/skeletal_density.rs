@@ -11,8 +11,8 @@
 //!
 //! - smooth wherever d is, and the same for a solid of twice the size;
 //! - exactly 1 at the centre of a ball, for any s;
-//! - s (sqrt(pi) + s) / 4 near a flat face and twice that half-way between two, so high on the medial axis and low off
-//!   it: it counts, smoothly, how often the touching sphere touches;
+//! - s (sqrt(pi) + s) / 4 near a flat face and twice that half-way between two, so high on the medial axis and low
+//!   off it. It counts, smoothly, how often the touching sphere touches;
 //! - stable: to move the surface by t << d moves it by the order of t / (s d), where the medial axis itself may jump.
 //!
 //! It rests on the definition of the medial axis as the points with more than one nearest surface point (Blum, 1967),

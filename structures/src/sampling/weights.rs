@@ -29,7 +29,7 @@ const SETTLED: f64 = 1e-4;
 /// thousands.
 const SEEN: f64 = 0.1;
 
-/// What fitting did.
+/// Report on the fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedWeights {
     /// A weight a ball, zero or above.

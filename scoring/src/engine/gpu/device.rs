@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Names part of an adapter's name, in any case, where several are there (as in other programs that use wgpu).
 pub const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
 
-/// How long a batch may take before the device is given up.
+/// Time that a batch may take before the device is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Why the correlation cannot run on a graphics processor.
@@ -26,7 +26,7 @@ pub enum GpuError {
     TooSmall {
         /// The adapter's name.
         adapter: String,
-        /// What is missing.
+        /// The missing feature or limit.
         what: String,
     },
     /// The driver reported an error.

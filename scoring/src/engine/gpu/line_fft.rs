@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// Invocations of a workgroup, of every stage.
 pub(super) const WIDTH: usize = 128;
 
-/// Which way a transform goes: the sign of its exponent.
+/// Direction of a transform: the sign of its exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     Forward,

@@ -1,4 +1,4 @@
-//! What no plan can be made of.
+//! Errors of planning.
 
 use crate::effect::{Effect, Label, Term};
 use crate::kernel::KernelError;
@@ -29,7 +29,7 @@ pub enum PlanError {
     Term {
         /// The term.
         effect: Effect,
-        /// What does not fit.
+        /// The mismatch, in words.
         fault: &'static str,
     },
     /// A body's weights are so large or small that scores would leave the range of single precision.

@@ -60,14 +60,14 @@ pub struct Plan {
     ligand_radius: f64,
 }
 
-/// What the plan decided.
+/// Decisions of the plan.
 impl Plan {
     /// The options that it was made from.
     pub fn options(&self) -> &EngineOptions {
         &self.options
     }
 
-    /// Which kernel is correlated.
+    /// Choice of the kernel to correlate.
     pub fn pair(&self) -> &PairKernel {
         &self.pair
     }
@@ -93,7 +93,7 @@ impl Plan {
         self.axis_error
     }
 
-    /// How radii meet the lifted axis.
+    /// Functions of the radius on the lifted axis.
     pub fn basis(&self) -> &RadiusBasis {
         &self.basis
     }

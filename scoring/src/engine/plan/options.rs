@@ -3,7 +3,7 @@
 use crate::kernel::KernelOptions;
 use serde::{Deserialize, Serialize};
 
-/// What a user may set of the engine: the kernel, and the parameters of the approximation.
+/// Options of the engine: the kernel, and the parameters of the approximation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EngineOptions {
     /// The kernel that is correlated.

@@ -47,7 +47,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use tail_integral::TailIntegral;
 
-/// Which frequencies of the product kernel count.
+/// Frequencies of the product kernel that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Band {

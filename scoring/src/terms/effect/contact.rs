@@ -1,9 +1,9 @@
 //! Effect `contact`: a potential over pairs of atom types within about 6 Å.
 //!
-//! The 18 types are those of atomic contact energies (Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726), which
-//! contact potentials for docking use. `scripts/potentials/contact_potential.py` derives the potential from the complexes of a benchmark. It
-//! writes the table beside this file, and the table's first lines name its sources. The radial function k is 1 up to 5 Å and falls
-//! to 0 at 7 Å with all derivatives continuous.
+//! The 18 types are those of atomic contact energies (Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997)
+//! 707-726), which contact potentials for docking use. `scripts/potentials/contact_potential.py` derives the
+//! potential from the complexes of a benchmark. It writes the table beside this file, and the table's first lines
+//! name its sources. The radial function k is 1 up to 5 Å and falls to 0 at 7 Å with all derivatives continuous.
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
@@ -109,7 +109,8 @@ impl TryFrom<Vec<Vec<f64>>> for Potential {
 }
 
 impl Potential {
-    /// Reads a table: lines of `#`, a header `type,` with the names of [`TYPES`], and a row for each type in that order.
+    /// Reads a table: lines of `#`, a header `type,` with the names of [`TYPES`], and a row for each type in that
+    /// order.
     ///
     /// # Errors
     /// [`PotentialError`] with the line that has another form, or if the energies are not finite and symmetric.

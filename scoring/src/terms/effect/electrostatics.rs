@@ -1,9 +1,11 @@
-//! Effect `electrostatics`: Coulomb energy of two sets of charges with a distance-dependent dielectric, smoothed at short range.
+//! Effect `electrostatics`: Coulomb energy of two sets of charges with a distance-dependent dielectric, smoothed at
+//! short range.
 //!
-//! E = sum_ij 332.0637 q_i q_j / (eps(s) s) kcal/mol with s = (d^2 + 2^2)^(1/2) in Å. The smoothing keeps charges that overlap in a
-//! rigid docking finite, and k even and smooth in d. The dielectric is the sigmoid of Mehler & Solmajer (Protein Eng. 4 (1991)
-//! 903-910), which AutoDock uses. It is eps(s) = A + B / (1 + k exp(-l B s)) with A = -8.5525, B = 78.4 - A, k = 7.7839 and l = 0.003627 per
-//! Å. With this screening little is left beyond 8 Å. k falls to 0 from 6 to 12 Å with all derivatives continuous.
+//! E = sum_ij 332.0637 q_i q_j / (eps(s) s) kcal/mol with s = (d^2 + 2^2)^(1/2) in Å. The smoothing keeps charges
+//! that overlap in a rigid docking finite, and k even and smooth in d. The dielectric is the sigmoid of Mehler &
+//! Solmajer (Protein Eng. 4 (1991) 903-910), which AutoDock uses. It is eps(s) = A + B / (1 + k exp(-l B s)) with A =
+//! -8.5525, B = 78.4 - A, k = 7.7839 and l = 0.003627 per Å. With this screening little is left beyond 8 Å. k falls
+//! to 0 from 6 to 12 Å with all derivatives continuous.
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
@@ -91,7 +93,8 @@ mod tests {
         assert_eq!(energy(12.0), 0.0);
     }
 
-    /// Between contact and water the dielectric is a sigmoid of Mehler & Solmajer: it solves d eps/ds = l (eps - A) (A + B - eps).
+    /// Between contact and water the dielectric is a sigmoid of Mehler & Solmajer: it solves d eps/ds = l (eps - A)
+    /// (A + B - eps).
     ///
     /// The values are those of their equation in 50-digit decimal arithmetic.
     #[test]

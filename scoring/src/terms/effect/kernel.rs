@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 
 /// Steps of the transform's quadrature over the function's support.
 ///
-/// k is smooth and even and vanishes with all derivatives at the end of its support. So the trapezoidal rule converges faster than any
-/// power (tested against four times as many steps).
+/// k is smooth and even and vanishes with all derivatives at the end of its support. So the trapezoidal rule
+/// converges faster than any power (tested against four times as many steps).
 const STEPS: usize = 400;
 
 /// A filtered radial function.

@@ -3,17 +3,19 @@
 //! # Conventions
 //!
 //! Shape is the double-skin correlation of B&I. Every other effect is a sum over pairs of labelled knots,
-//! `sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|)`. Each knot has a class c and a value (a charge, or 1). The class matrix M carries
-//! the weight and the sign, and k is a radial function. A higher score is better, so energies enter with a minus.
+//! `sum_ij a_i M[c_i][c_j] b_j k(|R y_j + t - x_i|)`. Each knot has a class c and a value (a charge, or 1). The class
+//! matrix M carries the weight and the sign, and k is a radial function. A higher score is better, so energies enter
+//! with a minus.
 //!
-//! The filter of the ranking kernel is applied to k ([`crate::kernel::radial_filter`]). So k ends at the same reach and the same
-//! frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain it adds one function of the
-//! ligand for each class. The engine compresses these together with those of shape. An effect that is off adds none.
+//! The filter of the ranking kernel is applied to k ([`crate::kernel::radial_filter`]). So k ends at the same reach
+//! and the same frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain
+//! it adds one function of the ligand for each class. The engine compresses these together with those of shape. An
+//! effect that is off adds none.
 //!
 //! # Adding an effect
 //!
-//! Write a file with a constant `EFFECT` of type [`EffectDefinition`] that says its labels, radial function and class matrix, and add
-//! it to the list of [`Effect`] below.
+//! Write a file with a constant `EFFECT` of type [`EffectDefinition`] that says its labels, radial function and class
+//! matrix, and add it to the list of [`Effect`] below.
 
 pub mod contact;
 pub mod electrostatics;
@@ -76,7 +78,7 @@ impl std::fmt::Display for Effect {
     }
 }
 
-/// What a search effect is called, what it reads, and its term.
+/// Definition of a search effect: its name, what it reads, and its term.
 #[derive(Debug)]
 pub struct EffectDefinition {
     /// Name on the command line, in tables and in JSON: lower case with `_` between words.
@@ -85,7 +87,7 @@ pub struct EffectDefinition {
     pub of_meshes: &'static str,
     /// Number of components of the compressed functions that it takes at the default tolerance (cost model).
     pub components: f64,
-    /// What the inputs lack for it; `None` if they hold what it reads.
+    /// Data that the inputs lack for it; `None` if they hold what it reads.
     pub lacks: fn(&EffectInputs) -> Option<String>,
     /// Reason that it is on, where the inputs lack nothing.
     pub reason: fn(&EffectInputs) -> String,

@@ -1,8 +1,8 @@
 //! Effect `restraint`: contacts of excluded atoms cost, and contacts of active atoms earn.
 //!
-//! Every atom of the other side within about 6 Å counts, whatever its type: k is that of [`super::contact`], 1 up to 5 Å and 0 from
-//! 7 Å on. The scores of two atoms with roles add up. Contacts of free atoms score nothing, so a pose without contacts of other atoms
-//! scores as without the effect.
+//! Every atom of the other side within about 6 Å counts, whatever its type: k is that of [`super::contact`], 1 up to
+//! 5 Å and 0 from 7 Å on. The scores of two atoms with roles add up. Contacts of free atoms score nothing, so a pose
+//! without contacts of other atoms scores as without the effect.
 
 use super::{Effect, EffectDefinition, Label, Term, contact};
 use knotdock_structures::Knots;

@@ -1,6 +1,7 @@
 //! Effect `shape`: complementarity of the two skins, the correlation of B&I.
 //!
-//! Shape is no pair term with labels and a class matrix: its kernel depends on the radii of both knots ([`crate::kernel`]).
+//! Shape is no pair term with labels and a class matrix: its kernel depends on the radii of both knots
+//! ([`crate::kernel`]).
 
 use super::EffectDefinition;
 

@@ -1,9 +1,11 @@
 //! Pose term `active_residues`: the share of the active residues that are in contact.
 //!
-//! Active residues are named by the user, or they are the catalytic residues of an enzyme, which may have several active sites.
+//! Active residues are named by the user, or they are the catalytic residues of an enzyme, which may have several
+//! active sites.
 //!
-//! The search draws poses to named residues by the contacts of their atoms ([`crate::terms::effect::restraint`]), because a correlation
-//! can count nothing else. One buried residue with many contacts then earns as much as several should. So this term counts residues.
+//! The search draws poses to named residues by the contacts of their atoms ([`crate::terms::effect::restraint`]),
+//! because a correlation can count nothing else. One buried residue with many contacts then earns as much as several
+//! should. So this term counts residues.
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};

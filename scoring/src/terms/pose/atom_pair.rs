@@ -28,8 +28,9 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Two bodies prepared for summing minus the weighted atom pair potential.
 ///
-/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight lines. It is
-/// constant below the first distance and falls to 0 over one step after the last. Atoms without a kind do not count.
+/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight
+/// lines. It is constant below the first distance and falls to 0 over one step after the last. Atoms without a kind
+/// do not count.
 pub struct AtomPairs {
     bodies: Bodies,
     energies: EnergyTable,
@@ -101,7 +102,8 @@ mod tests {
         }
     }
 
-    /// Two atoms at each of the table's distances have its energy, and nearer ones the first. Beyond the reach there is none.
+    /// Two atoms at each of the table's distances have its energy, and nearer ones the first. Beyond the reach there
+    /// is none.
     #[test]
     fn one_pair_has_the_energy_of_its_distance() {
         let potential = AtomPairPotential::default();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Distances in Å at which the table holds energies, [`STEP`] apart.
+/// Distances in Å at which the table holds energies, spaced by [`STEP`].
 pub const DISTANCES: [f64; 6] = [3.25, 3.75, 4.25, 4.75, 5.25, 5.75];
 /// Distance in Å between them.
 pub const STEP: f64 = 0.5;
@@ -29,13 +29,14 @@ pub fn atom_kinds() -> &'static [&'static str] {
 
 /// Energies of pairs of atoms by their kinds ([`atom_kinds`]) and distance, in units of RT; lower is better.
 ///
-/// `scripts/potentials/atom_pair_potential.py` derives the built-in one from the insides of proteins. An energy is minus the logarithm of the
-/// observed over the expected frequency of two kinds at a distance (Samudrala & Moult, J. Mol. Biol. 275 (1998) 895-916).
+/// `scripts/potentials/atom_pair_potential.py` derives the built-in one from the insides of proteins. An energy is
+/// minus the logarithm of the observed over the expected frequency of two kinds at a distance (Samudrala & Moult, J.
+/// Mol. Biol. 275 (1998) 895-916).
 ///
-/// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all atoms (the mole
-/// fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and that among all partners (the
-/// quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644). So energies contain half of what a kind
-/// gains by being buried.
+/// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all
+/// atoms (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and that among
+/// all partners (the quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644). So
+/// energies contain half of what a kind gains by being buried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Energies>", into = "Vec<Energies>")]
 pub struct AtomPairPotential(Vec<Energies>);
@@ -86,7 +87,8 @@ fn place(a: usize, b: usize) -> usize {
 }
 
 impl AtomPairPotential {
-    /// Reads a table: lines of `#`, a header `kind,kind,` with [`DISTANCES`], then a row for each pair of kinds, in any order.
+    /// Reads a table: lines of `#`, a header `kind,kind,` with [`DISTANCES`], then a row for each pair of kinds, in
+    /// any order.
     ///
     /// # Errors
     /// [`PotentialError`] with the line that has another form, or with the last line if pairs are missing.

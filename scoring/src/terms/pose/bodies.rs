@@ -17,7 +17,8 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Takes the knots whose type is below `kinds`. `types` returns the type of each knot, or nothing for a set without types.
+    /// Takes the knots whose type is below `kinds`. `types` returns the type of each knot, or nothing for a set
+    /// without types.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -38,7 +39,8 @@ impl Bodies {
         }
     }
 
-    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than `reach` (Å).
+    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than
+    /// `reach` (Å).
     #[inline]
     pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();

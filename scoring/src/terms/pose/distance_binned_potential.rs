@@ -15,9 +15,9 @@ const TABLE: &str = include_str!("fine_contact_potential.csv");
 
 /// Energies of contacts by distance range and types, in units of RT; lower is better.
 ///
-/// `scripts/potentials/contact_potential.py --fine` derives the built-in one. In each range an energy is minus the logarithm of the contacts in
-/// known complexes over those in docked poses, less the mean. This is the reference state of DARS (Chuang, Kozakov, Brenke, Comeau &
-/// Vajda, Biophys. J. 95 (2008) 4217-4227).
+/// `scripts/potentials/contact_potential.py --fine` derives the built-in one. In each range an energy is minus the
+/// logarithm of the contacts in known complexes over those in docked poses, less the mean. This is the reference
+/// state of DARS (Chuang, Kozakov, Brenke, Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct DistanceBinnedPotential {
@@ -33,10 +33,12 @@ impl Default for DistanceBinnedPotential {
 }
 
 impl DistanceBinnedPotential {
-    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then for each range a row for each type.
+    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then for each range a row for
+    /// each type.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and symmetric.
+    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and
+    /// symmetric.
     pub fn parse(text: &str) -> Result<Self, PotentialError> {
         let mut lines = table_lines(text);
         header(&mut lines, "range,")?;

@@ -92,7 +92,8 @@ mod tests {
     use super::*;
     use crate::terms::pose::RANGES;
 
-    /// Two atoms in the middle of a range have its energy, and between two ranges a part of both. Beyond the reach there is none.
+    /// Two atoms in the middle of a range have its energy, and between two ranges a part of both. Beyond the reach
+    /// there is none.
     #[test]
     fn one_pair_has_the_energy_of_its_range() {
         let potential = DistanceBinnedPotential::default();

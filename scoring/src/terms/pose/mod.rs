@@ -2,9 +2,10 @@
 //!
 //! # Conventions
 //!
-//! A search ranks poses by a correlation, in which every term is a sum of one radial function times a class matrix of low rank. It
-//! keeps a few thousand poses. Each is then scored by the terms of [`POSE_TERMS`], which may be any function of the pose. Their
-//! values are added to the score. Higher is better, lengths are in Å, and positions are relative to the centres of the two bodies.
+//! A search ranks poses by a correlation, in which every term is a sum of one radial function times a class matrix of
+//! low rank. It keeps a few thousand poses. Each is then scored by the terms of [`POSE_TERMS`], which may be any
+//! function of the pose. Their values are added to the score. Higher is better, lengths are in Å, and positions are
+//! relative to the centres of the two bodies.
 //!
 //! | id | what is scored | source of its numbers |
 //! |---|---|---|
@@ -17,8 +18,9 @@
 //!
 //! # Adding a term
 //!
-//! Write a file with a type that implements [`PoseTerm`] and a constant [`TermDefinition`], and add the constant to [`POSE_TERMS`].
-//! Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow from the registry.
+//! Write a file with a type that implements [`PoseTerm`] and a constant [`TermDefinition`], and add the constant to
+//! [`POSE_TERMS`]. Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow
+//! from the registry.
 
 mod active_residues;
 mod atom_pair;
@@ -66,11 +68,12 @@ const UNRELAXED: f64 = 0.25;
 
 /// A pose term prepared for two bodies.
 pub trait PoseTerm: Send + Sync {
-    /// Weighted value at a pose of the ligand; higher is better. Calls with one workspace allocate nothing once it has grown.
+    /// Weighted value at a pose of the ligand; higher is better. Calls with one workspace allocate nothing once it
+    /// has grown.
     fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64;
 }
 
-/// What a pose term is called, what it reads, and how it is prepared.
+/// Definition of a pose term: its name, what it reads, and how it is prepared.
 #[derive(Debug)]
 pub struct TermDefinition {
     /// Name in columns, JSON and scripts: lower case with `_` between words.

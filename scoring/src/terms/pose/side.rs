@@ -33,7 +33,8 @@ impl Side {
         }
     }
 
-    /// Visits the indices of the atoms within `reach` (Å) of a point of the other side; `pose` carries the point into this frame.
+    /// Visits the indices of the atoms within `reach` (Å) of a point of the other side; `pose` carries the point into
+    /// this frame.
     pub fn near(&self, pose: &Pose, point: [f64; 3], reach: f64, mut visit: impl FnMut(usize)) {
         let x = Vector3::from(pose.apply(point)) - self.middle;
         self.atoms

@@ -36,7 +36,8 @@ pub struct TerminusContacts {
 }
 
 impl TerminusContacts {
-    /// Prepares two sets of knots. `termini` holds the indices of the knots near termini, and `weight` is the cost of one in contact.
+    /// Prepares two sets of knots. `termini` holds the indices of the knots near termini, and `weight` is the cost of
+    /// one in contact.
     pub fn new(receptor: &Knots, ligand: &Knots, termini: [&[usize]; 2], weight: f64) -> Self {
         let positions = |knots: &Knots, near: &[usize]| {
             let centers = near.iter().filter_map(|&index| knots.centers.get(index));
@@ -94,7 +95,8 @@ mod tests {
         assert!(at(straight, 0.0, 5.1).is_sign_positive());
         // One place on: the receptor's second atom meets the ligand's first, and the ligand's last nothing.
         assert_eq!(at(straight, 10.0, 3.0), -2.5);
-        // Half a turn about z and 50 Å bring the atoms back in reverse, so that the ligand's last meets the receptor's first.
+        // Half a turn about z and 50 Å bring the atoms back in reverse, so that the ligand's last meets the
+        // receptor's first.
         assert_eq!(at([0.0, 0.0, 0.0, 1.0], 50.0, 0.0), -7.5);
         // Half way between them all none is touched.
         assert_eq!(at(straight, 5.0, 1.0), 0.0);

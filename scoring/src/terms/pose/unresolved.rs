@@ -1,8 +1,9 @@
 //! Pose term `unresolved`: clashes with unresolved segments, which cost.
 //!
-//! The positions of unresolved residues are not known. So each atom of the other side is charged by the share of the loop conformers
-//! of a segment that pass within 5 Å. The term can only cost: free space where residues may be says nothing in favour of a pose.
-//! For that reason unresolved residues are no part of shape, where their skins would earn.
+//! The positions of unresolved residues are not known. So each atom of the other side is charged by the share of the
+//! loop conformers of a segment that pass within 5 Å. The term can only cost: free space where residues may be says
+//! nothing in favour of a pose. For that reason unresolved residues are no part of shape, where their skins would
+//! earn.
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
@@ -33,8 +34,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Distance in Å from a residue's CA within which an atom clashes with the residue.
 ///
-/// It is 3.2 Å, the radius of a ball of a residue's volume, and 1.8 Å, the radius of an atom. The mean volume is 134 Å³ (over
-/// proteins, by the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123).
+/// It is 3.2 Å, the radius of a ball of a residue's volume, and 1.8 Å, the radius of an atom. The mean volume is 134
+/// Å³ (over proteins, by the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123).
 const REACH: f64 = 5.0;
 
 /// Two bodies prepared for charging clashes with unresolved segments.
@@ -72,7 +73,8 @@ struct Occupancy {
 }
 
 impl UnresolvedClashes {
-    /// Prepares two sets of knots. `weight` is the cost of an atom within reach of all conformers of one segment of the other side.
+    /// Prepares two sets of knots. `weight` is the cost of an atom within reach of all conformers of one segment of
+    /// the other side.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
@@ -87,7 +89,8 @@ impl UnresolvedClashes {
         }
     }
 
-    /// Minus the weight times the clashes of both sides; each atom counts by its share of the conformers of each segment.
+    /// Minus the weight times the clashes of both sides; each atom counts by its share of the conformers of each
+    /// segment.
     pub fn score(&self, pose: &Pose) -> f64 {
         let [receptor, ligand] = &self.segments;
         let inverse = pose.inverse();

@@ -1,4 +1,4 @@
-//! What can go wrong in planning and in executing a transform.
+//! Errors of planning and executing a transform.
 
 use thiserror::Error;
 

@@ -76,7 +76,7 @@ impl<T: Real> Window<T> {
     }
 }
 
-/// What a window costs in accuracy.
+/// Shape of a window, and its errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quality {
     /// The Kaiser-Bessel parameter.

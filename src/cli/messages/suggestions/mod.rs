@@ -17,7 +17,8 @@ fn find(suggestions: &[Suggestion], word: &str) -> Option<&'static str> {
     suggestions.iter().find(known).map(|one| one.instead)
 }
 
-/// What to do about an error of the command line, where the field's word for something is at fault or one that is spelled alike.
+/// What to do about an error of the command line, where the field's word for something is at fault or one that is
+/// spelled alike.
 pub fn suggested(error: &clap::Error) -> Option<String> {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.as_str()),

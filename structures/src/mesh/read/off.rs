@@ -24,7 +24,7 @@ pub fn begins(text: &str) -> bool {
     first.is_some_and(|line| keyword(line.text).is_some())
 }
 
-/// How words are to be taken.
+/// Layout of an OFF file's numbers.
 #[derive(Clone, Copy)]
 struct Shape {
     /// Numbers after the coordinates of each vertex, in a stream.

@@ -1,4 +1,4 @@
-//! What a file lists: vertices and faces, and what of it was left out.
+//! Vertices and faces of a file, and what was left out.
 
 use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::faces::Faces;
@@ -28,7 +28,7 @@ struct Unplaced {
     value: f64,
 }
 
-/// Where something stands in a file.
+/// A place in a file.
 #[derive(Clone, Copy, Debug)]
 pub enum At {
     /// 1-based line of a text.

@@ -102,7 +102,7 @@ impl Surface {
         self.volume < 0.0
     }
 
-    /// Whether it is closed and all in one plane, or folded onto itself.
+    /// Whether it is closed and all in one plane, or doubled onto itself.
     pub fn is_flat(&self) -> bool {
         self.is_closed && self.volume.abs() <= FLAT * self.area.powf(1.5)
     }

@@ -1,9 +1,9 @@
 //! Cells: the regions into which triangles that meet at non-manifold edges cut the space about them.
 //!
 //! Each triangle has two sides. About an edge, the side of one triangle faces that of the next one round, and both
-//! are walls of one cell (Zhou, Grinspun, Zorin and Jacobson, ACM Transactions on Graphics 35:4, 2016, article 39,
-//! section 3.2). Where the sheets do not cross elsewhere, a cell is a closed surface that faces outward, and one
-//! cell, the one outside, has a volume below zero.
+//! are walls of one cell. Source: Zhou, Grinspun, Zorin and Jacobson, ACM Transactions on Graphics 35:4, 2016,
+//! article 39, section 3.2. Where the sheets do not cross elsewhere, a cell is a closed surface that faces outward,
+//! and one cell, the one outside, has a volume below zero.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Which way surfaces face: what faces inward is turned, but for the walls of cavities.
+//! Orientation of surfaces: what faces inward is turned, but for the walls of cavities.
 //!
 //! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another. A piece of a
 //! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a surface
@@ -17,7 +17,7 @@ use crate::mesh::repair::nesting::containers;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::neighbours::cell::{Cell, around, cell_of};
 
-/// How far apart the borders of two pieces of one surface are at most, about, as a share of the mesh's longest side.
+/// Largest distance, about, between the borders of two pieces of one surface, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
 
 /// What was found of the surfaces, and done to them.

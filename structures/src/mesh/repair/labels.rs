@@ -1,4 +1,4 @@
-//! Which cells of a cluster are solid.
+//! Labels of the cells of a cluster: solid or not.
 //!
 //! Evidence in this order, until one gives labels without contradiction:
 //!
@@ -15,7 +15,7 @@ use crate::mesh::repair::cells::Cells;
 use crate::mesh::repair::distinct::Distinct;
 use crate::mesh::repair::edges::Patches;
 
-/// What a cell is.
+/// Label of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::mesh) enum Label {
     /// Not of the solid.

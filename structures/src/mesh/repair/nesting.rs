@@ -1,4 +1,4 @@
-//! Which closed surfaces lie within which others.
+//! Nesting of closed surfaces.
 //!
 //! A surface is within another if its bounding box is and all points that are looked at are: its outermost vertices
 //! and the middles of some of its triangles. A point on the other surface itself says nothing, so that bodies and

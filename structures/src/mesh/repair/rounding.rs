@@ -1,4 +1,4 @@
-//! How far the numbers of a file are rounded, which is how far apart two copies of one vertex may be.
+//! Rounding of a file's numbers: the most that two copies of one vertex may differ by.
 //!
 //! The unit of rounding is the largest of these that holds, at the mesh's largest coordinate in magnitude:
 //!
@@ -11,7 +11,7 @@
 const UNITS: f64 = 2.0;
 
 /// Largest unit of rounding, as a share of the longest edge of the bounding box. Beyond it the digits say how coarse
-/// the shape is, and not how far copies of a vertex are apart: a cube from 0 to 10 is not rounded to whole numbers.
+/// the shape is, and not how much copies of a vertex differ: a cube from 0 to 10 is not rounded to whole numbers.
 const LARGEST_UNIT: f64 = 1e-4;
 
 /// Decimal digits that hold every `float`.
@@ -84,7 +84,7 @@ fn places(word: &str) -> Option<(i32, i32)> {
     Some((shifted(ends?), shifted(last)))
 }
 
-/// How far apart copies of one vertex may be along each axis; zero where the numbers are too coarse to say.
+/// Largest difference between copies of one vertex along each axis; zero where the numbers are too coarse to say.
 ///
 /// `extent` is the longest edge of the bounding box. It and the result are in the file's unit.
 pub fn reach(positions: &[[f64; 3]], digits: &Digits, extent: f64) -> f64 {

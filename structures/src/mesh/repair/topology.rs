@@ -1,4 +1,4 @@
-//! How triangles hang together: open and non-manifold edges, parts, and which way they face.
+//! Topology of triangles: open and non-manifold edges, parts, and which way they face.
 //!
 //! A **part** is a set of triangles connected across edges that exactly two of them share or, where more do, the
 //! walls of one body: [`shells`](super::shells). A mesh is **closed** when every edge is run through as often one
@@ -12,7 +12,7 @@ use crate::mesh::repair::shells::Shells;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::mesh::vector::{norm, subtract};
 
-/// What [`orient`] found and did.
+/// Report of [`orient`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Topology {
     /// Edges of one triangle only.

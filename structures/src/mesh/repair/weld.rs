@@ -12,7 +12,7 @@ use crate::mesh::repair::rounding::Digits;
 use crate::mesh::repair::{polygon, rounding, seams};
 use crate::neighbours::SpatialHash;
 
-/// How far apart vertices may be to count as one, as a share of the longest edge of the bounding box. Files repeat a
+/// Largest distance of vertices that count as one, as a share of the longest edge of the bounding box. Files repeat a
 /// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
 pub const WELD_TOLERANCE: f64 = 1e-12;
 
@@ -24,7 +24,7 @@ pub struct Welded {
     pub triangles: Vec<[u32; 3]>,
     /// Vertices joined with others across seams, within the rounding.
     pub seam_vertices: usize,
-    /// How far apart these may have been along an axis, in the file's unit.
+    /// Largest distance of these along an axis, in the file's unit.
     pub reach: f64,
 }
 

@@ -4,8 +4,8 @@
 //!   Karplus, J. Comput. Chem. 4 (1983) 187-217, as completed in Neria, Fischer & Karplus, J. Chem. Phys. 105 (1996)
 //!   1902-1921, with hydrogens added to their heavy atoms. Every residue sums to an integer.
 //! - States that PARAM19 lacks (neutral Asp, Glu, Lys and Arg, Cys and Tyr without their proton), nucleotides,
-//!   phosphorylated and other modified residues, heme and ions: the formal charge, spread evenly over the atoms that
-//!   share it.
+//!   phosphorylated and other modified residues, heme and ions have the formal charge. It is spread evenly over the
+//!   atoms that share it.
 //!
 //! The state of an acid or base follows from its residue name where that says so (ASH, GLH, HIP, LYN, CYM, ...), else
 //! from the pH and a pKa. The pKa are those of alanine pentapeptides, Thurlkill, Grimsley, Scholtz & Pace, Protein Sci.

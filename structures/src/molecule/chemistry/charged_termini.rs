@@ -1,7 +1,7 @@
-//! Ends of peptide chains, which are charged where nothing is bonded to them.
+//! Termini of peptide chains, which are charged where nothing is bonded to them.
 //!
-//! A chain's ends are charged, the ends at a gap in it are not. Two peptide residues in a row with C and N more than
-//! 2.5 Å apart end one chain and begin another in three cases:
+//! A chain's termini are charged, the ends at a gap in it are not. Two peptide residues in a row belong to two chains
+//! if C and N are farther than 2.5 Å from each other, in three cases:
 //!
 //! - the name of the chain changes;
 //! - the first has its second carboxyl oxygen, and the gap in the numbering does not fit;
@@ -76,7 +76,7 @@ impl Molecule {
         Some(squared_distance(c.position, n.position).sqrt())
     }
 
-    /// Whether one chain ends and another begins between two peptide residues in a row.
+    /// Whether two peptide residues in a row belong to different chains.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
         let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number, ..) = before.key;

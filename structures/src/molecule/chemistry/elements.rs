@@ -23,7 +23,7 @@ pub(crate) struct Resolved {
     pub(crate) origin: Origin,
 }
 
-/// Where an element was taken from.
+/// Source of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// The element column.

@@ -10,7 +10,7 @@ use crate::molecule::model::molecule::Molecule;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What the labels of a molecule are.
+/// Labels of a molecule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Labels {
     /// Charge of each atom, in e.
@@ -23,7 +23,7 @@ pub struct Labels {
     pub report: LabelReport,
 }
 
-/// What was assumed in labelling a molecule.
+/// Report on labelling a molecule: totals and assumptions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LabelReport {
     /// Sum of all charges, in e.

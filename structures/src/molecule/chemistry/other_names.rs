@@ -8,8 +8,8 @@
 //!   the termini included) is read so where no atom contradicts. Where it says the charge state, too, the state is
 //!   read: `ASPH` is neutral.
 //! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives
-//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); those
-//!   are listed and stay as they are.
+//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); the
+//!   table has those, and they stay as they are.
 //!
 //! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types
 //! here.
@@ -23,10 +23,10 @@ use crate::molecule::chemistry::site_names::is_site_name;
 
 /// Amino acids and their states by other names.
 ///
-/// D-amino acids: wwPDB Chemical Component Dictionary. The rest: GROMOS and its OPLS names in GROMACS (`LYSH` is the
-/// charged lysine, `HISA` and `HISB` carry their proton on ND1 and NE2, `CYS2` is half a disulphide), CHARMM (`HSC`),
-/// Maestro (`CYT`, `TYO`), TINKER (`TYD`, `LYD`), Rosetta (`CYD`, half a disulphide), CYANA (`LYS+`, `ASP-`), and AMBER
-/// at constant pH (`AS4`, `GL4`).
+/// D-amino acids: wwPDB Chemical Component Dictionary. GROMOS and its OPLS names in GROMACS: `LYSH` is the charged
+/// lysine, `HISA` and `HISB` carry their proton on ND1 and NE2, `CYS2` is half a disulphide. Others: CHARMM (`HSC`),
+/// Maestro (`CYT`, `TYO`), TINKER (`TYD`, `LYD`), Rosetta (`CYD`, half a disulphide), CYANA (`LYS+`, `ASP-`), and
+/// AMBER at constant pH (`AS4`, `GL4`).
 const OTHER_NAMES: [(&str, &str); 53] = [
     ("DAL", "ALA"),
     ("DAR", "ARG"),

@@ -123,7 +123,7 @@ const UFF_DISTANCES: [(&str, f64); 63] = [
     ("U", 3.395),
 ];
 
-/// Radius of the elements not listed, in Å: in the middle of UFF's metals.
+/// Radius of all other elements, in Å: in the middle of UFF's metals.
 const OTHER: f64 = 1.7;
 
 /// United-atom radius of a heavy atom, in Å.

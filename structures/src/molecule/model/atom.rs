@@ -36,7 +36,8 @@ pub struct Atom {
 }
 
 impl Atom {
-    /// Whether this is hydrogen of any mass, which only molecules read with [`Hydrogens::Keep`](crate::molecule::Hydrogens::Keep) have.
+    /// Whether this is hydrogen of any mass, which only molecules read with
+    /// [`Hydrogens::Keep`](crate::molecule::Hydrogens::Keep) have.
     pub fn is_hydrogen(&self) -> bool {
         elements::is_hydrogen(&self.element)
     }

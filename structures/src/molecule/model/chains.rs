@@ -6,10 +6,10 @@ use crate::molecule::model::atom::squared_distance;
 use crate::molecule::model::groups::Residue;
 use crate::molecule::model::molecule::Molecule;
 
-/// Most that residues side by side can be apart, in Å.
+/// Largest distance of adjacent residues, in Å.
 const STRETCHED: f64 = 3.8;
 
-/// Longest gap in residues, and in Å, that is taken for one: beyond, one chain ends and another begins.
+/// Longest gap within a chain, in residues and in Å; a longer one separates two chains.
 const MAX_RESIDUES: i64 = 60;
 const LONGEST: f64 = 40.0;
 
@@ -39,7 +39,7 @@ pub(crate) struct Gap {
     pub sides: [[f64; 3]; 2],
 }
 
-/// What lies between two peptide residues in a row.
+/// Junction of two peptide residues in a row.
 enum Between {
     Bond,
     /// So many residues, between a C and an N.
@@ -89,7 +89,7 @@ impl Molecule {
         chains
     }
 
-    /// Whether the numbers between two residues in a row, so many Å apart, may be of residues that are missing.
+    /// Whether the numbers between two residues in a row, at this distance in Å, may be of unresolved residues.
     pub(crate) fn may_be_gap(before: &Residue<'_>, after: &Residue<'_>, spacing: f64) -> bool {
         let counted = after.key.1.saturating_sub(before.key.1).saturating_sub(1);
         (1..=MAX_RESIDUES).contains(&counted)
@@ -103,7 +103,7 @@ impl Molecule {
         (!self.capped(caps, residue, name)).then_some(end.position)
     }
 
-    /// What lies between two peptide residues in a row. Residues that lack the atoms to tell are bonded.
+    /// Junction of two peptide residues in a row. Residues that lack the deciding atoms count as bonded.
     fn between(&self, before: &Residue<'_>, after: &Residue<'_>) -> Between {
         let ((chain, number, ..), (next_chain, next_number, ..)) = (before.key, after.key);
         let (Some(from), Some(to)) = (self.atom(before, "C"), self.atom(after, "N")) else {

@@ -1,4 +1,4 @@
-//! Ends of chains that a selection of residues made: cut bonds, not termini.
+//! Cut bonds that a selection of residues leaves; they are not termini.
 
 use crate::molecule::model::atom::{Atom, squared_distance};
 use crate::molecule::model::groups::ResidueKey;

@@ -55,13 +55,13 @@ const GLYCANS: [&str; 30] = [
     "LAT", "TRE", "NGS", "M6P",
 ];
 
-/// Elements whose ions count as metals; everything not listed is none.
+/// Elements whose ions count as metals; no other counts.
 pub(crate) const NON_METALS: [&str; 22] = [
     "H", "D", "He", "B", "C", "N", "O", "F", "Ne", "Si", "P", "S", "Cl", "Ar", "As", "Se", "Br",
     "Kr", "Te", "I", "Xe", "At",
 ];
 
-/// What distinguishes a residue from all others in a file: chain, number, insertion code, name.
+/// Key of a residue in a file: chain, number, insertion code, name.
 pub(crate) type ResidueKey<'a> = (&'a str, i64, Option<char>, &'a str);
 
 /// The residue that an atom belongs to.
@@ -110,8 +110,8 @@ impl Residue<'_> {
 
 /// The residues of a list of atoms, in order of first appearance.
 ///
-/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they stand apart and a name
-/// comes again, chains were merged under one name whose numbers begin anew: that is another residue. A name that comes
+/// Atoms of one key need not stand together (hydrogens at the end of a file, say). Where they do not and a name comes
+/// again, chains were merged under one name whose numbers begin anew: that is another residue. A name that comes
 /// again among atoms that stand together is an atom given twice, and stays.
 pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut place: HashMap<ResidueKey<'_>, usize> = HashMap::new();
@@ -142,8 +142,8 @@ pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
         .collect()
 }
 
-/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers begin
-/// again, residues that share a key stay apart.
+/// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers
+/// begin again, residues that share a key stay separate.
 pub(crate) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut runs = Vec::new();
     let mut first = 0;

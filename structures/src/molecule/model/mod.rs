@@ -1,4 +1,4 @@
-//! What a molecule is: atoms, residues, chains, and what follows from where they stand.
+//! Data of a molecule: atoms, residues, chains, and what follows from where they stand.
 
 pub(crate) mod accessible;
 pub(crate) mod atom;

@@ -11,7 +11,8 @@ pub struct Molecule {
     pub atoms: Vec<Atom>,
     /// The format that the file had.
     pub format: Format,
-    /// What reading the file did: kept, dropped, altered, warned of. Empty for a molecule made in memory.
+    /// Report on reading the file: what was kept, dropped and altered, and the warnings. Empty for a molecule made in
+    /// memory.
     pub report: ReadReport,
     /// Lines at which the file itself ends a chain, rising: of TER, MODEL, ENDMDL and END records, and in mmCIF the
     /// first line of another `label_asym_id` under the same author's name. Atoms on both sides of such a line are of

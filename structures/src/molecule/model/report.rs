@@ -1,4 +1,4 @@
-//! What reading a file did: kept, dropped, altered, warned of.
+//! Report on reading a file: what was kept, dropped and altered, and the warnings.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::molecule::model::cut_ends::CutEnd;
 use crate::molecule::model::format::Format;
 use crate::molecule::model::groups::GroupKind;
 
-/// What reading one file did.
+/// Report on reading one file.
 ///
 /// Its `Display` prints a few compact lines for people; its `Serialize` is for run.json and `--json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -122,7 +122,7 @@ pub struct Dropped {
     pub names: BTreeMap<String, usize>,
 }
 
-/// What was altered on reading.
+/// Counts of what was altered on reading.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Altered {
     /// Atoms whose blank element column was filled from residue and atom name.
@@ -211,7 +211,7 @@ pub struct JoinedModels {
     pub on_axes: usize,
 }
 
-/// How a prediction was known.
+/// Source by which a prediction was detected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfidenceSource {
@@ -223,10 +223,10 @@ pub enum ConfidenceSource {
     User,
 }
 
-/// How sure a prediction is of a molecule.
+/// Confidence of a prediction of a molecule.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Confidence {
-    /// How it was known that the B column is pLDDT.
+    /// Source by which the B column was detected as pLDDT.
     pub source: ConfidenceSource,
     /// Mean pLDDT of the residues, 0 to 100, those that are left out among them.
     pub mean: f64,

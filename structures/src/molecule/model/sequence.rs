@@ -36,8 +36,8 @@ impl PeptideChain<'_> {
 impl Molecule {
     /// The peptide chains in file order, modified amino acids included.
     ///
-    /// A chain ends where its name changes or another kind of residue stands between; where numbers begin again under
-    /// one name, it goes on.
+    /// A new chain begins where the name changes or another kind of residue stands between; where numbers begin again
+    /// under one name, it goes on.
     pub fn peptide_chains(&self) -> Vec<PeptideChain<'_>> {
         let runs = residue_runs(&self.atoms);
         runs.chunk_by(|a, b| a.key.0 == b.key.0 && a.is_peptide() == b.is_peptide())

@@ -53,7 +53,7 @@ pub(crate) struct Assembly {
     pub(crate) parts: Vec<Part>,
 }
 
-/// What a file says of its assemblies.
+/// Assemblies that a file describes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Assemblies {
     pub(crate) list: Vec<Assembly>,

@@ -208,7 +208,8 @@ pub(crate) fn warning(parsed: &[Parsed], assemblies: &Assemblies) -> Option<Stri
         let id = &first.id;
         let has = count(in_file.len(), "chain");
         format!(
-            "what stands in this file is not its biological assembly {id} ({has} in the file, {copies} in the assembly): --assembly {id} builds it, \
+            "what stands in this file is not its biological assembly {id} ({has} in the file, {copies} in the \
+             assembly): --assembly {id} builds it, \
              or pick chains"
         )
     })

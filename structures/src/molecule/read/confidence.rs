@@ -25,7 +25,7 @@ pub const LOW: f64 = 50.0;
 /// Share of the residues that reach the least pLDDT at least, where the user's word is taken.
 const MIN_REACHING: f64 = 0.25;
 
-/// Why the B column of a file cannot be pLDDT, where it cannot.
+/// The reason why the B column of a file cannot be pLDDT, if there is one.
 fn contradiction(atoms: &[Atom], provenance: Provenance) -> Option<String> {
     let column = || atoms.iter().map(|atom| atom.b_factor);
     let lowest = column().fold(f64::INFINITY, f64::min);
@@ -126,7 +126,8 @@ pub(crate) fn weigh(
     let doubtful = below(LOW).saturating_sub(below(least));
     if doubtful > 0 {
         report.warnings.push(format!(
-            "{doubtful} of {} residues have a pLDDT below {LOW}, so that where they stand is likely no fact: --min-plddt {LOW} leaves them out",
+            "{doubtful} of {} residues have a pLDDT below {LOW}, so that where they stand is likely no fact: \
+             --min-plddt {LOW} leaves them out",
             values.len()
         ));
     }

@@ -37,7 +37,7 @@ pub enum ReadError {
     Unreadable {
         /// The path as given.
         file: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
     /// The gzip stream is cut short or damaged.
@@ -117,7 +117,7 @@ pub enum ReadError {
         file: PathBuf,
         /// 1-based line where it shows.
         line: usize,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
     /// The atom table of an mmCIF file lacks a column that cannot be done without.
@@ -205,7 +205,7 @@ pub enum ReadError {
         file: PathBuf,
         /// 1-based line where it shows, where there is one.
         line: Option<usize>,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
     /// Every atom was dropped: hydrogens, waters and additives only, or what the policies leave out besides.
@@ -290,7 +290,7 @@ impl ReadError {
         }
     }
 
-    /// What the user can do about it.
+    /// Remedy for the user.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Specification { .. } | Self::Unnamed { .. } => {
@@ -319,21 +319,25 @@ impl ReadError {
                 "fetch the file again: it may be cut short; coordinates stand in columns 31 to 54"
             }
             Self::MisplacedRecord { .. } => {
-                "begin it with ATOM or HETATM in column 1, in capitals, with blanks and no tabs, and put x, y and z into columns 31-38, 39-46 and 47-54"
+                "begin it with ATOM or HETATM in column 1, in capitals, with blanks and no tabs, and put x, y \
+                 and z into columns 31-38, 39-46 and 47-54"
             }
             Self::BrokenCif { .. } => "fetch the file again, or check the text about this line",
             Self::MissingColumn { .. } => {
                 "write the file again with all columns that the wwPDB requires"
             }
             Self::UnknownElement { .. } => {
-                "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), remove the atom, or leave its residue out with \
+                "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), remove \
+                 the atom, or leave its residue out with \
                  --drop-residue NAME"
             }
             Self::UnknownChain { .. } => {
-                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name; residues are picked as in FILE:A:1-120"
+                "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name; \
+                 residues are picked as in FILE:A:1-120"
             }
             Self::UnknownResidues { .. } => {
-                "pick residues that the file has, by the author's numbers: FILE:A:1-120 or FILE:A:52A, with all parts of a list after commas"
+                "pick residues that the file has, by the author's numbers: FILE:A:1-120 or FILE:A:52A, with all \
+                 parts of a list after commas"
             }
             Self::UnknownModel { .. } => {
                 "ask for one of the models that the file has, which count from 1 in the order of the file, or for --model all"

@@ -71,7 +71,7 @@ pub(crate) fn archive(bytes: &[u8]) -> Option<Foreign> {
     found.map(|&(_, what, remedy)| Foreign { what, remedy })
 }
 
-/// What a file that holds no structure is by its name.
+/// Kind of a file that holds no structure, by its name.
 pub(crate) fn by_name(path: &Path) -> Option<Foreign> {
     let name = path.file_name()?.to_str()?.to_ascii_lowercase();
     let name = name.strip_suffix(".gz").unwrap_or(&name);

@@ -1,4 +1,4 @@
-//! Which file to read and what of it: `file`, `file:H,L` or `file:H:1-120,L`.
+//! A file to read, and the part of it to read: `file`, `file:H,L` or `file:H:1-120,L`.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

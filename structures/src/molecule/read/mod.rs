@@ -72,7 +72,7 @@ pub fn read_bytes(
     read_telling(spec, bytes, options, &mut |_, _| {})
 }
 
-/// As [`read`], with every atom of the model listed in file order, kept or dropped.
+/// Reads like [`read`], and returns the fate of every atom of the model in file order, kept or dropped.
 ///
 /// # Errors
 /// As [`read`].
@@ -92,19 +92,19 @@ pub fn read_bytes_with_fates(
     bytes: Vec<u8>,
     options: &ReadOptions,
 ) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
-    let mut listed = Vec::new();
+    let mut fates = Vec::new();
     let molecule = read_telling(spec, bytes, options, &mut |atom, kind| {
-        listed.push(AtomFate {
+        fates.push(AtomFate {
             atom,
             dropped: Some(kind),
         });
     })?;
-    listed.extend(molecule.atoms.iter().map(|atom| AtomFate {
+    fates.extend(molecule.atoms.iter().map(|atom| AtomFate {
         atom: atom.clone(),
         dropped: None,
     }));
-    listed.sort_by_key(|entry| entry.atom.line);
-    Ok((molecule, listed))
+    fates.sort_by_key(|entry| entry.atom.line);
+    Ok((molecule, fates))
 }
 
 /// Reads a file's bytes, and calls `dropped` for each atom that is left out.

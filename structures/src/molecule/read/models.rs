@@ -1,8 +1,8 @@
-//! Models that are parts of one thing, and models that are alternatives.
+//! Models of a file: parts of one molecule, or alternatives.
 //!
-//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or of
-//! a complex with a partner in each lie beside one another: two atoms that are not bonded keep some 3 Å apart. So the
-//! models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
+//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or
+//! of a complex with a partner in each lie beside one another: two atoms that are not bonded keep a distance of some
+//! 3 Å. So the models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -21,7 +21,7 @@ const CELL: f64 = 2.0;
 /// another.
 const MAX_SHARED: f64 = 0.05;
 
-/// What the models of a file are to one another.
+/// Relation between the models of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
     /// There is but one.
@@ -62,7 +62,8 @@ pub(crate) fn warning(models: usize, read: usize, ignored: usize) -> String {
     let others = models.saturating_sub(1);
     let were = if others == 1 { "was" } else { "were" };
     format!(
-        "the {models} models of this file lie beside one another, as parts of one molecule do, and model {read} alone is read: {} with {} {were} \
+        "the {models} models of this file lie beside one another, as parts of one molecule do, and model {read} \
+         alone is read: {} with {} {were} \
          left out; --model all reads them as one",
         count(others, "other model"),
         count(ignored, "atom")
@@ -70,7 +71,8 @@ pub(crate) fn warning(models: usize, read: usize, ignored: usize) -> String {
 }
 
 /// A warning where models were joined that are alternatives.
-pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one another, as alternatives do, and --model all reads them as one \
+pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one another, as alternatives do, \
+    and --model all reads them as one \
      molecule, in which they are counted one by one: --model 1 reads the first";
 
 /// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly

@@ -7,8 +7,8 @@ use crate::molecule::model::groups::{Residue, ResidueKey};
 use crate::molecule::model::wording::{count, show_chain};
 use crate::neighbours::SpatialHash;
 
-/// Distance in Å below which atoms of different residues are in one place: bonded ones are more than 1.2 Å apart,
-/// hydrogens left aside.
+/// Distance in Å below which atoms of different residues are in one place. Bonded ones are separated by more than 1.2
+/// Å, except hydrogens.
 const ON_TOP: f64 = 0.5;
 
 /// The same of fewer than [`FEW`] atoms between two chains, which come to lie so by chance where bodies overlap.
@@ -117,7 +117,8 @@ fn in_words(
     } else {
         let first = show_chain(first);
         format!(
-            "{atoms} of chain {chain} {lie} on atoms of chain {first}, and all are counted: are these copies or models of one molecule? FILE:{first} \
+            "{atoms} of chain {chain} {lie} on atoms of chain {first}, and all are counted: are these copies or \
+             models of one molecule? FILE:{first} \
              reads one"
         )
     }

@@ -76,7 +76,7 @@ pub(crate) fn parse(
         .collect()
 }
 
-/// What is taken from pdbtbx.
+/// Data taken from pdbtbx.
 struct Facts {
     name: String,
     hetero: bool,

@@ -7,19 +7,19 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// How to read.
+/// Options on reading a structure file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ReadOptions {
-    /// What becomes of waters.
+    /// Policy on waters.
     pub waters: Waters,
-    /// What becomes of the other groups in HETATM records.
+    /// Policy on the other groups in HETATM records.
     pub hetatm: Hetatm,
-    /// What becomes of hydrogens.
+    /// Policy on hydrogens.
     pub hydrogens: Hydrogens,
-    /// Which alternate location is kept.
+    /// Choice of the alternate location.
     pub altloc: AlternateLocation,
-    /// Which model is read, or all of them as one molecule. A file of one model has it read.
+    /// Model that is read, or all of them as one molecule. A file of one model has it read.
     pub model: ModelChoice,
     /// Biological assembly to build of the chains, by its name in the file; a file that says nothing of assemblies is
     /// read as it stands.
@@ -37,7 +37,7 @@ pub struct ReadOptions {
     pub keep: Vec<String>,
 }
 
-/// Which of a file's models are read.
+/// Choice of a file's models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "WrittenModel", into = "WrittenModel")]
 pub enum ModelChoice {
@@ -115,7 +115,7 @@ impl TryFrom<WrittenModel> for ModelChoice {
     }
 }
 
-/// What becomes of waters.
+/// Policy on waters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Waters {
@@ -126,21 +126,21 @@ pub enum Waters {
     Keep,
 }
 
-/// What becomes of HETATM records that are no water.
+/// Policy on HETATM records other than water.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Hetatm {
-    /// Listed buffer and cryo additives are dropped (whatever their record), all else is kept.
+    /// Known buffer and cryo additives are dropped (whatever their record), all else is kept.
     #[default]
     NoAdditives,
     /// All are kept.
     Keep,
-    /// All are dropped but modified amino acids: residues with N, CA and C. Listed additives are dropped whatever their
-    /// record.
+    /// All are dropped but modified amino acids: residues with N, CA and C. Known additives are dropped whatever
+    /// their record.
     Drop,
 }
 
-/// What becomes of hydrogens.
+/// Policy on hydrogens.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Hydrogens {
@@ -151,7 +151,7 @@ pub enum Hydrogens {
     Keep,
 }
 
-/// Which alternate location of a residue is kept.
+/// Choice of the alternate location of a residue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum AlternateLocation {

@@ -43,7 +43,8 @@ fn coarse_grained(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<String> {
         let shown: Vec<&str> = beads.iter().copied().take(SHOWN).collect();
         let more = if beads.len() > SHOWN { ", ..." } else { "" };
         format!(
-            "{coarse} of {} are coarse-grained (beads {}{more}): radii, charges and potentials are those of atoms, and nothing was tuned on beads",
+            "{coarse} of {} are coarse-grained (beads {}{more}): radii, charges and potentials are those of \
+             atoms, and nothing was tuned on beads",
             count(all, "amino acid"),
             shown.join(", ")
         )

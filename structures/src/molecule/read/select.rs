@@ -231,7 +231,7 @@ fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
     found
 }
 
-/// What distinguishes a residue from all others.
+/// Key of a residue.
 type ResidueKey = (String, i64, Option<char>, String);
 
 fn residue_key(record: &Parsed) -> ResidueKey {

@@ -11,7 +11,7 @@ pub enum WriteError {
     /// PDB was requested, and its columns cannot hold this. mmCIF can.
     #[error("this does not fit the PDB format: {what}; write mmCIF instead")]
     DoesNotFit {
-        /// What does not fit.
+        /// The value that does not fit.
         what: String,
     },
     /// A coordinate, occupancy or temperature factor is NaN or infinite.

@@ -2,7 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Largest move of the ligand in Å: the shift of its interface plus the arc of its rotation at the interface's root mean square radius.
+/// Largest move of the ligand in Å: the shift of its interface plus the arc of its rotation at the interface's root
+/// mean square radius.
 pub(super) const FARTHEST: f64 = 2.0;
 /// Largest number of evaluations of energy and gradient.
 const EVALUATIONS: usize = 40;
@@ -18,7 +19,8 @@ pub(super) struct Slope {
     pub torque: Vector3<f64>,
 }
 
-/// Rotation and translation at the end of a steepest descent from the identity. Rotations are measured by their arc at `radius` (Å).
+/// Rotation and translation at the end of a steepest descent from the identity. Rotations are measured by their arc
+/// at `radius` (Å).
 pub(super) fn descend(
     radius: f64,
     mut slope: impl FnMut(&UnitQuaternion<f64>, &Vector3<f64>) -> Slope,

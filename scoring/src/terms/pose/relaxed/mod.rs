@@ -1,9 +1,9 @@
 //! Pose term `relaxed`: energy of atom pairs with a penalty on overlap, after a small rigid move that lowers it.
 //!
-//! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy that penalises
-//! overlap says little about a pose as it stands. It says more about one half an Ångström beside it. [`Relaxation`] finds that pose by
-//! steepest descent, as rigid-body minimisation does before poses are ranked by force fields (Li, Chen & Weng, Proteins 53 (2003)
-//! 693-707).
+//! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy
+//! that penalises overlap says little about a pose as it stands. It says more about one half an Ångström beside it.
+//! [`Relaxation`] finds that pose by steepest descent. Rigid-body minimisation does the same before force fields rank
+//! poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
 
 mod descent;
 #[cfg(test)]
@@ -42,28 +42,30 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Depth in Å by which two atoms may overlap at no cost.
 const OVERLAP: f64 = 0.1;
-/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces stand where the other body's will be.
+/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces stand where the other
+/// body's will be.
 const STIFFNESS: f64 = 0.8;
 /// Stiffness during the descent. It is softer still, so that single overlaps do not hold back the whole interface.
 const SOFT_CORE_STIFFNESS: f64 = 0.2;
-/// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a file keeps them.
+/// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a
+/// file keeps them.
 const HYDROGEN: f64 = 1.15;
 
-/// Distance in Å beyond the reach up to which pairs are listed: the interface moves by at most [`FARTHEST`].
+/// Distance in Å beyond the reach up to which pairs are collected: the interface moves by at most [`FARTHEST`].
 ///
 /// A descent may miss pairs that a long arm brings within reach. The final energy is the whole sum.
 const SLACK: f64 = FARTHEST + 0.6;
-/// Number of listed atoms that are sorted by distance at a time.
+/// Number of collected atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
 /// Least radius in Å about which an interface rotates.
 const MIN_RADIUS: f64 = 3.0;
 
 /// Two bodies prepared for relaxing poses.
 ///
-/// The energy of a pose in RT is a sum over pairs of atoms: the atom pair potential (as [`super::AtomPairs`] reads it), and 0.8 RT/Å²
-/// times the square of their overlap. The overlap is the sum of their radii less 0.1 Å and less their distance. Atoms without a kind
-/// only repel. The pose descends by at most 2 Å on a like energy of a quarter of that stiffness. Its score is minus the weight times
-/// the energy of the relaxed pose.
+/// The energy of a pose in RT is a sum over pairs of atoms: the atom pair potential (as [`super::AtomPairs`] reads
+/// it), and 0.8 RT/Å² times the square of their overlap. The overlap is the sum of their radii less 0.1 Å and less
+/// their distance. Atoms without a kind only repel. The pose descends by at most 2 Å on a like energy of a quarter of
+/// that stiffness. Its score is minus the weight times the energy of the relaxed pose.
 pub struct Relaxation {
     /// Atoms of the receptor, each with its index in `sites`.
     receptor: CellList<usize>,
@@ -218,8 +220,8 @@ impl Relaxation {
 
     /// Lists the pairs that may come within reach at a pose.
     ///
-    /// Returns the centre of the ligand's interface, relative to the receptor's centre, and its root mean square radius; `None` if no
-    /// pair is within reach.
+    /// Returns the centre of the ligand's interface, relative to the receptor's centre, and its root mean square
+    /// radius; `None` if no pair is within reach.
     fn list(&self, pose: &Pose, workspace: &mut Workspace) -> Option<(Vector3<f64>, f64)> {
         let Workspace { mobile, neighbours } = workspace;
         mobile.clear();
@@ -257,7 +259,7 @@ impl Relaxation {
         Some((middle, spread.sqrt().max(MIN_RADIUS)))
     }
 
-    /// Energy and gradient over the listed pairs, with the arms rotated by `turn` about `place`.
+    /// Energy and gradient over the collected pairs, with the arms rotated by `turn` about `place`.
     #[inline(always)]
     fn slope(
         &self,
@@ -278,17 +280,17 @@ impl Relaxation {
             let arm = turn * atom.arm;
             let position = arm + place;
             let (mut energy, mut force) = (0.0, Vector3::zeros());
-            for listed in workspace.neighbours[from..atom.end].chunks(CHUNK) {
+            for near in workspace.neighbours[from..atom.end].chunks(CHUNK) {
                 // Without a branch: a third of the pairs is within reach, in an unpredictable order.
                 let mut within = [(0, 0.0); CHUNK];
                 let mut count = 0;
-                for (index, other) in listed.iter().enumerate() {
+                for (index, other) in near.iter().enumerate() {
                     let square = (position - other.position).norm_squared();
                     within[count] = (index, square);
                     count += usize::from(square < limit);
                 }
                 for &(index, square) in &within[..count] {
-                    let (other, distance) = (&listed[index], square.sqrt());
+                    let (other, distance) = (&near[index], square.sqrt());
                     let (value, rise) = self.pair(other, &atom.site, distance, stiffness);
                     energy += value;
                     force += rise / distance.max(1e-6) * (position - other.position);
@@ -314,7 +316,8 @@ impl Relaxation {
     }
 }
 
-/// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a kind.
+/// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a
+/// kind.
 fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f64>, Site)> {
     let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
     let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);

@@ -100,7 +100,7 @@ fn the_slope_is_that_of_the_energy() {
 
 /// Before any move the list contains every pair within reach.
 #[test]
-fn the_listed_pairs_add_up_to_the_energy() {
+fn pairs_within_reach_add_up_to_the_energy() {
     let (_, _, relaxation) = bodies(0.0);
     let mut workspace = Workspace::default();
     let mut touching = 0;
@@ -110,14 +110,15 @@ fn the_listed_pairs_add_up_to_the_energy() {
             assert_eq!(energy, 0.0);
             continue;
         };
-        let listed = relaxation.slope(&workspace, &Rotation3::identity(), &middle, STIFFNESS);
-        assert!((listed.energy - energy).abs() < 1e-9 * energy.abs().max(1.0));
+        let slope = relaxation.slope(&workspace, &Rotation3::identity(), &middle, STIFFNESS);
+        assert!((slope.energy - energy).abs() < 1e-9 * energy.abs().max(1.0));
         touching += 1;
     }
     assert!(touching > 30, "{touching}");
 }
 
-/// A relaxed pose has the returned energy, which is never more than before, and its interface lies within the bounds. Most poses gain.
+/// A relaxed pose has the returned energy, which is never more than before, and its interface lies within the bounds.
+/// Most poses gain.
 #[test]
 fn poses_come_to_rest_nearby_and_lower() {
     let (_, ligand, relaxation) = bodies(0.0);

@@ -144,7 +144,7 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
     }
 }
 
-/// What a text is that is no STL, judged from its first line.
+/// Kind of a text that is no STL, by its first line.
 fn not_stl(text: &str) -> MeshErrorKind {
     match lines(text, false).next() {
         Some(line) => line.fault(format!(

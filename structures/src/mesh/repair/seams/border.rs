@@ -13,7 +13,7 @@ pub struct Pair {
     choices: u32,
     /// Whether the two run the same way.
     same_way: bool,
-    /// How far apart their ends are along an axis.
+    /// Largest distance of their ends along an axis.
     distance: f64,
     /// The two edges.
     pub edges: [u32; 2],

@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(joined(&positions, &[&[0, 1, 2], &[3, 5, 4]], 0.9), None);
     }
 
-    /// Strips whose edges lie a unit apart each: pairs become one, the whole row does not.
+    /// Strips whose edges are one unit from each other: pairs become one, the whole row does not.
     #[test]
     fn no_chain_leads_beyond_the_reach() {
         let mut positions = Vec::new();

@@ -1,4 +1,4 @@
-//! Which residues are near an end.
+//! Tests of residues near termini.
 
 use super::*;
 use crate::molecule::model::format::Format;

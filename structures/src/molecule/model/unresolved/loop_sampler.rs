@@ -47,7 +47,7 @@ pub(crate) struct LoopSampler {
     cells: SpatialHash<usize>,
 }
 
-/// What the trials of one segment have in common.
+/// Data that all trials of one segment share.
 struct Trace<'a> {
     sampler: &'a LoopSampler,
     frame: &'a Conformers,

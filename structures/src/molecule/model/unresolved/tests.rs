@@ -1,4 +1,4 @@
-//! What is found missing, and where it may be.
+//! Tests of unresolved residues and their conformers.
 
 use super::*;
 use crate::molecule::model::atom::squared_distance;

@@ -53,7 +53,7 @@ impl<'a> Items<'a> {
         }
     }
 
-    /// What all of it comes to.
+    /// Assemblies that all items describe.
     pub(crate) fn assemblies(&self) -> Assemblies {
         let mut assemblies = Assemblies::default();
         let mut operators = HashMap::new();

@@ -28,7 +28,7 @@ impl Remark {
         }
     }
 
-    /// What all lines came to.
+    /// Assemblies that all lines describe.
     pub(crate) fn assemblies(mut self) -> Assemblies {
         if !self.rows.is_empty() && self.assemblies.broken.is_none() {
             self.assemblies.broken = Some((

@@ -1,4 +1,4 @@
-//! Which lines of a PDB file are atoms.
+//! Detection of the atom lines of a PDB file.
 
 /// Whether a record is an atom's.
 pub(crate) fn is_atom(record: &str) -> bool {

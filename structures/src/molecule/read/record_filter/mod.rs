@@ -1,7 +1,8 @@
 //! The record filter before pdbtbx: which records of a file it reads, and what is taken from the file itself.
 //!
-//! pdbtbx 0.12 refuses or panics on much of what real files hold: free-form REMARK, short ATOM lines, odd charge
-//! columns, old DBREF and SEQADV, dummy CRYST1, blank residue names, mmCIF values that a number or a quote breaks.
+//! pdbtbx 0.12 refuses or panics on much of what real files hold. Examples are free-form REMARK, short ATOM lines,
+//! odd charge columns, old DBREF and SEQADV, dummy CRYST1, blank residue names, and mmCIF values that a number or a
+//! quote breaks.
 //!
 //! Only atoms of the wanted models pass the filter, each as a record that pdbtbx is sure to read, with a serial number.
 //! What pdbtbx would change comes from an [`AtomRecord`](record::AtomRecord) of the same number:

@@ -1,9 +1,9 @@
-//! What a file says of where its coordinates come from: methods of experiments, and scores of predictions (ModelCIF,
+//! Provenance of the coordinates, as the file states it: methods of experiments, and scores of predictions (ModelCIF,
 //! Vallat et al., J. Mol. Biol. 435, 168021, 2023).
 
 use crate::molecule::read::record_filter::tokens::Kind;
 
-/// What a file says of where its coordinates come from.
+/// Provenance of the coordinates, as the file states it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Provenance {
     /// Nothing.
@@ -48,7 +48,7 @@ impl ProvenanceItems {
         }
     }
 
-    /// What all of it comes to.
+    /// Provenance by all records.
     pub(crate) fn provenance(&self) -> Provenance {
         match (self.measured, self.scored, self.by_plddt) {
             (true, ..) | (false, true, false) => Provenance::NoConfidence,

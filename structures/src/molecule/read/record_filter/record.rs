@@ -10,7 +10,7 @@ use crate::molecule::read::record_filter::provenance::Provenance;
 /// Alternate location given to pdbtbx for atoms that have none, so that it does not copy them into other conformers.
 pub(crate) const NO_ALTERNATE: char = '~';
 
-/// What travels past pdbtbx for one atom.
+/// Data of one atom that bypass pdbtbx.
 #[derive(Clone, Debug)]
 pub(crate) struct AtomRecord {
     pub(crate) line: usize,
@@ -56,7 +56,8 @@ pub(crate) struct FilteredRecords {
     pub(crate) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(crate) defaults_filled: usize,
-    /// Lines at which the file itself ends a chain; see [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
+    /// Lines at which the file itself ends a chain; see
+    /// [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
     pub(crate) chain_breaks: Vec<usize>,
     /// Lines and names of further data blocks of an mmCIF file that have atoms, too.
     pub(crate) other_blocks: Vec<(usize, String)>,

@@ -10,7 +10,7 @@ pub(crate) struct Token<'a> {
     pub(crate) kind: Kind<'a>,
 }
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind<'a> {
     /// `data_NAME`, with the name.

@@ -1,4 +1,4 @@
-//! What `knotdock sample` says of a sampled solid.
+//! Report of `knotdock sample` on a sampled solid.
 
 use knotdock::output::tables::report;
 use knotdock_structures::mesh::{Figure, Solid};
@@ -7,8 +7,8 @@ use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Sampling, SetName};
 use serde_json::{Value, json};
 
-/// What is told of a sampled solid, in the file's unit.
-pub(super) struct Told<'a> {
+/// Report on a sampled solid, in the file's unit.
+pub(super) struct SampleReport<'a> {
     pub sampling: &'a Sampling,
     pub fits: &'a [Fit],
     /// Length of the sampler's unit in the file's.
@@ -17,19 +17,19 @@ pub(super) struct Told<'a> {
     pub volume: f64,
 }
 
-impl<'a> Told<'a> {
-    /// What is told of a sampling and its fits.
+impl<'a> SampleReport<'a> {
+    /// Report on a sampling and its fits.
     pub fn new(
         sampling: &'a Sampling,
         fits: &'a [Fit],
         solid: &Solid,
-        referee: &HausdorffMeter,
+        meter: &HausdorffMeter,
     ) -> Self {
         Self {
             sampling,
             fits,
             unit: solid.frame().unit,
-            volume: referee.volume(),
+            volume: meter.volume(),
         }
     }
 
@@ -145,7 +145,7 @@ impl<'a> Told<'a> {
         )
     }
 
-    /// How a level of detail fits, for a person.
+    /// Fit of a level of detail, as text.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
             "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward",
@@ -196,7 +196,7 @@ impl<'a> Told<'a> {
         .collect()
     }
 
-    /// How balls fit the solid, for a program.
+    /// Fit of the balls to the solid, as JSON.
     pub fn fit(&self, fit: &Fit) -> Value {
         json!({
             "hausdorff_inward": fit.hausdorff_inward * self.unit,
@@ -221,7 +221,7 @@ fn set_name(name: SetName) -> &'static str {
     }
 }
 
-/// What fitting the weights did.
+/// Report on the fitted weights.
 pub(super) fn weights_text(fitted: &FittedWeights) -> String {
     format!(
         "Weights: summed bumps (alpha {}) are off one inside by {:.3} rms with weights of one and by {:.3} with those fitted; their \
