@@ -100,50 +100,75 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 &mut next[..kept * modes[axis] * rest]
             };
             if rest == 1 {
-                let blocks = values
-                    .chunks_mut(GROUP * length)
-                    .zip(target.chunks_mut(GROUP * modes[axis]));
-                for (lines, targets) in blocks {
-                    self.to_modes[axis].process_with_scratch(lines, scratch);
-                    for (line, target) in lines
-                        .chunks_exact(length)
-                        .zip(targets.chunks_exact_mut(modes[axis]))
-                    {
-                        let half = modes[axis] / 2;
-                        let (negative, positive) = target.split_at_mut(half);
-                        let (low, high) = self.factors[axis].split_at(half);
-                        for ((target, value), factor) in
-                            negative.iter_mut().zip(&line[length - half..]).zip(low)
-                        {
-                            *target = value.scale(*factor);
-                        }
-                        for ((target, value), factor) in positive.iter_mut().zip(line).zip(high) {
-                            *target = value.scale(*factor);
-                        }
-                    }
-                }
+                self.contiguous_to_modes(axis, values, target, scratch);
             } else {
-                let blocks = values
-                    .chunks_exact_mut(rest * length)
-                    .zip(target.chunks_exact_mut(rest * modes[axis]));
-                for (values, target) in blocks {
-                    for (group, lines) in values.chunks_mut(GROUP * length).enumerate() {
-                        self.to_modes[axis].process_with_scratch(lines, scratch);
-                        let count = lines.len() / length;
-                        for (index, &factor) in self.factors[axis].iter().enumerate() {
-                            let from = place(index, modes[axis], length);
-                            let start = index * rest + group * GROUP;
-                            for (line, target) in
-                                target[start..start + count].iter_mut().enumerate()
-                            {
-                                *target = lines[line * length + from].scale(factor);
-                            }
-                        }
-                    }
-                }
+                self.strided_to_modes(axis, rest, values, target, scratch);
             }
             kept *= modes[axis];
             std::mem::swap(current, next);
+        }
+    }
+
+    /// Transforms lines along an axis into modes that lie side by side.
+    #[inline(always)]
+    fn contiguous_to_modes(
+        &self,
+        axis: usize,
+        values: &mut [Complex<T>],
+        target: &mut [Complex<T>],
+        scratch: &mut [Complex<T>],
+    ) {
+        let (length, modes) = (self.grid.fine[axis], self.modes[axis]);
+        let blocks = values
+            .chunks_mut(GROUP * length)
+            .zip(target.chunks_mut(GROUP * modes));
+        for (lines, targets) in blocks {
+            self.to_modes[axis].process_with_scratch(lines, scratch);
+            for (line, target) in lines
+                .chunks_exact(length)
+                .zip(targets.chunks_exact_mut(modes))
+            {
+                let half = modes / 2;
+                let (negative, positive) = target.split_at_mut(half);
+                let (low, high) = self.factors[axis].split_at(half);
+                for ((target, value), factor) in
+                    negative.iter_mut().zip(&line[length - half..]).zip(low)
+                {
+                    *target = value.scale(*factor);
+                }
+                for ((target, value), factor) in positive.iter_mut().zip(line).zip(high) {
+                    *target = value.scale(*factor);
+                }
+            }
+        }
+    }
+
+    /// Transforms lines along an axis into modes `rest` values apart, the axes that remain between them.
+    #[inline(always)]
+    fn strided_to_modes(
+        &self,
+        axis: usize,
+        rest: usize,
+        values: &mut [Complex<T>],
+        target: &mut [Complex<T>],
+        scratch: &mut [Complex<T>],
+    ) {
+        let (length, modes) = (self.grid.fine[axis], self.modes[axis]);
+        let blocks = values
+            .chunks_exact_mut(rest * length)
+            .zip(target.chunks_exact_mut(rest * modes));
+        for (values, target) in blocks {
+            for (group, lines) in values.chunks_mut(GROUP * length).enumerate() {
+                self.to_modes[axis].process_with_scratch(lines, scratch);
+                let count = lines.len() / length;
+                for (index, &factor) in self.factors[axis].iter().enumerate() {
+                    let from = place(index, modes, length);
+                    let start = index * rest + group * GROUP;
+                    for (line, target) in target[start..start + count].iter_mut().enumerate() {
+                        *target = lines[line * length + from].scale(factor);
+                    }
+                }
+            }
         }
     }
 
