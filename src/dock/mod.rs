@@ -10,3 +10,4 @@ pub mod plan;
 mod plan_text;
 pub mod run;
 pub mod scene;
+mod stopwatch;

@@ -1,9 +1,7 @@
 //! Two bodies made ready to be docked, once or again and again with other options.
 
 use std::sync::Arc;
-use std::time::Instant;
 
-use cpu_time::ProcessTime;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::molecule::Molecule;
 
@@ -11,6 +9,7 @@ use crate::dock::outcome::StageTime;
 use crate::dock::plan::{DockPlan, plan, plan_scene};
 use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
+use crate::dock::stopwatch::timed;
 use crate::error::SearchError;
 use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
@@ -181,18 +180,4 @@ impl<'a> Preparer<'a> {
         self.sampled.push((wanted, Arc::clone(&sampling)));
         Ok(sampling)
     }
-}
-
-/// The result of a call with its wall and CPU time.
-fn timed<T>(name: &'static str, call: impl FnOnce() -> T) -> (T, StageTime) {
-    let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
-    let result = call();
-    let time = StageTime {
-        name,
-        wall_seconds: wall.elapsed().as_secs_f64(),
-        cpu_seconds: cpu
-            .and_then(|cpu| cpu.try_elapsed().ok())
-            .map(|cpu| cpu.as_secs_f64()),
-    };
-    (result, time)
 }

@@ -1,8 +1,9 @@
 //! The run: prepare, scan the rotations, refine the best peaks, check the fast path, rescore, cluster, score exactly.
 
 use crate::dock::effect_timings::{effect_timings, rank_of};
-use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, StageTime, error_scale};
+use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, error_scale};
 use crate::dock::plan::DockPlan;
+use crate::dock::stopwatch::Stopwatch;
 use crate::error::SearchError;
 use crate::options::{Precision, Stopped};
 use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
@@ -17,7 +18,6 @@ use crate::search::deadline::Deadline;
 use crate::search::scan::{Scanned, scan};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
-use cpu_time::ProcessTime;
 use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
@@ -37,33 +37,6 @@ const ERROR_POSES: usize = 100;
 const MERGE_SPACINGS: f64 = 0.25;
 /// Poses that a thread refines at once.
 const REFINED_TOGETHER: usize = 4;
-
-struct Clock {
-    stages: Vec<StageTime>,
-    wall: Instant,
-    cpu: Option<ProcessTime>,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self {
-            stages: Vec::new(),
-            wall: Instant::now(),
-            cpu: ProcessTime::try_now().ok(),
-        }
-    }
-
-    fn lap(&mut self, name: &'static str) {
-        let cpu = self.cpu.and_then(|cpu| cpu.try_elapsed().ok());
-        self.stages.push(StageTime {
-            name,
-            wall_seconds: self.wall.elapsed().as_secs_f64(),
-            cpu_seconds: cpu.map(|cpu| cpu.as_secs_f64()),
-        });
-        self.wall = Instant::now();
-        self.cpu = ProcessTime::try_now().ok();
-    }
-}
 
 /// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
 /// of a molecule, the centres of the balls of a mesh.
@@ -110,7 +83,7 @@ fn dock_in<T: Real>(
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
-    let mut clock = Clock::start();
+    let mut clock = Stopwatch::start();
     let Prepared {
         spectra,
         engine,
@@ -176,7 +149,7 @@ fn dock_in<T: Real>(
         rank: engine.cpu.rank(),
         effects,
         fine: found.fine,
-        timing: clock.stages,
+        timing: clock.into_stages(),
         adapter: engine.adapter,
     })
 }
@@ -239,7 +212,7 @@ fn find<T: Real>(
     plan: &DockPlan,
     engine: &ScanEngine<T>,
     deadline: Option<&Deadline>,
-    (progress, clock): (&dyn Progress, &mut Clock),
+    (progress, clock): (&dyn Progress, &mut Stopwatch),
 ) -> Result<Found, SearchError> {
     let search = &plan.search;
     let groups = schedule(search, deadline.is_some());
