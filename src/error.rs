@@ -1,8 +1,8 @@
 //! Why a search was refused or failed, and what to do about it.
 
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::knots::KnotsError;
 
 /// Why a docking run was refused.

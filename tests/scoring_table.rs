@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
 use knotdock::progress::NoProgress;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues, Workspace};
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 

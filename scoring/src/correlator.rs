@@ -9,7 +9,6 @@
 //! A pose takes a ligand knot at y to R y + t in the receptor's frame. Lengths are in Å, a higher score is better. The
 //! grid is (nx, ny, nz) row-major; a voxel stands for one translation.
 
-use crate::effect::Term;
 use crate::engine::{
     ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
 };
@@ -19,6 +18,7 @@ use crate::potential_grid::PotentialGrid;
 use crate::quantity::Quantity;
 use crate::se3::{HalfTurn, Pose};
 use crate::so3::rotation_set;
+use crate::terms::effect::Term;
 use crate::transform::Real;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;

@@ -7,11 +7,11 @@
 //! Against the sum over the same modes, a score errs by less than 1e-4 of the largest potential of one knot. Against
 //! the exact pair sum its accuracy is that of the fast path.
 
-use crate::effect::Effect;
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
+use crate::terms::effect::Effect;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use crate::transform::{Real, fast_size};

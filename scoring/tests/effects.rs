@@ -1,15 +1,15 @@
 //! Effects beside shape: each by the fast path, run alone, against its exact pair sum, that against a plain double
 //! loop, and scenes whose answer is known.
 
-use knotdock_scoring::effect::contact::{self, Potential};
-use knotdock_scoring::effect::restraint::{ResidueRole, Weights};
-use knotdock_scoring::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::effect::contact::{self, Potential};
+use knotdock_scoring::terms::effect::restraint::{ResidueRole, Weights};
+use knotdock_scoring::terms::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};

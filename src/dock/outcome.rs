@@ -3,10 +3,10 @@
 use crate::options::Stopped;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::TermValues;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The effects of a score: `auto`, or names.
 
-use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::effect::Effect;
 use serde::{Deserialize, Serialize};
 
 /// Effects of a score. Written as `auto`, or as names with commas between them.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock_scoring::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::terms::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 
 /// Why the potential that an option names cannot be used.

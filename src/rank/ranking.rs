@@ -20,9 +20,9 @@ use crate::dock::scene::LengthUnit;
 use crate::pose_space::PoseSpace;
 use crate::progress::Progress;
 use crate::rank::candidates::Candidate;
-use knotdock_scoring::effect::Effect;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Fits the cost model on this machine: dockings of a made-up pair of the size of a small complex, whose stages are
 //! timed.
 
-use knotdock_scoring::effect::{Effect, contact, electrostatics};
+use knotdock_scoring::terms::effect::{Effect, contact, electrostatics};
 use knotdock_scoring::terms::pose;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;

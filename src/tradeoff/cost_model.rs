@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::dock::plan::DockPlan;
 use crate::options::DockOptions;
 use crate::options::Precision;
-use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::effect::Effect;
 
 /// Coefficients of the time, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! What fuzzing found, each with its story. No mutated input has made a reader panic; promises were broken otherwise.
 
-use knotdock_scoring::effect::contact::Potential;
+use knotdock_scoring::terms::effect::contact::Potential;
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 
 /// The first runs on tables of potentials accepted too many inputs. Whatever followed the last row, a copied line or

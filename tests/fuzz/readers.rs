@@ -7,7 +7,7 @@ use std::path::Path;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::pair_table::read_pairs;
 use knotdock::output::tables::poses::PoseTable;
-use knotdock_scoring::effect::contact::{Potential, PotentialError, TYPES};
+use knotdock_scoring::terms::effect::contact::{Potential, PotentialError, TYPES};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};

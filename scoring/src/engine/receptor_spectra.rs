@@ -1,9 +1,9 @@
 //! The receptor's side of a correlation: its transform times the lifted kernel, and the compression of the lifted axis.
 
 use super::plan::Plan;
-use crate::effect::{ActiveTerm, Effect, Label, Term};
 use crate::kernel::table::Table;
 use crate::quantity::Quantity;
+use crate::terms::effect::{ActiveTerm, Effect, Label, Term};
 use crate::transform::Real;
 use crate::transform::modes::ModeSet;
 use crate::transform::pruned_type1::{Forward, ForwardWorkspace};

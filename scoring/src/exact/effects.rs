@@ -3,7 +3,7 @@
 
 use super::blocks::Blocks;
 use super::tables::{Line, PairTables};
-use crate::effect::{ActiveTerm, Effect, Label};
+use crate::terms::effect::{ActiveTerm, Effect, Label};
 
 /// One term, prepared.
 pub(super) struct PairTerm {

@@ -18,9 +18,9 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use crate::effect::{ActiveTerm, Effect};
 use crate::kernel::RankingKernel;
 use crate::se3::Pose;
+use crate::terms::effect::{ActiveTerm, Effect};
 use blocks::Blocks;
 use effects::PairTerm;
 use knotdock_structures::Knots;

@@ -10,8 +10,8 @@
 use super::near::{LANES, Near, vectors, vectors_mut};
 use super::tables::{Line, Places};
 use super::{ExactScore, ExactScorer};
-use crate::effect::Effect;
 use crate::se3::Pose;
+use crate::terms::effect::Effect;
 use pulp::{Arch, Simd, WithSimd};
 
 impl ExactScorer {

@@ -8,7 +8,7 @@ use knotdock::dock::plan::DockPlan;
 use knotdock::output::tables::report::counted;
 use knotdock::priors::active_residues::AssumedSite;
 use knotdock::tradeoff::choice::MIN_ROTATIONS;
-use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.

@@ -23,7 +23,7 @@ use crate::rank::rescoring::ActingTerm;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
 use crate::tradeoff::choice::Chosen;
-use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::effect::Effect;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 2;

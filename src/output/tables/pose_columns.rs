@@ -9,7 +9,7 @@
 //!
 //! Columns for diagnosis come last: what the fast path gave, and from where.
 
-use knotdock_scoring::effect::Effect;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::POSE_TERMS;
 
 use crate::dock::outcome::RankedPose;

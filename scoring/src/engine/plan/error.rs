@@ -1,7 +1,7 @@
 //! Errors of planning.
 
-use crate::effect::{Effect, Label, Term};
 use crate::kernel::KernelError;
+use crate::terms::effect::{Effect, Label, Term};
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 

@@ -2,11 +2,11 @@
 
 use super::error::PlanError;
 use super::options::EngineOptions;
-use crate::effect::ActiveTerm;
 use crate::exact::center;
 use crate::kernel::product::peak_score_and_reach;
 use crate::kernel::table::Table;
 use crate::kernel::{Band, ProductKernel, RankingKernel};
+use crate::terms::effect::ActiveTerm;
 use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};

@@ -17,11 +17,11 @@ mod options;
 mod pair_kernel;
 mod radii;
 
-use crate::effect::{ActiveTerm, EffectKernel, Term};
 use crate::kernel::table::Table;
 use crate::kernel::{Band, RankingKernel};
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::quantity::Quantity;
+use crate::terms::effect::{ActiveTerm, EffectKernel, Term};
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_terms, check_tolerance, checked_spacing};
