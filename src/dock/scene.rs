@@ -119,8 +119,11 @@ impl Scene {
         let (ligand, ligand_report) = label(ligand.knots()?, ligand_labels)?;
         let terms = decisions.iter().filter(|decision| decision.on);
         let terms = terms.filter_map(|Decision { effect, .. }| {
-            let weight = effect_weight(*effect, options);
-            (effect.definition().term)([&receptor, &ligand], &inputs, weight)
+            let definition = effect.definition();
+            // Shape, which has none, is what the others are weighed against.
+            let weight = definition.weight.as_ref();
+            let weight = weight.map_or(1.0, |_| options.terms.weights.get(definition.id));
+            (definition.term)([&receptor, &ligand], &inputs, weight)
         });
         let terms = terms.collect();
         // Residues that are named take the place of those that a prior names.
@@ -235,16 +238,6 @@ fn label_counts(molecule: &Molecule, labels: &LabelReport) -> LabelCounts {
         atoms: heavy.count(),
         charged: labels.charged_atoms,
         typed: labels.typed_atoms,
-    }
-}
-
-/// Weight of an effect: score per kcal/mol, per RT or per contact; shape has none.
-fn effect_weight(effect: Effect, options: &DockOptions) -> f64 {
-    match effect {
-        Effect::Shape => 1.0,
-        Effect::Electrostatics => options.terms.electrostatics_weight,
-        Effect::Contact => options.terms.contact_weight,
-        Effect::Restraint => options.restraints.restraint_weight,
     }
 }
 

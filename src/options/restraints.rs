@@ -12,10 +12,6 @@ use crate::priors::peptidase;
 #[command(next_help_heading = "Restraints (molecules)")]
 #[serde(deny_unknown_fields)]
 pub struct RestraintOptions {
-    // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
-    /// What a contact costs that a blocked atom makes: score.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 1.0)]
-    pub restraint_weight: f64,
     /// What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining
     /// regions and what lies within 5 Å of them, or whole, all of it.
     #[arg(long, value_enum, value_name = "cdrs|whole", hide_possible_values = true, default_value_t = AntibodySurface::Cdrs)]

@@ -1,10 +1,12 @@
-//! Weights of the pose terms: one option for each term of the registry.
+//! Weights of the terms: one option for each that the registries hold.
 
 use std::fmt;
 use std::sync::LazyLock;
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use knotdock_scoring::terms::pose::POSE_TERMS;
+use knotdock_scoring::terms::pose::TermDefinition;
+use knotdock_scoring::terms::weight::Weight;
+use knotdock_scoring::terms::weights;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -13,39 +15,45 @@ use super::values::number;
 /// Largest weight of a term.
 const MAX_WEIGHT: f64 = 1e6;
 
-/// Names of the options' fields, and their defaults as text, in the order of the registry.
-static FIELDS: LazyLock<Vec<(String, String)>> = LazyLock::new(|| {
-    let field = |option: &str| option.replace('-', "_");
-    POSE_TERMS
-        .iter()
-        .map(|term| (field(term.weight_option), term.default_weight.to_string()))
-        .collect()
+/// An option of a weight.
+struct WeightOption {
+    /// Id of the term.
+    id: &'static str,
+    weight: &'static Weight,
+    /// Name of the option's field.
+    name: String,
+    /// The default as text.
+    default: String,
+}
+
+/// The options of all weights.
+static OPTIONS: LazyLock<Vec<WeightOption>> = LazyLock::new(|| {
+    let option = |(id, weight): (_, &'static Weight)| WeightOption {
+        id,
+        weight,
+        name: weight.option.replace('-', "_"),
+        default: weight.default.to_string(),
+    };
+    weights().map(option).collect()
 });
 
 /// Names of the options' fields.
 static NAMES: LazyLock<Vec<&'static str>> =
-    LazyLock::new(|| FIELDS.iter().map(|(name, _)| name.as_str()).collect());
+    LazyLock::new(|| OPTIONS.iter().map(|option| option.name.as_str()).collect());
 
-/// Weights of the pose terms, in the order of the registry.
+/// Weights of effects and pose terms, in the order of their registries.
 ///
 /// The command line, records and files name each by its option, as `fine_contact_weight`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TermWeights([f64; POSE_TERMS.len()]);
+pub struct TermWeights(Vec<f64>);
 
 impl Default for TermWeights {
     fn default() -> Self {
-        Self(std::array::from_fn(|index| {
-            POSE_TERMS[index].default_weight
-        }))
+        Self(weights().map(|(_, weight)| weight.default).collect())
     }
 }
 
 impl TermWeights {
-    /// All weights, in the order of the registry.
-    pub fn all(&self) -> &[f64; POSE_TERMS.len()] {
-        &self.0
-    }
-
     /// Weight of the term with an id.
     ///
     /// # Panics
@@ -61,37 +69,29 @@ impl TermWeights {
     pub fn set(&mut self, id: &str, weight: f64) {
         self.0[index(id)] = weight;
     }
-
-    /// The same weights with another for the term with an id.
-    ///
-    /// # Panics
-    /// If no term has this id.
-    #[must_use]
-    pub fn with(mut self, id: &str, weight: f64) -> Self {
-        self.set(id, weight);
-        self
-    }
 }
 
-/// Place of the term with an id in the registry.
+/// Place of the weight of the term with an id.
 fn index(id: &str) -> usize {
-    let index = POSE_TERMS.iter().position(|term| term.id == id);
-    index.unwrap_or_else(|| unreachable!("no pose term '{id}'"))
+    let index = OPTIONS.iter().position(|option| option.id == id);
+    index.unwrap_or_else(|| unreachable!("no weight of a term '{id}'"))
 }
 
 impl Args for TermWeights {
     fn augment_args(command: Command) -> Command {
-        let options = POSE_TERMS.iter().zip(FIELDS.iter());
-        command.args(options.map(|(term, (name, default))| {
-            Arg::new(name.as_str())
-                .long(term.weight_option)
+        command.args(OPTIONS.iter().map(|option| {
+            let Weight { help, unit, .. } = option.weight;
+            // Effects are left out by `--effects`.
+            let zero = match TermDefinition::with_id(option.id) {
+                Some(_) => "; 0 leaves the term out",
+                None => "",
+            };
+            Arg::new(option.name.as_str())
+                .long(option.weight.option)
                 .value_name("X")
                 .value_parser(number(0.0..=MAX_WEIGHT))
-                .default_value(default.as_str())
-                .help(format!(
-                    "{}: {}; 0 leaves the term out",
-                    term.weight_help, term.unit
-                ))
+                .default_value(option.default.as_str())
+                .help(format!("{help}: {unit}{zero}"))
         }))
     }
 
@@ -137,11 +137,11 @@ impl<'de> Visitor<'de> for WeightsVisitor {
     type Value = TermWeights;
 
     fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str("the weights of the pose terms")
+        to.write_str("the weights of the terms")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TermWeights, A::Error> {
-        let mut found = [None; POSE_TERMS.len()];
+        let mut found = vec![None; NAMES.len()];
         while let Some(name) = map.next_key::<String>()? {
             let index = NAMES.iter().position(|field| *field == name);
             let index = index.ok_or_else(|| A::Error::unknown_field(&name, &NAMES))?;
@@ -165,12 +165,12 @@ mod tests {
     fn options_of_weights_are_those_of_the_registry() {
         let command = TermWeights::augment_args(Command::new("dock"));
         let options: Vec<&str> = command.get_arguments().filter_map(Arg::get_long).collect();
-        let expected: Vec<&str> = POSE_TERMS.iter().map(|term| term.weight_option).collect();
+        let expected: Vec<&str> = weights().map(|(_, weight)| weight.option).collect();
         assert_eq!(options, expected);
 
         let record = serde_json::to_value(DockOptions::default()).unwrap();
-        for (term, name) in POSE_TERMS.iter().zip(NAMES.iter()) {
-            assert_eq!(record["terms"][name], term.default_weight, "{name}");
+        for ((_, weight), name) in weights().zip(NAMES.iter()) {
+            assert_eq!(record["terms"][name], weight.default, "{name}");
             let mut less = record.clone();
             less["terms"].as_object_mut().unwrap().remove(*name);
             assert!(serde_json::from_value::<DockOptions>(less).is_err());
@@ -182,12 +182,12 @@ mod tests {
     #[test]
     fn weights_are_typed_by_name_and_found_by_id() {
         let command = TermWeights::augment_args(Command::new("dock").no_binary_name(true));
-        let typed = ["--relaxed-weight=0.25", "--active-weight=7"];
+        let typed = ["--relaxed-weight=0.25", "--contact-weight=7"];
         let matches = command.clone().try_get_matches_from(typed).unwrap();
         let weights = TermWeights::from_arg_matches(&matches).unwrap();
-        let expected = TermWeights::default()
-            .with("relaxed", 0.25)
-            .with("active_residues", 7.0);
+        let mut expected = TermWeights::default();
+        expected.set("relaxed", 0.25);
+        expected.set("contact", 7.0);
         assert_eq!(weights, expected);
         assert_eq!(weights.get("relaxed"), 0.25);
         for wrong in ["--relaxed-weight=-1", "--relaxed-weight=1e7"] {

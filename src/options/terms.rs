@@ -17,12 +17,10 @@ pub struct TermOptions {
     /// Weight in shape of atoms that no water reaches, against 1 for the others.
     #[arg(long, value_name = "X", value_parser = number(0.0..=1e3), default_value_t = 1.0)]
     pub core_weight: f64,
-    /// Weight of the electrostatic energy: score per kcal/mol.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 24.0)]
-    pub electrostatics_weight: f64,
-    /// Weight of the contact potential: score per RT.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = 2.0)]
-    pub contact_weight: f64,
+    /// Weights of effects and pose terms.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub weights: TermWeights,
     /// Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
     pub contact_potential: Option<Potential>,
@@ -34,10 +32,6 @@ pub struct TermOptions {
     /// it.
     #[arg(long, value_name = "CSV", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
     pub atom_pair_potential: Option<AtomPairPotential>,
-    /// Weights of the pose terms.
-    #[command(flatten)]
-    #[serde(flatten)]
-    pub weights: TermWeights,
     /// pH at which charges are assigned.
     #[arg(long, value_name = "PH", value_parser = number(0.0..=14.0), default_value_t = 7.0)]
     pub ph: f64,

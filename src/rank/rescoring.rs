@@ -47,7 +47,10 @@ impl<'a> Rescoring<'a> {
                     .map(|side| side.segments.as_slice()),
                 termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
             },
-            weights: *weights.clone().with("active_residues", active.weight).all(),
+            weights: std::array::from_fn(|index| match POSE_TERMS[index].id {
+                "active_residues" => active.weight,
+                id => weights.get(id),
+            }),
         }
     }
 
@@ -63,7 +66,7 @@ impl<'a> Rescoring<'a> {
         let acting = acting.map(|(term, weight)| ActingTerm {
             id: term.id,
             weight,
-            unit: term.unit,
+            unit: term.weight.unit,
         });
         acting.collect()
     }

@@ -133,11 +133,15 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     let [receptor, ligand] = BODIES.map(body);
     let (receptor, ligand) = (receptor?, ligand?);
     let terms = vec![
-        electrostatics::term(&receptor, &ligand, options.terms.electrostatics_weight),
+        electrostatics::term(
+            &receptor,
+            &ligand,
+            options.terms.weights.get("electrostatics"),
+        ),
         contact::term(
             &receptor,
             &ligand,
-            options.terms.contact_weight,
+            options.terms.weights.get("contact"),
             &contact::Potential::default(),
         ),
     ];

@@ -9,6 +9,7 @@ use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::low_pass::smooth_step_down;
 pub use crate::terms::potential_table::PotentialError;
 use crate::terms::potential_table::{built_in, end, table_lines};
+use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,12 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     id: "contact",
     of_meshes: "meshes have no atom types",
     components: 3.0,
+    weight: Some(Weight {
+        option: "contact-weight",
+        help: "Weight of the contact potential",
+        unit: "score per RT",
+        default: 2.0,
+    }),
     lacks: |inputs| {
         let too_few = inputs.sides().find(|(_, labels)| {
             labels.typed == 0 || (labels.typed as f64) < TYPED_SHARE * labels.atoms as f64

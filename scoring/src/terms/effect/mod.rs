@@ -25,6 +25,7 @@ pub mod shape;
 
 pub use kernel::EffectKernel;
 
+use crate::terms::weight::Weight;
 use contact::Potential;
 use knotdock_structures::Knots;
 use restraint::ResidueRole;
@@ -87,6 +88,8 @@ pub struct EffectDefinition {
     pub of_meshes: &'static str,
     /// Number of components of the compressed functions that it takes at the default tolerance (cost model).
     pub components: f64,
+    /// Its weight; `None` for shape, which every other term is weighed against.
+    pub weight: Option<Weight>,
     /// Data that the inputs lack for it; `None` if they hold what it reads.
     pub lacks: fn(&EffectInputs) -> Option<String>,
     /// Reason that it is on, where the inputs lack nothing.

@@ -10,16 +10,19 @@
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "active_residues",
     label: "active residues",
-    weight_option: "active-weight",
-    weight_help: "Score of a pose in which all active residues are in contact; other poses get their share of it",
-    unit: "score",
-    default_weight: 2000.0,
+    weight: Weight {
+        option: "active-weight",
+        help: "Score of a pose in which all active residues are in contact; other poses get their share of it",
+        unit: "score",
+        default: 2000.0,
+    },
     time_share: UNRELAXED,
     reads: "residues",
     count: |inputs| {

@@ -5,16 +5,19 @@ use super::bodies::Bodies;
 use super::energy_table::{EnergyTable, REACH};
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "atom_pair",
     label: "atom pairs",
-    weight_option: "atom-pair-weight",
-    weight_help: "Weight of the atom pair potential, which scores poses where the contact effect is on",
-    unit: "score per RT",
-    default_weight: 1.0,
+    weight: Weight {
+        option: "atom-pair-weight",
+        help: "Weight of the atom pair potential, which scores poses where the contact effect is on",
+        unit: "score per RT",
+        default: 1.0,
+    },
     time_share: UNRELAXED,
     reads: "atoms with kinds",
     count: |inputs| inputs.atoms_with_kinds(),

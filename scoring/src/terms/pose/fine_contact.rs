@@ -5,16 +5,19 @@ use super::distance_binned_potential::{DistanceBinnedPotential, ENDS, step_down}
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
 use crate::terms::effect::contact::TYPES;
+use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "fine_contact",
     label: "fine contacts",
-    weight_option: "fine-contact-weight",
-    weight_help: "Weight of the fine contact potential, which scores poses where the contact effect is on",
-    unit: "score per RT",
-    default_weight: 2.0,
+    weight: Weight {
+        option: "fine-contact-weight",
+        help: "Weight of the fine contact potential, which scores poses where the contact effect is on",
+        unit: "score per RT",
+        default: 2.0,
+    },
     time_share: UNRELAXED,
     reads: "atoms with contact types",
     count: |inputs| {

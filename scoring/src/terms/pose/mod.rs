@@ -48,6 +48,7 @@ pub use unresolved::UnresolvedClashes;
 pub use values::TermValues;
 
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use knotdock_structures::{Conformers, Knots};
 
 /// Edge in Å of the cells that hold a body's atoms.
@@ -80,14 +81,8 @@ pub struct TermDefinition {
     pub id: &'static str,
     /// Name in reports: lower case, in the plural.
     pub label: &'static str,
-    /// Name of the option that holds its weight: lower case with `-` between words, ending in `-weight`.
-    pub weight_option: &'static str,
-    /// Description of that option: the quantity that the weight multiplies.
-    pub weight_help: &'static str,
-    /// Unit of the weight.
-    pub unit: &'static str,
-    /// Weight if the option is left out.
-    pub default_weight: f64,
+    /// Its weight.
+    pub weight: Weight,
     /// Time to score a pose by this and all cheaper terms, as a share of the time with every term (cost model).
     pub time_share: f64,
     /// What it reads of each side, in the plural.
@@ -153,24 +148,19 @@ impl TermInputs<'_> {
 mod tests {
     use super::*;
 
-    /// Columns, JSON keys, options and reports are named by the registry, so no two terms may share a name.
+    /// Columns, JSON keys and reports are named by the registry, so no two terms may share a name.
     #[test]
-    fn ids_labels_and_options_of_terms_are_unique_and_well_formed() {
+    fn ids_and_labels_of_terms_are_unique_and_well_formed() {
         for (index, term) in POSE_TERMS.iter().enumerate() {
             let rest = &POSE_TERMS[index + 1..];
             assert!(rest.iter().all(|other| other.id != term.id), "{}", term.id);
             assert!(rest.iter().all(|other| other.label != term.label));
-            assert!(
-                rest.iter()
-                    .all(|other| other.weight_option != term.weight_option)
-            );
             let lower = |text: &str, between: char| {
                 text.chars().all(|c| c.is_ascii_lowercase() || c == between)
             };
             assert!(lower(term.id, '_'), "{}", term.id);
             assert!(lower(term.label, ' '), "{}", term.label);
-            assert!(lower(term.weight_option, '-') && term.weight_option.ends_with("-weight"));
-            assert!(term.default_weight >= 0.0 && (0.0..=1.0).contains(&term.time_share));
+            assert!((0.0..=1.0).contains(&term.time_share));
             let found = TermDefinition::with_id(term.id).unwrap();
             assert_eq!(found.label, term.label);
         }

@@ -5,16 +5,19 @@
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "termini",
     label: "termini",
-    weight_option: "termini-weight",
-    weight_help: "Cost of an atom near a terminus of its chain, or near a gap in it, that is in contact with the other side",
-    unit: "score",
-    default_weight: 2.0,
+    weight: Weight {
+        option: "termini-weight",
+        help: "Cost of an atom near a terminus of its chain, or near a gap in it, that is in contact with the other side",
+        unit: "score",
+        default: 2.0,
+    },
     time_share: UNRELAXED,
     reads: "atoms near termini and gaps",
     count: |inputs| inputs.termini.map(<[_]>::len),

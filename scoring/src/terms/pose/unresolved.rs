@@ -9,6 +9,7 @@ use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::exact::center;
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use knotdock_structures::{Conformers, Knots};
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,11 +17,13 @@ use nalgebra::{Matrix3, Vector3};
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "unresolved",
     label: "unresolved residues",
-    weight_option: "unresolved-weight",
-    weight_help: "Cost of an atom where unresolved residues of the other side are, in gaps of a chain or past its termini, times the share \
+    weight: Weight {
+        option: "unresolved-weight",
+        help: "Cost of an atom where unresolved residues of the other side are, in gaps of a chain or past its termini, times the share \
                   of their conformers there",
-    unit: "score",
-    default_weight: 3.0,
+        unit: "score",
+        default: 3.0,
+    },
     time_share: UNRELAXED,
     reads: "segments",
     count: |inputs| inputs.unresolved.map(<[_]>::len),

@@ -15,6 +15,7 @@ use super::energy_table::{EnergyTable, REACH};
 use super::{CELL_EDGE, PoseTerm, TermDefinition};
 use crate::exact::center;
 use crate::se3::Pose;
+use crate::terms::weight::Weight;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use knotdock_structures::neighbours::{CellList, Member};
@@ -24,11 +25,13 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "relaxed",
     label: "atom pairs once relaxed",
-    weight_option: "relaxed-weight",
-    weight_help: "Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores poses where \
+    weight: Weight {
+        option: "relaxed-weight",
+        help: "Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores poses where \
                   the contact effect is on",
-    unit: "score per RT",
-    default_weight: 3.0,
+        unit: "score per RT",
+        default: 3.0,
+    },
     time_share: 1.0,
     reads: "atoms with kinds",
     count: |inputs| inputs.atoms_with_kinds(),
