@@ -40,6 +40,22 @@ fn json(folder: &Path, arguments: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// The run in `run`, whose record is `first`, repeats from it: the same table, options and first complex.
+fn hold_repeated(folder: &Path, first: &Value) {
+    let commands = [
+        "dock --rerun run/run.json -o again --quiet",
+        "export run --rank 1 -o out --quiet",
+    ];
+    for command in commands {
+        succeed(folder, command.split_whitespace());
+    }
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
+    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    let again: Value = serde_json::from_slice(&bytes("again/run.json")).unwrap();
+    assert_eq!(again["options"], first["options"]);
+}
+
 #[test]
 fn residues_left_out_are_recorded_and_followed() {
     let folder = place();
@@ -63,18 +79,7 @@ fn residues_left_out_are_recorded_and_followed() {
         Value::Null
     );
 
-    succeed(
-        folder,
-        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
-    );
-    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
-    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
-    assert_eq!(recorded("again")["options"], first["options"]);
-    succeed(
-        folder,
-        "export run --rank 1 -o out --quiet".split_whitespace(),
-    );
-    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    hold_repeated(folder, &first);
     let matched = json(folder, "evaluate run --native native.pdb --json");
     assert_eq!(matched["match"], first["match"]);
     let named = "evaluate run/poses.csv --receptor receptor.pdb --ligand model.pdb --min-plddt 50 \
@@ -142,19 +147,9 @@ fn an_assembly_is_recorded_and_followed() {
         Value::Null
     );
     assert_eq!(first["chains"].as_array().unwrap().len(), 4);
-    succeed(
-        folder,
-        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
-    );
-    succeed(
-        folder,
-        "export run --rank 1 -o out --quiet".split_whitespace(),
-    );
-    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
-    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
-    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    hold_repeated(folder, &first);
     assert_eq!(
-        String::from_utf8(bytes("out/rank_0001.pdb"))
+        String::from_utf8(fs::read(folder.join("out/rank_0001.pdb")).unwrap())
             .unwrap()
             .lines()
             .filter(|line| line.starts_with("ATOM"))
@@ -260,18 +255,7 @@ fn all_models_are_recorded_and_followed() {
         ligand["report"]["joined_models"],
         serde_json::json!({"models": 2, "on_axes": 0})
     );
-    succeed(
-        folder,
-        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
-    );
-    succeed(
-        folder,
-        "export run --rank 1 -o out --quiet".split_whitespace(),
-    );
-    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
-    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
-    assert_eq!(recorded("again")["options"], first["options"]);
-    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    hold_repeated(folder, &first);
     let matched = json(folder, "evaluate run --native native.pdb --json");
     assert_eq!(matched["match"], first["match"]);
 
@@ -364,17 +348,7 @@ fn picked_residues_are_recorded_and_followed() {
     assert_eq!(inputs["receptor"]["atoms"], 5 * 24);
     assert_eq!(inputs["ligand"]["atoms"], 5 * 6);
     assert_eq!(first["options"]["restraints"]["active_ligand"], "A:2,3,4-6");
-    succeed(
-        folder,
-        "dock --rerun run/run.json -o again --quiet".split_whitespace(),
-    );
-    succeed(
-        folder,
-        "export run --rank 1 -o out --quiet".split_whitespace(),
-    );
-    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
-    assert_eq!(bytes("run/poses.csv"), bytes("again/poses.csv"));
-    assert_eq!(bytes("run/top/rank_0001.pdb"), bytes("out/rank_0001.pdb"));
+    hold_repeated(folder, &first);
 
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder)
