@@ -8,7 +8,7 @@ use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::Precision;
-use knotdock::output::files::staging::{SetAside, Staging};
+use knotdock::output::files::staging::{SetAside, Staging, finish_interrupted};
 use knotdock::output::records::manifest::{
     EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
 };
@@ -118,6 +118,9 @@ impl Docking {
     /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
     /// same options.
     pub fn is_done(&self) -> bool {
+        if finish_interrupted(&self.directory).is_err() {
+            return false;
+        }
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
             return false;
         };
@@ -176,9 +179,10 @@ impl Docking {
         staging.write("poses.csv", |file| table.write_to(file))?;
         let top = table.rows().get(..output.write_top);
         let top = top.unwrap_or(table.rows());
-        let written = request
-            .bodies
-            .write(top, request.arrangement(), &staging.folder().join("top"))?;
+        let written =
+            request
+                .bodies
+                .write(top, request.arrangement(), &staging.folder().join("top"))?;
         let inputs = request.inputs(self.prepared.sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,

@@ -16,10 +16,10 @@ use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
-use crate::cli::docking::warn_set_aside;
 use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
 use crate::cli::arguments::options::{OfTradeoff, OptionArguments};
+use crate::cli::docking::warn_set_aside;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;

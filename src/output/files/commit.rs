@@ -34,6 +34,15 @@ pub struct SetAside {
     pub to: PathBuf,
 }
 
+/// A commit that is done.
+#[derive(Debug, Default)]
+pub(super) struct Committed {
+    /// Files of the user's that were in the way.
+    pub set_aside: Vec<SetAside>,
+    /// Whether the staging folder holds something of the older run, which the next run has to clear.
+    pub is_left: bool,
+}
+
 /// What a commit does, in paths from the directory.
 #[derive(Debug, Serialize, Deserialize)]
 struct Journal {
@@ -72,15 +81,15 @@ pub(super) fn commit(
     directory: &Path,
     own: OwnFiles,
     beside: bool,
-) -> Result<Vec<SetAside>, CommitError> {
+) -> Result<Committed, CommitError> {
     let new = staging.path().join(NEW);
     let failed = |source| CommitError::undone(directory, source);
     keep_modes(&new, directory).map_err(failed)?;
     disk::sync_tree(&new).map_err(failed)?;
     disk::sync(staging.path()).map_err(failed)?;
     if beside {
-        if let Some(done) = rename_whole(&new, directory).map_err(failed)? {
-            return Ok(done);
+        if rename_whole(&new, directory).map_err(failed)? {
+            return Ok(Committed::default());
         }
         if own.are_all_of(product, directory).map_err(failed)?
             && let Some(done) = exchange_whole(product, staging, directory).map_err(failed)?
@@ -93,7 +102,11 @@ pub(super) fn commit(
         placed: disk::tree(&new).map_err(failed)?,
     };
     write_journal(staging.path(), &journal).map_err(failed)?;
-    apply(staging.path(), directory, &journal, true)
+    let set_aside = apply(staging.path(), directory, &journal, true)?;
+    Ok(Committed {
+        set_aside,
+        is_left: false,
+    })
 }
 
 /// Finishes or undoes what an interrupted process left in a staging folder of a directory, and removes the folder.
@@ -115,7 +128,9 @@ pub(super) fn finish(
 
 /// Whether an interrupted commit is to be finished in a staging folder.
 pub(super) fn is_committing(staging: &StagingFolder) -> bool {
-    [JOURNAL, EXCHANGED].iter().any(|name| staging.path().join(name).exists())
+    [JOURNAL, EXCHANGED]
+        .iter()
+        .any(|name| staging.path().join(name).exists())
 }
 
 /// Gives the directory's mode, and those of files that are replaced, to the new ones.
@@ -134,17 +149,18 @@ fn keep_modes(new: &Path, directory: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Moves a new folder to where no directory is; `None` where there is one.
-fn rename_whole(new: &Path, directory: &Path) -> io::Result<Option<Vec<SetAside>>> {
+/// Moves a new folder to where no directory is; whether there was none.
+fn rename_whole(new: &Path, directory: &Path) -> io::Result<bool> {
     if directory.symlink_metadata().is_ok() {
-        return Ok(None);
+        return Ok(false);
     }
     match disk::rename_new(new, directory) {
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Ok(false),
         done => done?,
     }
-    disk::sync(parent(directory))?;
-    Ok(Some(Vec::new()))
+    // The run stands, whatever the device says of its folder.
+    let _ = disk::sync(parent(directory));
+    Ok(true)
 }
 
 /// Exchanges a new folder and a directory that holds only an older run; `None` where the system cannot.
@@ -152,7 +168,7 @@ fn exchange_whole(
     product: &Product,
     staging: &StagingFolder,
     directory: &Path,
-) -> io::Result<Option<Vec<SetAside>>> {
+) -> io::Result<Option<Committed>> {
     let (new, note) = (staging.path().join(NEW), staging.path().join(EXCHANGED));
     // From here on the folder may hold the older run, with what a user has just added to it.
     write_new(&note, |_| Ok(()))?;
@@ -161,9 +177,13 @@ fn exchange_whole(
         disk::remove_file(&note)?;
         return Ok(None);
     }
-    disk::sync(parent(directory))?;
-    // The new run stands. What is left of the older one is cleared by the next run, should this fail.
-    Ok(Some(retire(product, &new, directory).unwrap_or_default()))
+    // The new run stands. The older one goes only when the exchange is on the device. What is left of it is cleared
+    // by the next run, should this fail.
+    let retired = disk::sync(parent(directory)).and_then(|()| retire(product, &new, directory));
+    Ok(Some(Committed {
+        is_left: retired.is_err(),
+        set_aside: retired.unwrap_or_default(),
+    }))
 }
 
 /// Removes an older run from a folder. What is not its own goes to the directory. The record goes last, so that this
@@ -223,13 +243,19 @@ fn read_journal(staging: &Path) -> io::Result<Option<Journal>> {
 
 /// Moves of files that were made, and how to take them back.
 #[derive(Default)]
-struct Moves(Vec<(PathBuf, PathBuf)>);
+struct Moves {
+    done: Vec<(PathBuf, PathBuf)>,
+    /// Folders that were made for them.
+    made: Vec<PathBuf>,
+}
 
 impl Moves {
     fn make(&mut self, from: PathBuf, to: PathBuf) -> Result<(), (PathBuf, io::Error)> {
-        let made = disk::create_dir_all(parent(&to)).and_then(|_| disk::rename_new(&from, &to));
-        made.map_err(|source| (to.clone(), source))?;
-        self.0.push((from, to));
+        let failed = |source| (to.clone(), source);
+        self.made
+            .extend(disk::create_dir_all(parent(&to)).map_err(failed)?);
+        disk::rename_new(&from, &to).map_err(failed)?;
+        self.done.push((from, to));
         Ok(())
     }
 
@@ -237,7 +263,12 @@ impl Moves {
     fn undo(self) -> bool {
         let back = |(from, to): &(PathBuf, PathBuf)| disk::rename_new(to, from).is_ok();
         // No short cut: each that can be taken back is.
-        self.0.iter().rev().map(back).fold(true, |all, one| all && one)
+        let all = self.done.iter().rev().map(back);
+        let all = all.fold(true, |all, one| all && one);
+        for folder in self.made.iter().rev() {
+            let _ = disk::remove_dir(folder);
+        }
+        all
     }
 }
 

@@ -6,6 +6,7 @@ pub mod checksum;
 mod commit;
 pub mod complexes;
 mod disk;
+pub mod exported;
 mod fault;
 pub mod folder_lock;
 pub mod molecule_file;

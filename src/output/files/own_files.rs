@@ -62,7 +62,11 @@ pub(super) fn survey(product: &Product, directory: &Path) -> io::Result<Found> {
     {
         return Ok(Found::Foreign(name));
     }
-    let mut files = product.files.iter().map(|(name, _)| *name).chain([product.record]);
+    let mut files = product
+        .files
+        .iter()
+        .map(|(name, _)| *name)
+        .chain([product.record]);
     if let Some(name) = files.find(|name| !is_file(name)) {
         return Ok(Found::Foreign(name));
     }

@@ -40,7 +40,10 @@ impl Places<'_> {
         let unreadable = |source| FileError::unwritable(self.directory, source);
         let mut others = Others::default();
         let name = self.resolved.file_name().unwrap_or_default();
-        for (folder, target) in [(parent(self.resolved), name), (self.resolved, OsStr::new(""))] {
+        for (folder, target) in [
+            (parent(self.resolved), name),
+            (self.resolved, OsStr::new("")),
+        ] {
             let found = match StagingFolder::others(folder, target, own) {
                 // A folder above that is not there or may not be listed has none.
                 Err(error) if is_closed(&error) => continue,

@@ -50,9 +50,7 @@ impl Product {
             })
             .collect();
         match names.as_deref() {
-            Some([name]) => {
-                *name == self.record || self.files.iter().any(|(file, _)| file == name)
-            }
+            Some([name]) => *name == self.record || self.files.iter().any(|(file, _)| file == name),
             Some([folder, name]) => {
                 Some(*folder) == self.folder && (*name == EXPORTED || is_complex(name))
             }
@@ -63,7 +61,9 @@ impl Product {
 
 /// Whether a name is that of a complex of some rank.
 fn is_complex(name: &str) -> bool {
-    let rest = name.strip_prefix("rank_").and_then(|rest| rest.split_once('.'));
+    let rest = name
+        .strip_prefix("rank_")
+        .and_then(|rest| rest.split_once('.'));
     rest.is_some_and(|(rank, ending)| {
         !rank.is_empty()
             && rank.bytes().all(|digit| digit.is_ascii_digit())

@@ -12,8 +12,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::checksum::sha256_of_file;
-use super::commit::{self, NEW};
 pub use super::commit::SetAside;
+use super::commit::{self, NEW};
 use super::disk;
 use super::places::{Places, resolved};
 use super::product::{Product, RUN};
@@ -159,11 +159,13 @@ impl Staging {
         };
         let done = commit::commit(self.product, &staging, &self.resolved, own, self.beside);
         match done {
-            Ok(set_aside) => {
+            Ok(done) => {
                 self.made.clear();
                 // The run stands. What stays of the staging folder is cleared by the next run.
-                let _ = staging.remove();
-                Ok(set_aside)
+                if !done.is_left {
+                    let _ = staging.remove();
+                }
+                Ok(done.set_aside)
             }
             Err(error) if error.undone => {
                 self.staging = Some(staging);
@@ -193,11 +195,16 @@ impl Drop for Staging {
     }
 }
 
-/// Finishes a commit that an interrupted run left in a directory, so that the directory can be read.
+/// Finishes a commit that an interrupted run left in a directory, so that the directory can be read, and clears what
+/// else such runs left.
 ///
 /// # Errors
 /// [`StagingError::Interrupted`] when it cannot be finished.
 pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
+    let directory = match directory.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => directory,
+    };
     let Ok(resolved) = directory.canonicalize() else {
         return Ok(());
     };
@@ -209,9 +216,13 @@ pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
     let Ok(others) = places.others(None) else {
         return Ok(());
     };
-    let left = others.left.into_iter();
-    for staging in left.filter(commit::is_committing) {
-        places.finish(&RUN, staging)?;
+    for staging in others.left {
+        if commit::is_committing(&staging) {
+            places.finish(&RUN, staging)?;
+        } else {
+            // In a place that may not be written to it is in nobody's way.
+            let _ = staging.remove();
+        }
     }
     Ok(())
 }
@@ -224,14 +235,18 @@ mod tests {
     fn fill(staging: &Staging, text: &str) {
         disk::create_dir(&staging.folder().join("top")).unwrap();
         for name in ["top/rank_0001.pdb", "poses.csv"] {
-            staging.write(name, |file| file.write_all(text.as_bytes())).unwrap();
+            staging
+                .write(name, |file| file.write_all(text.as_bytes()))
+                .unwrap();
         }
         let record = serde_json::json!({
             "program": "knotdock",
             "files": staging.checksums().unwrap(),
         });
         let record = record.to_string();
-        staging.write("run.json", |file| file.write_all(record.as_bytes())).unwrap();
+        staging
+            .write("run.json", |file| file.write_all(record.as_bytes()))
+            .unwrap();
     }
 
     fn run(directory: &Path, text: &str) -> Vec<SetAside> {
@@ -257,7 +272,11 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let directory = root.path().join("all/runs/run");
         drop(Staging::open(&directory, false).unwrap());
-        assert_eq!(names(root.path()), [""; 0], "folders made for nothing must go");
+        assert_eq!(
+            names(root.path()),
+            [""; 0],
+            "folders made for nothing must go"
+        );
 
         run(&directory, "first");
         fs::write(directory.join("notes.txt"), "mine").unwrap();
@@ -302,9 +321,13 @@ mod tests {
     #[test]
     fn a_broken_run_is_replaced_on_request() {
         let root = tempfile::tempdir().unwrap();
-        for (number, torn) in ["", "\0\0\0", "{\"schema\": 2, \"program\": \"knotdock\", \"fi"]
-            .into_iter()
-            .enumerate()
+        for (number, torn) in [
+            "",
+            "\0\0\0",
+            "{\"schema\": 2, \"program\": \"knotdock\", \"fi",
+        ]
+        .into_iter()
+        .enumerate()
         {
             let directory = root.path().join(number.to_string());
             run(&directory, "first");
@@ -348,7 +371,11 @@ mod tests {
         fs::create_dir_all(at("thesis/top")).unwrap();
         fs::write(at("thesis/top/rank_0001.pdb"), "mine").unwrap();
         fs::create_dir(at("run")).unwrap();
-        for name in ["run/.partial", "run/.knotdock-abcdefghijkl", ".run.knotdock-abcdefghijkl"] {
+        for name in [
+            "run/.partial",
+            "run/.knotdock-abcdefghijkl",
+            ".run.knotdock-abcdefghijkl",
+        ] {
             symlink(at("thesis"), at(name)).unwrap();
         }
         run(&at("run"), "first");
@@ -363,7 +390,10 @@ mod tests {
         assert_eq!(names(&at("thesis")), ["top"]);
         // A directory named by a link is the one that it leads to.
         symlink(at("other"), at("link")).unwrap();
-        assert!(Staging::open(&at("link"), true).is_err(), "it leads nowhere");
+        assert!(
+            Staging::open(&at("link"), true).is_err(),
+            "it leads nowhere"
+        );
         fs::create_dir(at("other")).unwrap();
         run(&at("link"), "first");
         assert!(at("link").symlink_metadata().unwrap().is_symlink());

@@ -74,12 +74,14 @@ impl StagingFolder {
             let text = marker(target);
             file.write_all(text.as_bytes()).map(|()| file)
         });
-        let lock = lock.map(NewFile::into_file).and_then(|file| match file.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(io::ErrorKind::NotFound.into()),
-            Ok(()) if !is_at(&file, &path.join(LOCK)) => Err(io::ErrorKind::NotFound.into()),
-            // Where the file system knows no locks, nobody takes the folder for one that was left behind.
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
-        });
+        let lock = lock
+            .map(NewFile::into_file)
+            .and_then(|file| match file.try_lock() {
+                Err(TryLockError::WouldBlock) => Err(io::ErrorKind::NotFound.into()),
+                Ok(()) if !is_at(&file, &path.join(LOCK)) => Err(io::ErrorKind::NotFound.into()),
+                // Where the file system knows no locks, nobody takes the folder for one that was left behind.
+                Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+            });
         match lock {
             Ok(lock) => Ok(Self {
                 path,
@@ -170,9 +172,7 @@ impl StagingFolder {
             return Claim::NotOurs;
         };
         let locked = path.join(LOCK);
-        let is_file = locked
-            .symlink_metadata()
-            .is_ok_and(|found| found.is_file());
+        let is_file = locked.symlink_metadata().is_ok_and(|found| found.is_file());
         if !is_file {
             // Left between its making and its lock's.
             return if entries.is_empty() {
@@ -190,7 +190,8 @@ impl StagingFolder {
         if (&mut file).take(limit).read_to_end(&mut text).is_err() {
             return Claim::NotOurs;
         }
-        let is_marked = text == marker(target).as_bytes() || (text.is_empty() && entries.len() == 1);
+        let is_marked =
+            text == marker(target).as_bytes() || (text.is_empty() && entries.len() == 1);
         if !is_marked {
             return Claim::NotOurs;
         }
@@ -222,7 +223,11 @@ fn prefix(target: &OsStr) -> OsString {
         prefix.push(target);
     } else {
         // The marker has the whole name.
-        let start: String = target.to_string_lossy().chars().take(MAX_NAME / 4).collect();
+        let start: String = target
+            .to_string_lossy()
+            .chars()
+            .take(MAX_NAME / 4)
+            .collect();
         prefix.push(start);
     }
     prefix.push(".knotdock-");
@@ -309,7 +314,10 @@ mod tests {
         let second = root.path().join(".run.knotdock-mnopqrstuvwx");
         fs::create_dir(&second).unwrap();
         fs::write(second.join(LOCK), "").unwrap();
-        for folder in StagingFolder::others(root.path(), target(), None).unwrap().left {
+        for folder in StagingFolder::others(root.path(), target(), None)
+            .unwrap()
+            .left
+        {
             folder.remove().unwrap();
         }
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
@@ -321,7 +329,9 @@ mod tests {
         let long = OsString::from("n".repeat(255));
         let folder = StagingFolder::create(root.path(), &long).unwrap();
         drop(folder);
-        let left = StagingFolder::others(root.path(), &long, None).unwrap().left;
+        let left = StagingFolder::others(root.path(), &long, None)
+            .unwrap()
+            .left;
         assert_eq!(left.len(), 1);
     }
 }

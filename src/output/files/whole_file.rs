@@ -98,7 +98,10 @@ impl StagedFile {
     ///
     /// # Errors
     /// [`FileError::Unwritable`] when the file cannot be made, [`FileError::Write`] when writing to it fails.
-    pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Self, FileError> {
+    pub fn write(
+        path: &Path,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
         if is_stream(path) {
             write_in_place(path, fill)?;
             return Ok(Self {
@@ -106,8 +109,12 @@ impl StagedFile {
                 folder: None,
             });
         }
-        let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let unwritable = |source| FileError::unwritable(path, source);
+        let place = match path.symlink_metadata() {
+            // A link to nothing is an error, not a file to replace.
+            Ok(_) => path.canonicalize().map_err(unwritable)?,
+            Err(_) => path.to_owned(),
+        };
         let (parent, name) = (parent(&place), place.file_name().unwrap_or_default());
         // A folder that cannot be listed can still be written to.
         if let Ok(others) = StagingFolder::others(parent, name, None) {
@@ -276,7 +283,10 @@ mod tests {
         fs::write(&path, "old").unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         write_whole(&path, |file| file.write_all(b"new")).unwrap();
-        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(
+            fs::metadata(&path).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
     }
 
     /// Found by a review: a link was replaced by the file, even where it was `/dev/stdout`.
