@@ -29,8 +29,9 @@ fn inputs(folder: &Path) {
 /// The inputs, and a run of them by other options.
 fn with_a_run(folder: &Path) {
     inputs(folder);
-    let older =
-        format!("dock receptor.pdb ligand.pdb -o run --write-top 3 {SMALL} --per-rotation 2");
+    let older = format!(
+        "dock receptor.pdb ligand.pdb -o run --write-top 2 --no-cluster {SMALL} --per-rotation 2"
+    );
     run(folder, &older);
 }
 
@@ -94,10 +95,10 @@ fn a_run_into_the_current_folder() {
 
 #[test]
 fn complexes_of_a_run() {
-    Scenario::new(with_a_run, "export run --rank 1-5 --quiet")
+    Scenario::new(with_a_run, "export run --rank 1-4 --quiet")
         .additive()
         .check();
-    Scenario::new(with_a_run, "export run --rank 4,5 -o out/complexes --quiet")
+    Scenario::new(with_a_run, "export run --rank 3,4 -o out/complexes --quiet")
         .additive()
         .check();
 }
