@@ -14,4 +14,5 @@ pub mod progress;
 pub mod rank;
 pub mod score;
 pub mod search;
+pub mod threads;
 pub mod tradeoff;

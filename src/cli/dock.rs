@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, Args, Command, Id};
 use knotdock::options::values::{above_zero, duration};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
+use knotdock::threads;
 use knotdock::tradeoff::choice::Wanted;
 
 use crate::cli::arguments::machine::settled;
@@ -107,10 +108,26 @@ impl Dock {
         Request::read([receptor, ligand], self.native.read()?, given)
     }
 
-    /// Reads and plans.
-    pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
+    /// Reads and plans, and hands the docking on to `then`: all on the threads that the options name.
+    pub fn prepared<T: Send>(
+        self,
+        console: Console,
+        then: impl FnOnce(Docking) -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
         let clock = Clock::start();
         let given = self.options.given()?;
+        threads::on(given.options.machine.threads.count(), || {
+            then(self.prepare(given, clock, console)?)
+        })?
+    }
+
+    /// Reads and plans.
+    fn prepare(
+        self,
+        given: GivenOptions,
+        clock: Clock,
+        console: Console,
+    ) -> Result<Docking, Failure> {
         let machine = settled(&given.options.machine);
         let mut request = match &self.rerun {
             Some(path) => Request::recorded(path, console)?,
@@ -130,7 +147,7 @@ impl Dock {
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let done = self.prepare(console)?.run(console)?;
+        let done = self.prepared(console, |docking| docking.run(console))?;
         console.result(&done)?;
         Ok(())
     }

@@ -4,10 +4,12 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::threads;
 use serde_json::json;
 
 use crate::cli::arguments::output_file::check_replaced;
@@ -31,11 +33,18 @@ pub struct Export {
     /// Replace complexes that are there already.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 impl Export {
     /// Writes the complexes.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.export(console))?
+    }
+
+    /// Writes them on the threads of the caller.
+    fn export(self, console: Console) -> Result<(), Failure> {
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         let table_path = self.run.join("poses.csv");

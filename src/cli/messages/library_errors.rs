@@ -14,6 +14,7 @@ use knotdock::output::records::input_record::InputRecordError;
 use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
+use knotdock::threads::ThreadsError;
 use knotdock_structures::mesh::MeshError;
 use knotdock_structures::molecule::ReadError;
 
@@ -134,6 +135,12 @@ impl From<PseudoAtomError> for Failure {
             }
             PseudoAtomError::File(error) => error.into(),
         }
+    }
+}
+
+impl From<ThreadsError> for Failure {
+    fn from(error: ThreadsError) -> Self {
+        Self::other(&error).remedy(error.remedy())
     }
 }
 
