@@ -81,6 +81,9 @@ impl From<InputRecordError> for Failure {
             InputRecordError::Read { .. } => {
                 "put the file where the run found it, or beside the directory of the run"
             }
+            InputRecordError::Stream { .. } => {
+                "dock again from a file, or put what was read under that name beside the directory of the run"
+            }
             InputRecordError::Changed { .. } => {
                 "put back the file that the run was made from, or dock again"
             }

@@ -1,9 +1,10 @@
 //! Input files as a run records them: where they are and how to know them again.
 
-use std::fs;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use crate::output::files::whole_file::is_stream;
 use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -30,6 +31,12 @@ pub enum InputRecordError {
         /// The system's message.
         source: io::Error,
     },
+    /// It is no file, and cannot be read a second time.
+    #[error("{} is no file, but a pipe, a device or a handle of the process, which cannot be read again", path.display())]
+    Stream {
+        /// Its name.
+        path: PathBuf,
+    },
     /// The file is not the one that the run read.
     #[error("{} has changed since the run: its SHA-256 is {found}, the run's was {expected}", path.display())]
     Changed {
@@ -46,7 +53,7 @@ impl InputRecordError {
     /// The file in question.
     pub fn path(&self) -> &Path {
         match self {
-            Self::Read { path, .. } | Self::Changed { path, .. } => path,
+            Self::Read { path, .. } | Self::Stream { path } | Self::Changed { path, .. } => path,
         }
     }
 }
@@ -100,11 +107,16 @@ impl InputRecord {
 
     /// Checks that a file is the one recorded.
     fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
-        let bytes = fs::read(path).map_err(|source| InputRecordError::Read {
+        if is_stream(path) && !path.is_dir() {
+            // Opened, a pipe would wait for whoever writes to it.
+            return Err(InputRecordError::Stream {
+                path: path.to_owned(),
+            });
+        }
+        let found = sha256_of(path).map_err(|source| InputRecordError::Read {
             path: path.to_owned(),
             source,
         })?;
-        let found = sha256(&bytes);
         if found == self.sha256 {
             Ok(())
         } else {
@@ -117,9 +129,35 @@ impl InputRecord {
     }
 }
 
+/// Most bytes of an input: no reader of structures or meshes takes more.
+const MAX_INPUT: u64 = 4 << 30;
+
+/// SHA-256 of a file, in hexadecimal.
+fn sha256_of(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    if file.metadata()?.len() > MAX_INPUT {
+        let message =
+            format!("it has more than {MAX_INPUT} bytes, the most that are read of an input");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    let mut digest = Sha256::new();
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part) {
+            Ok(0) => return Ok(hexadecimal(&digest.finalize())),
+            Ok(length) => digest.update(&part[..length]),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
 /// SHA-256 in hexadecimal.
 fn sha256(bytes: &[u8]) -> String {
-    let digits = Sha256::digest(bytes);
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(digits: &[u8]) -> String {
     digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -151,6 +189,7 @@ impl NativeRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_changed_input_is_noticed() {

@@ -1,13 +1,12 @@
 //! The results of a batch: one row a pair, with the best row of each pair's own table.
 
 use std::collections::HashSet;
-use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use csv::StringRecord;
 use serde_json::Value;
 
+use crate::bounded_read::{MAX_RECORD, MAX_TABLE, read_bounded_file};
 use crate::output::tables::fields::number;
 
 use crate::output::files::whole_file::{FileError, write_whole};
@@ -68,7 +67,8 @@ impl RunSummary {
                 .as_str()
                 .is_some_and(|class| class != "incorrect")
         };
-        let record = fs::read(directory.join("run.json")).unwrap_or_default();
+        let record = read_bounded_file(&directory.join("run.json"), MAX_RECORD);
+        let record = record.unwrap_or_default();
         let record: Value = serde_json::from_slice(&record).unwrap_or_default();
         Ok(Self {
             counts: ["poses", "clusters"].map(|name| record["results"][name].as_u64()),
@@ -102,12 +102,12 @@ fn header() -> Vec<&'static str> {
 
 /// Whether a file may be replaced by a batch's results: there is none, or it has their header.
 pub fn is_ours(path: &Path) -> bool {
-    let Ok(file) = fs::File::open(path) else {
+    let Ok(bytes) = read_bounded_file(path, MAX_TABLE) else {
         return !path.exists();
     };
-    let mut line = String::new();
-    // A file that is not text is not ours.
-    BufReader::new(file).read_line(&mut line).is_ok() && line.trim_end() == header().join(",")
+    let line = bytes.split(|&byte| byte == b'\n').next();
+    let line = line.unwrap_or_default().trim_ascii_end();
+    line == header().join(",").as_bytes()
 }
 
 /// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they
@@ -121,9 +121,10 @@ pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRec
     }
     // Letters of either case are one where file systems think so.
     let own: HashSet<String> = pairs.iter().map(|pair| pair.name.to_lowercase()).collect();
-    let mut rows: Vec<StringRecord> = csv::Reader::from_path(path)?
-        .into_records()
-        .collect::<Result<_, _>>()?;
+    let mut rows: Vec<StringRecord> =
+        csv::Reader::from_reader(read_bounded_file(path, MAX_TABLE)?.as_slice())
+            .into_records()
+            .collect::<Result<_, _>>()?;
     rows.retain(|row| {
         let name = row.get(0).unwrap_or_default();
         !own.contains(&name.to_lowercase())
@@ -173,6 +174,7 @@ pub fn write_results(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_run_is_summed_up_and_what_is_missing_stays_empty() {
