@@ -16,15 +16,26 @@ pub const MAX_TABLE: u64 = 64 << 20;
 /// Most bytes of a `run.json`, which lists what was left out of the inputs.
 pub const MAX_RECORD: u64 = 256 << 20;
 
-/// Most bytes of a table of poses, about five million rows.
-pub const MAX_POSES: u64 = 1 << 30;
+/// Most bytes of a table of poses: ten million rows, the most that a run keeps.
+pub const MAX_POSES: u64 = 4 << 30;
 
-/// Reads a file of at most `limit` bytes, or a pipe to its end, which may come as late.
+/// Most bytes of a pipe or a device, whose size is not known before it is read.
+const MAX_PIPED: u64 = 256 << 20;
+
+/// Reads a file of at most `limit` bytes, or a pipe to its end.
 ///
 /// # Errors
 /// What the system reports, and [`ErrorKind::FileTooLarge`] with the limit.
 pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    bounded(File::open(path)?, limit)
+    let file = File::open(path)?;
+    let metadata = file.metadata()?;
+    if !metadata.is_file() {
+        return bounded(file, limit.min(MAX_PIPED));
+    }
+    if metadata.len() > limit {
+        return Err(too_large(limit));
+    }
+    bounded(file, limit)
 }
 
 /// As [`read_bounded`], of what lies in a folder where the program expects a file: a pipe or a device there is not
@@ -60,12 +71,16 @@ fn bounded(source: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        return Err(io::Error::new(
-            ErrorKind::FileTooLarge,
-            format!("it has more than {limit} bytes, the most that are read of such a file"),
-        ));
+        return Err(too_large(limit));
     }
     Ok(bytes)
+}
+
+fn too_large(limit: u64) -> io::Error {
+    io::Error::new(
+        ErrorKind::FileTooLarge,
+        format!("it has more than {limit} bytes, the most that are read of it"),
+    )
 }
 
 #[cfg(test)]

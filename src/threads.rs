@@ -7,7 +7,7 @@
 /// It takes memory only as far as it is used.
 const STACK: usize = 8 << 20;
 
-/// Why work was not begun: its threads could not be started.
+/// Why work was not done: its threads could not be started.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the system did not start {}: {message}", counted(*count))]
 pub struct ThreadsError {
