@@ -21,7 +21,8 @@ static JSON: AtomicBool = AtomicBool::new(false);
 /// Whether a failure is being reported: by the first thread that has no memory.
 static REPORTED: AtomicBool = AtomicBool::new(false);
 
-/// What to do about a lack of memory.
+/// What went wrong, and what to do about it.
+const MESSAGE: &str = "the system has no memory left";
 const REMEDY: &str = "allow the program more memory (`ulimit -v`, or the limit of its container), or less to its work: \
                       by --memory or a coarser --resolution, of a sampled mesh by a coarser --grid";
 
@@ -91,7 +92,7 @@ fn out_of_memory(bytes: usize) -> ! {
         let object = filled(&mut text, |text| {
             writeln!(
                 text,
-                r#"{{"error":{{"file":null,"line":null,"message":"the system has no memory left: {bytes} bytes were refused","remedy":"{REMEDY}"}}}}"#
+                r#"{{"error":{{"file":null,"line":null,"message":"{MESSAGE}: {bytes} bytes were refused","remedy":"{REMEDY}"}}}}"#
             )
         });
         write_past_buffers(1, object);
@@ -99,7 +100,7 @@ fn out_of_memory(bytes: usize) -> ! {
     let lines = filled(&mut text, |text| {
         writeln!(
             text,
-            "error: the system has no memory left: {bytes} bytes were refused\n  help: {REMEDY}"
+            "error: {MESSAGE}: {bytes} bytes were refused\n  help: {REMEDY}"
         )
     });
     write_past_buffers(2, lines);
@@ -152,11 +153,11 @@ mod tests {
 
     /// The object is JSON as it stands, for it is written without the crate that makes other objects.
     #[test]
-    fn the_remedy_needs_no_escapes() {
-        assert_eq!(
-            serde_json::to_string(REMEDY).unwrap(),
-            format!("\"{REMEDY}\"")
-        );
+    fn the_words_need_no_escapes() {
+        for words in [MESSAGE, REMEDY] {
+            let escaped = serde_json::to_string(words).unwrap();
+            assert_eq!(escaped, format!("\"{words}\""));
+        }
         assert!(2 * REMEDY.len() < 1024 - 200);
     }
 

@@ -19,7 +19,7 @@ use crate::cli::messages::failure::Failure;
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
 /// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input
-/// and options give the same bytes for any number of threads.
+/// and options give the same bytes for any number of threads, except with --budget.
 #[derive(Args, Debug)]
 pub struct Dock {
     /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
@@ -51,7 +51,8 @@ pub struct Dock {
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
     /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search
-    /// stops earlier. run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast
+    /// stops earlier, so that the same call need not give the same bytes. run.json records where: `--rerun` of it gives the
+    /// same bytes. `knotdock calibrate` measures how fast
     /// this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,

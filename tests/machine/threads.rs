@@ -7,13 +7,13 @@ use std::process::Stdio;
 
 use assert_cmd::cargo::cargo_bin;
 
-use crate::place::{Place, error};
+use crate::place::{Place, error, not_run};
 
 /// Commands that compute, each into a place of its own.
 const COMMANDS: [&str; 8] = [
     "sample box.obj --grid 2^12 --weights fitted --picture balls.svg --force",
     "dock receptor.pdb ligand.pdb --rotations 16 --refine 3 --write-top 1 -o run --force",
-    "dock box.obj cube.obj --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
+    "dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
     "export parts --rank 1 -o copies --force",
     "evaluate run --native-receptor receptor.pdb --native-ligand ligand.pdb",
     "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --resolution 9",
@@ -85,8 +85,8 @@ fn no_command_starts_other_threads() {
     match traced("--version") {
         Ok(output) if output.status.success() => {}
         _ => {
-            println!("NOT RUN: there is no strace here, or it may trace nothing");
-            return;
+            let reason = "there is no strace here, or it may trace nothing";
+            return not_run("no_command_starts_other_threads", reason);
         }
     }
     for threads in [1, 3] {
@@ -114,7 +114,7 @@ fn the_environment_neither_harms_nor_changes_a_result() {
     let commands = [
         "sample box.obj --grid 2^12 --weights fitted -o knots.csv --force",
         "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --resolution 9",
-        "dock box.obj cube.obj --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
+        "dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
     ];
     let mut results: Vec<Vec<Vec<u8>>> = Vec::new();
     for (name, value) in [
@@ -180,11 +180,17 @@ fn an_account_without_processes_left_can_work_on_one_thread() {
     // The superuser's processes are not limited. Another account has to reach the folder and the program.
     let is_root = place.command("id").arg("-u").output().unwrap().stdout == b"0\n";
     let limited = |words: &str| {
-        let mut command = place.command(if is_root { "setpriv" } else { "sh" });
+        let mut command = place.command(if is_root { "setpriv" } else { "prlimit" });
         if is_root {
-            command.args(["--reuid=65534", "--regid=65534", "--clear-groups", "sh"]);
+            command.args([
+                "--reuid=65534",
+                "--regid=65534",
+                "--clear-groups",
+                "prlimit",
+            ]);
         }
-        command.args(["-c", "ulimit -u 1; exec \"$@\"", "sh", "./program"]);
+        // Not every shell knows `ulimit -u`.
+        command.args(["--nproc=1", "./program"]);
         command.args(words.split_whitespace()).output()
     };
     fs::copy(cargo_bin!("knotdock"), place.path("program")).unwrap();
@@ -197,8 +203,11 @@ fn an_account_without_processes_left_can_work_on_one_thread() {
     match limited("--version") {
         Ok(output) if output.status.success() => {}
         _ => {
-            println!("NOT RUN: no account with a limit on its processes can be taken here");
-            return;
+            let reason = "no account with a limit on its processes can be taken here";
+            return not_run(
+                "an_account_without_processes_left_can_work_on_one_thread",
+                reason,
+            );
         }
     }
     let sample = "sample box.obj --grid 2^12 --json";
