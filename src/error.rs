@@ -1,5 +1,6 @@
 //! Why a search was refused or failed, and what to do about it.
 
+use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_scoring::terms::effect::Effect;
@@ -67,8 +68,8 @@ pub enum SearchError {
         allowed: u64,
     },
     /// The threads could not be started.
-    #[error("threads could not be started: {0}")]
-    Threads(String),
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
     /// The graphics processor cannot be used.
     #[error("--engine gpu: {0}")]
     Graphics(String),
@@ -127,7 +128,7 @@ impl SearchError {
                 "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
                     .to_owned()
             }
-            Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::Threads(error) => error.remedy().to_owned(),
             Self::Effect {
                 effect: Effect::Restraint,
                 ..

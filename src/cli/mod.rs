@@ -24,9 +24,12 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use knotdock::options::PotentialFileError;
 use knotdock::options::text::first_paragraph;
+use knotdock::threads;
 use messages::console::Console;
 use messages::failure::Failure;
 use messages::suggestions;
+
+use crate::system_limits::report_as_json;
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,
 /// and samples meshes.
@@ -63,6 +66,10 @@ fn version() -> &'static str {
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
+    let json = wants_json(&arguments);
+    if json {
+        report_as_json();
+    }
     let parsed = Cli::command()
         .mut_subcommands(with_negative_numbers)
         .mut_subcommand("dock", dock::refusing_recorded)
@@ -71,9 +78,13 @@ pub fn main() -> ExitCode {
         .map_err(suggestions::explained);
     let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error, &arguments),
+        Err(error) => return refuse(&error, json),
     };
     let console = Console::from(cli.program);
+    if let Err(error) = threads::stay_on_main() {
+        console.fail(&error.into());
+        return ExitCode::FAILURE;
+    }
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => match command.run(console) {
@@ -98,16 +109,20 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Whether a JSON object is wanted, as far as can be said of a command line that may be wrong.
+fn wants_json(arguments: &[OsString]) -> bool {
+    arguments
+        .iter()
+        .take_while(|argument| *argument != "--")
+        .any(|argument| argument == "--json")
+}
+
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
-fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     let for_information = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     );
-    let json = arguments
-        .iter()
-        .take_while(|argument| *argument != "--")
-        .any(|argument| argument == "--json");
     let console = Console {
         json,
         ..Console::default()

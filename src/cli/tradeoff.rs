@@ -11,6 +11,7 @@ use knotdock::output::files::staging::Staging;
 use knotdock::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::tables::report::align;
 use knotdock::progress::Progress;
+use knotdock::threads;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
@@ -18,7 +19,7 @@ use serde_json::json;
 
 use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
-use crate::cli::arguments::options::{OfTradeoff, OptionArguments};
+use crate::cli::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::cli::docking::warn_set_aside;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
@@ -68,6 +69,13 @@ impl TradeoffCommand {
                     .remedy("leave `symmetry` out of the file of options"),
             );
         }
+        threads::on(given.options.machine.threads.count(), || {
+            self.sweep(given, console)
+        })?
+    }
+
+    /// Sweeps on the threads of the caller.
+    fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Failure> {
         let pair = [&self.receptor, &self.ligand];
         let mut request = Request::read(pair, self.native.read()?, given)?;
         check(&request, self.parameters.as_deref().unwrap_or_default())?;

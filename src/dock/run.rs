@@ -18,6 +18,7 @@ use crate::search::deadline::Deadline;
 use crate::search::scan::{Scanned, scan};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
+use crate::threads;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::peaks::Peak;
@@ -40,6 +41,9 @@ const REFINED_TOGETHER: usize = 4;
 
 /// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
 /// of a molecule, the centres of the balls of a mesh.
+///
+/// Runs on [`DockPlan::in_flight`] threads: those of the caller's rayon pool if it has so many, else a pool of its own,
+/// and never the global pool ([`threads::on`]). Planning and sampling run in the caller's pool.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
@@ -66,14 +70,10 @@ pub fn dock_until(
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(plan.in_flight())
-        .build()
-        .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| match plan.options.search.precision {
+    threads::on(plan.in_flight(), || match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
-    })
+    })?
 }
 
 /// The run, with the fast path in a floating-point type.

@@ -6,6 +6,8 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -99,9 +101,11 @@ impl Console {
         ) {
             bar.set_style(style.progress_chars("=> "));
         }
+        let shown = !self.quiet && io::stderr().is_terminal();
         ProgressLine {
+            ticker: shown.then(|| Ticker::start(&bar)).flatten(),
             bar,
-            shown: !self.quiet && io::stderr().is_terminal(),
+            shown,
         }
     }
 }
@@ -126,6 +130,52 @@ fn write_line(stream: &mut dyn Write, text: &str) {
 pub struct ProgressLine {
     bar: ProgressBar,
     shown: bool,
+    ticker: Option<Ticker>,
+}
+
+/// Time between two drawings of a line whose bar stands still.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A thread that draws the line anew, so that its time goes on where nothing else does.
+///
+/// indicatif has one, too, and panics where the thread cannot be started.
+struct Ticker {
+    /// Ends the thread where it is dropped.
+    running: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Ticker {
+    /// Starts it; `None` where the system has no thread for it: the line then moves with the work alone.
+    fn start(bar: &ProgressBar) -> Option<Self> {
+        let (running, is_running) = channel::<()>();
+        let bar = bar.clone();
+        let ticks = move || {
+            while is_running.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                if !bar.is_finished() {
+                    bar.tick();
+                }
+            }
+        };
+        let thread = Builder::new()
+            .name("progress".to_owned())
+            .spawn(ticks)
+            .ok()?;
+        Some(Self {
+            running: Some(running),
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Ticker {
+    fn drop(&mut self) {
+        self.running.take();
+        if let Some(thread) = self.thread.take() {
+            // It has nothing to report, and its end is all that is waited for.
+            let _ = thread.join();
+        }
+    }
 }
 
 impl ProgressLine {
@@ -145,7 +195,6 @@ impl Progress for ProgressLine {
         self.bar.set_message(name.to_owned());
         if self.shown {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
-            self.bar.enable_steady_tick(Duration::from_millis(200));
         }
     }
 
@@ -156,6 +205,7 @@ impl Progress for ProgressLine {
 
 impl Drop for ProgressLine {
     fn drop(&mut self) {
+        self.ticker.take();
         self.bar.finish_and_clear();
     }
 }

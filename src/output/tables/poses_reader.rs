@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 
+use crate::bounded_read::{MAX_POSES, read_bounded};
 use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::poses::{PoseRow, PoseTable};
 
@@ -108,7 +109,7 @@ impl PoseTable {
     /// # Errors
     /// [`PoseTableError`], with file and line.
     pub fn read(path: &Path) -> Result<Self, PoseTableError> {
-        let bytes = std::fs::read(path).map_err(|source| PoseTableError::Open {
+        let bytes = read_bounded(path, MAX_POSES).map_err(|source| PoseTableError::Open {
             path: path.to_owned(),
             source,
         })?;
