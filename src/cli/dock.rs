@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Arg, Args, Command, Id};
+use knotdock::dock::memory::process;
 use knotdock::options::values::{above_zero, duration};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::tradeoff::choice::Wanted;
@@ -110,6 +111,7 @@ impl Dock {
     /// Reads and plans.
     pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
         let clock = Clock::start();
+        process::begin();
         let given = self.options.given()?;
         let machine = settled(&given.options.machine);
         let mut request = match &self.rerun {
