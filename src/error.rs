@@ -41,10 +41,10 @@ pub enum SearchError {
         /// What it lacks.
         reason: String,
     },
-    /// Not even one rotation in flight fits into the memory allowed.
-    #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
+    /// Even with one rotation in flight the run does not fit into the memory allowed.
+    #[error("the run needs {needed} bytes of memory, and {allowed} are allowed")]
     Memory {
-        /// Bytes needed.
+        /// Bytes that suffice.
         needed: u64,
         /// Bytes allowed.
         allowed: u64,
@@ -97,6 +97,7 @@ impl SearchError {
                 "give the option a value in its range".to_owned()
             }
             Self::Memory {
+                needed,
                 spacing: Some(spacing),
                 resolution,
                 pass_length,
@@ -110,19 +111,21 @@ impl SearchError {
                     with("--resolution", resolution),
                     with("--pass-length", pass_length),
                 );
+                let needed = as_size(*needed);
                 let coarser = format!("--spacing {spacing}{resolution}{pass_length}");
                 if *shows_little {
                     format!(
-                        "allow more with --memory, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
+                        "allow more with --memory {needed}, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
                     )
                 } else {
                     format!(
-                        "use {coarser}, allow more with --memory, or check for atoms or parts far from the rest"
+                        "use {coarser}, allow more with --memory {needed}, or check for atoms or parts far from the rest"
                     )
                 }
             }
-            Self::Memory { .. } => {
-                "allow more with --memory, or check for atoms or parts far from the rest".to_owned()
+            Self::Memory { needed, .. } => {
+                let needed = as_size(*needed);
+                format!("allow more with --memory {needed}, or check for atoms or parts far from the rest")
             }
             Self::Graphics(_) => {
                 "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
@@ -150,5 +153,13 @@ impl SearchError {
             Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
+    }
+}
+
+/// A size as `--memory` takes it.
+fn as_size(bytes: u64) -> String {
+    match bytes % 1_000_000 {
+        0 => format!("{}M", bytes / 1_000_000),
+        _ => bytes.to_string(),
     }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Arg, Args, Command, Id};
+use knotdock::dock::memory::process;
 use knotdock::options::values::{above_zero, duration};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::threads;
@@ -116,6 +117,7 @@ impl Dock {
         then: impl FnOnce(Docking) -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
         let clock = Clock::start();
+        process::begin();
         let given = self.options.given()?;
         threads::on(given.options.machine.threads.count(), || {
             then(self.prepare(given, clock, console)?)

@@ -10,3 +10,4 @@ pub mod poses;
 pub mod poses_reader;
 pub mod quality;
 pub mod report;
+pub mod run_table;
