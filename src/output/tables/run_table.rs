@@ -178,7 +178,8 @@ mod tests {
             pose([0.1, 0.2, -0.3, 0.4], [1e6 + 0.1, -1.0 / 3.0, 5e-324]),
             pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
         ];
-        RunTable::new(&poses, false, &[]).write(&path).unwrap();
+        let mut file = std::fs::File::create(&path).unwrap();
+        RunTable::new(&poses, false, &[]).write_to(&mut file).unwrap();
         let read = PoseTable::read(&path).unwrap();
         for (row, expected) in read.rows().iter().zip(&poses) {
             assert_eq!(row.pose.translation, expected.pose.translation);
