@@ -1,5 +1,6 @@
 //! Why a search was refused or failed, and what to do about it.
 
+use crate::dock::memory::size::as_size;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_scoring::terms::effect::Effect;
@@ -152,13 +153,5 @@ impl SearchError {
             Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
-    }
-}
-
-/// A size as `--memory` takes it.
-fn as_size(bytes: u64) -> String {
-    match bytes % 1_000_000 {
-        0 => format!("{}M", bytes / 1_000_000),
-        _ => bytes.to_string(),
     }
 }

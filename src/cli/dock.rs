@@ -112,13 +112,13 @@ impl Dock {
     pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
         let clock = Clock::start();
         process::begin();
-        let given = self.options.given()?;
-        let machine = settled(&given.options.machine);
-        let mut request = match &self.rerun {
-            Some(path) => Request::recorded(path, console)?,
+        let mut given = self.options.given()?;
+        // Known before anything is read, for reading takes memory, too.
+        given.options.machine = settled(&given.options.machine);
+        let request = match &self.rerun {
+            Some(path) => Request::recorded(path, given.options.machine, console)?,
             None => self.request(given)?,
         };
-        request.options.machine = machine;
         let directory = self.output.unwrap_or_else(|| request.directory());
         let wanted = Wanted {
             accuracy: self.accuracy,
