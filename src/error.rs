@@ -1,6 +1,7 @@
 //! Why a search was refused or failed, and what to do about it.
 
 use crate::threads::ThreadsError;
+use crate::dock::memory::size::as_size;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_scoring::terms::effect::Effect;
@@ -153,13 +154,5 @@ impl SearchError {
             Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
-    }
-}
-
-/// A size as `--memory` takes it.
-fn as_size(bytes: u64) -> String {
-    match bytes % 1_000_000 {
-        0 => format!("{}M", bytes / 1_000_000),
-        _ => bytes.to_string(),
     }
 }

@@ -118,7 +118,9 @@ impl Dock {
     ) -> Result<T, Failure> {
         let clock = Clock::start();
         process::begin();
-        let given = self.options.given()?;
+        let mut given = self.options.given()?;
+        // Known before anything is read, for reading takes memory, too.
+        given.options.machine = settled(&given.options.machine);
         threads::on(given.options.machine.threads.count(), || {
             then(self.prepare(given, clock, console)?)
         })?
@@ -131,12 +133,10 @@ impl Dock {
         clock: Clock,
         console: Console,
     ) -> Result<Docking, Failure> {
-        let machine = settled(&given.options.machine);
-        let mut request = match &self.rerun {
-            Some(path) => Request::recorded(path, console)?,
+        let request = match &self.rerun {
+            Some(path) => Request::recorded(path, given.options.machine, console)?,
             None => self.request(given)?,
         };
-        request.options.machine = machine;
         let directory = self.output.unwrap_or_else(|| request.directory());
         let wanted = Wanted {
             accuracy: self.accuracy,

@@ -62,7 +62,8 @@ fn parameters_help() -> String {
 impl TradeoffCommand {
     /// Sweeps.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let given = self.options.given()?;
+        let mut given = self.options.given()?;
+        given.options.machine = settled(&given.options.machine);
         if given.options.search.symmetry.is_some() {
             return Err(
                 Failure::input("settings of a search for rings are not swept")
@@ -80,7 +81,6 @@ impl TradeoffCommand {
         let mut request = Request::read(pair, self.native.read()?, given)?;
         check(&request, self.parameters.as_deref().unwrap_or_default())?;
         let parameters = self.parameters.unwrap_or_else(Parameter::all);
-        request.options.machine = settled(&request.options.machine);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))

@@ -1,6 +1,7 @@
 //! Memory of a run: what it takes, how many rotations fit at once, and the finest grid that would fit.
 
 pub mod process;
+pub mod size;
 pub mod stages;
 
 use crate::dock::scene::Scene;
@@ -8,13 +9,11 @@ use crate::error::SearchError;
 use crate::options::{DockOptions, EngineChoice, KernelOptions};
 use crate::pose_space::PoseSpace;
 use knotdock_scoring::engine::Plan;
+use size::named;
 use stages::{AtOnce, MemoryStage, Sizes};
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
 const GRAPHICS_BYTES: u64 = 512 << 20;
-
-/// Steps in which a size is named that would do, and what is added for the process's own size to vary, in bytes.
-const NAMED_STEP: u64 = 1_000_000;
 
 /// Memory of a run, in bytes.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,11 +119,6 @@ impl MemoryPlan {
     pub fn largest(&self) -> Option<MemoryStage> {
         self.sizes.largest(self.at_once)
     }
-}
-
-/// A limit to name for what is needed: whole megabytes, with room for what the process itself takes to vary.
-pub fn named(needed: u64) -> u64 {
-    (needed + NAMED_STEP / 2).next_multiple_of(NAMED_STEP)
 }
 
 /// The error of a run that does not fit, with the finest grid or resolution that would.

@@ -5,7 +5,7 @@
 
 use crate::dock::memory::process;
 use crate::dock::outcome::RankedPose;
-use crate::dock::scene::Scene;
+use crate::dock::scene::{LengthUnit, Scene};
 use crate::options::{DockOptions, Precision};
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::PoseSpace;
@@ -32,16 +32,19 @@ const PROGRAM: u64 = 16 << 20;
 const ATOM_READ: u64 = 1 << 10;
 /// Bytes of the program's code and tables that are first used after planning.
 const CODE: u64 = 3 << 20;
-/// Bytes of an atom in the exact score and the pose terms.
-const ATOM_SCORED: u64 = 1 << 11;
+/// Bytes of a ball in the exact score.
+const BALL_SCORED: u64 = 1 << 8;
+/// Bytes of an atom in the pose terms, and of their tables.
+const ATOM_SCORED: u64 = 640;
+const TERM_TABLES: u64 = 2 << 20;
 /// Bytes of an atom in a complex that is being written, with its line.
 const ATOM_WRITTEN: u64 = 1 << 8;
 /// Bytes of a row's values against a known complex.
 const QUALITY: u64 = 512;
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.
-const THREAD: u64 = 1 << 19;
-/// Share of a stage's memory that the allocator loses between buffers.
-const ALLOCATOR: u64 = 16;
+const THREAD: u64 = 1 << 20;
+/// One part in so many of a stage's memory is lost between buffers: measured, 6% to 19% of what is alive on one thread.
+const ALLOCATOR: u64 = 6;
 
 /// A part of the memory of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -97,6 +100,8 @@ pub(super) struct Sizes {
     rank: usize,
     potential_grid: u64,
     atoms: u64,
+    /// Whether atoms are scored by pose terms.
+    is_of_molecules: bool,
     /// Rotations of the set, and of the finer one.
     rotations: [u64; 2],
     /// Rotations of a group.
@@ -140,6 +145,7 @@ impl Sizes {
             },
             engine: sizes,
             atoms,
+            is_of_molecules: scene.unit == LengthUnit::Angstrom,
             rotations: [rotations, finer],
             images: if space.is_on_grid() { 4 } else { 1 },
             searched_finer: (search.fine_share * finer as f64).ceil() as u64,
@@ -254,8 +260,14 @@ impl Sizes {
         THREAD * at_once.rotations as u64
     }
 
+    /// The exact score and the pose terms.
     fn scorers(&self) -> u64 {
-        ATOM_SCORED * self.atoms
+        let terms = if self.is_of_molecules {
+            TERM_TABLES + ATOM_SCORED * self.atoms
+        } else {
+            0
+        };
+        terms + BALL_SCORED * self.atoms
     }
 
     /// The receptor's spectra, while they are needed.
