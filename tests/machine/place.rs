@@ -11,7 +11,7 @@ use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
 
 /// After which a call that waits for ever is ended: a guard, no measurement.
-const HANGS: Duration = Duration::from_secs(600);
+const HANGS: Duration = Duration::from_secs(300);
 
 /// A folder with a small pair of molecules and of meshes.
 pub struct Place {
