@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use knotdock::output::files::exclusive::ExclusiveLock;
+use knotdock::output::files::folder_lock::FolderLock;
 use knotdock::output::files::whole_file::FileError;
 use knotdock::output::tables::batch_results::{
     PairResult, RESULTS, RunSummary, is_ours, rows_of_others, write_results,
@@ -38,9 +38,6 @@ pub struct Batch {
     options: Vec<String>,
 }
 
-/// The file in the directory that a batch locks for as long as it goes on.
-const LOCK: &str = "results.csv.lock";
-
 impl Batch {
     /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
     pub fn run(self, console: Console) -> Result<u8, Failure> {
@@ -63,17 +60,15 @@ impl Batch {
         };
         std::fs::create_dir_all(&directory).map_err(unwritable)?;
         // Two batches would each write the table without the other's rows.
-        let lock = ExclusiveLock::take(&directory.join(LOCK)).map_err(unwritable)?;
-        let Some(lock) = lock else {
+        let lock = FolderLock::take(&directory).map_err(unwritable)?;
+        let Some(_lock) = lock else {
             return Err(
                 Failure::input("another batch is being written to the directory")
                     .at(&directory)
                     .remedy("wait for it to end, or choose another directory with -o"),
             );
         };
-        let code = self.run_locked(pairs, &directory, &results, console);
-        lock.remove();
-        code
+        self.run_locked(pairs, &directory, &results, console)
     }
 
     /// Docks the pairs into a directory that no other batch writes to.

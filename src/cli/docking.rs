@@ -8,7 +8,7 @@ use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::Precision;
-use knotdock::output::files::staging::Staging;
+use knotdock::output::files::staging::{SetAside, Staging, finish_interrupted};
 use knotdock::output::records::manifest::{
     EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
 };
@@ -118,6 +118,9 @@ impl Docking {
     /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
     /// same options.
     pub fn is_done(&self) -> bool {
+        if finish_interrupted(&self.directory).is_err() {
+            return false;
+        }
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
             return false;
         };
@@ -143,8 +146,8 @@ impl Docking {
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
-        let written = self.write(&outcome, staging.folder())?;
-        staging.commit()?;
+        let written = self.write(&outcome, &staging)?;
+        warn_set_aside(&staging.commit()?, console);
         self.report(&outcome, &written.quality, console);
         let Self { directory, .. } = &self;
         let top = directory.join("top");
@@ -159,8 +162,8 @@ impl Docking {
         }))
     }
 
-    /// Writes the table, the complexes and the record of a run into a folder.
-    fn write(&self, outcome: &DockOutcome, folder: &Path) -> Result<Written, Failure> {
+    /// Writes the table, the complexes and the record of a run into its staging folder.
+    fn write(&self, outcome: &DockOutcome, staging: &Staging) -> Result<Written, Failure> {
         let Self {
             request, evaluator, ..
         } = self;
@@ -173,12 +176,13 @@ impl Docking {
         for column in &quality {
             table.set_column(column);
         }
-        table.write(&folder.join("poses.csv"))?;
+        staging.write("poses.csv", |file| table.write_to(file))?;
         let top = table.rows().get(..output.write_top);
         let top = top.unwrap_or(table.rows());
-        let written = request
-            .bodies
-            .write(top, request.arrangement(), &folder.join("top"))?;
+        let written =
+            request
+                .bodies
+                .write(top, request.arrangement(), &staging.folder().join("top"))?;
         let inputs = request.inputs(self.prepared.sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
@@ -191,6 +195,7 @@ impl Docking {
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
             },
+            files: staging.checksums()?,
             chains: written.chains.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
             timing: self.clock.timing(outcome),
@@ -201,7 +206,7 @@ impl Docking {
             },
         })
         .map_err(Failure::other)?;
-        manifest.write(&folder.join("run.json"))?;
+        staging.write("run.json", |file| manifest.write_to(file))?;
         Ok(Written {
             manifest: serde_json::to_value(&manifest).map_err(Failure::other)?,
             complexes: written.names,
@@ -240,6 +245,17 @@ impl Docking {
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),
             self.directory.join("poses.csv").display()
+        ));
+    }
+}
+
+/// Warns of files of the user's that were in the way of a run and have another name now.
+pub fn warn_set_aside(files: &[SetAside], console: Console) {
+    for SetAside { from, to } in files {
+        console.warn(format!(
+            "{} is not as a run wrote it, so it is kept as {}",
+            from.display(),
+            to.display()
         ));
     }
 }

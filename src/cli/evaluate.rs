@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use knotdock::evaluate::{Capri, Criterion, PoseQuality};
 use knotdock::options::{InputOptions, definitions};
+use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};
@@ -51,8 +52,11 @@ impl Evaluate {
         } else {
             self.poses.clone()
         };
-        let mut table = PoseTable::read(&table_path)?;
         let run_path = table_path.with_file_name("run.json");
+        if let Some(directory) = run_path.parent() {
+            finish_interrupted(directory)?;
+        }
+        let mut table = PoseTable::read(&table_path)?;
         let (receptor, ligand, native) = self.inputs(&run_path)?;
         if let Some(file) = &self.output {
             let structures = [&receptor, &ligand].into_iter().chain(native.inputs());

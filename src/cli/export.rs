@@ -5,12 +5,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use knotdock::output::files::complexes::file_names;
+use knotdock::output::files::exported::ExportFolder;
+use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::json;
 
-use crate::cli::arguments::output_file::check_replaced;
+use crate::cli::arguments::output_file::check_not_read;
 use crate::cli::arguments::ranks::Ranks;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
@@ -28,7 +30,7 @@ pub struct Export {
     /// Directory to write to [default: DIR/top].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Replace complexes that are there already.
+    /// Replace complexes that are there and differ, be it that someone has edited them.
     #[arg(long)]
     force: bool,
 }
@@ -36,6 +38,7 @@ pub struct Export {
 impl Export {
     /// Writes the complexes.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        finish_interrupted(&self.run)?;
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         let table_path = self.run.join("poses.csv");
@@ -62,14 +65,14 @@ impl Export {
         }
         let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
         let own = self.run.join("top");
-        let folder = self.output.unwrap_or_else(|| own.clone());
-        // What the run itself wrote there is what would be written again.
-        let force = self.force || folder == own;
+        let folder = self.output.unwrap_or(own);
         for name in rows.iter().flat_map(|row| file_names(row.rank)) {
             let read = bodies.records().map(|record| record.path.as_path());
-            check_replaced(&folder.join(name), read, force)?;
+            check_not_read(&folder.join(name), read)?;
         }
-        let written = bodies.write(&rows, arrangement, &folder)?;
+        let export = ExportFolder::open(&folder, &self.run)?;
+        let written = bodies.write(&rows, arrangement, export.folder())?;
+        export.place(self.force)?;
         let paths: Vec<String> = written
             .names
             .iter()

@@ -6,8 +6,8 @@ use clap::Args;
 use knotdock::dock::pair::PairError;
 use knotdock::options::EngineChoice;
 use knotdock::options::definition::Scope;
-use knotdock::output::files::staging::{Staging, TRADEOFF};
-use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::files::product::TRADEOFF;
+use knotdock::output::files::staging::Staging;
 use knotdock::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::tables::report::align;
 use knotdock::progress::Progress;
@@ -19,6 +19,7 @@ use serde_json::json;
 use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
 use crate::cli::arguments::options::{OfTradeoff, OptionArguments};
+use crate::cli::docking::warn_set_aside;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
@@ -102,16 +103,21 @@ impl TradeoffCommand {
         drop(progress);
 
         let advice = advice(&tradeoff);
+        let svg = plot(&tradeoff).map_err(Failure::other)?;
+        staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
+        staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
         let record = TradeoffRecord::new(TradeoffParts {
             inputs: &inputs,
             options: &request.options,
             tradeoff: &tradeoff,
             advice: advice.as_ref(),
             matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            files: staging.checksums()?,
             machine,
         })
         .map_err(Failure::other)?;
-        write(staging, &tradeoff, &record)?;
+        staging.write("tradeoff.json", |file| record.write_to(file))?;
+        warn_set_aside(&staging.commit()?, console);
 
         console.say(format!("\n{}", table(&tradeoff)));
         if let Some(advice) = &advice {
@@ -146,19 +152,6 @@ fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
         let error = format!("the option {name} has no effect on such inputs");
         return Err(Failure::input(error).remedy("name other parameters"));
     }
-    Ok(())
-}
-
-/// Writes the files of a sweep.
-fn write(staging: Staging, tradeoff: &Tradeoff, record: &TradeoffRecord) -> Result<(), Failure> {
-    let svg = plot(tradeoff).map_err(Failure::other)?;
-    let folder = staging.folder();
-    write_whole(&folder.join("tradeoff.svg"), |file| {
-        file.write_all(svg.as_bytes())
-    })?;
-    write_table(tradeoff, &folder.join("tradeoff.csv"))?;
-    record.write(&folder.join("tradeoff.json"))?;
-    staging.commit()?;
     Ok(())
 }
 

@@ -33,16 +33,25 @@ pub fn check_replaced<'a>(
     read: impl IntoIterator<Item = &'a Path>,
     force: bool,
 ) -> Result<(), Failure> {
-    if read.into_iter().any(|other| is_same(file, other)) {
-        return Err(Failure::input("the file to write is one of those read")
-            .at(file)
-            .remedy("give the file to write a name of its own"));
-    }
+    check_not_read(file, read)?;
     // A device or a pipe is there and is meant to be written to.
     if !force && file.is_file() && !is_stream(file) {
         return Err(Failure::input("the file is already there")
             .at(file)
             .remedy("choose another name, or pass --force to replace it"));
+    }
+    Ok(())
+}
+
+/// Checks that `file` is none of those that are `read`.
+pub fn check_not_read<'a>(
+    file: &Path,
+    read: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    if read.into_iter().any(|other| is_same(file, other)) {
+        return Err(Failure::input("the file to write is one of those read")
+            .at(file)
+            .remedy("give the file to write a name of its own"));
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::mesh::GivenLengths;
 use knotdock::options::DockOptions;
+use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::manifest::Inputs;
 use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::records::recorded_run::RecordedRun;
@@ -52,6 +53,9 @@ impl Request {
 
     /// The request of an earlier run, from its run.json.
     pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
+        if let Some(directory) = path.parent() {
+            finish_interrupted(directory)?;
+        }
         let run = RecordedRun::read(path)?;
         if !run.is_of_this_program() {
             console.warn(format!(

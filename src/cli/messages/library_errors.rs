@@ -8,6 +8,7 @@ use knotdock::options::PotentialFileError;
 use knotdock::options::file::ConfigError;
 use knotdock::options::text::first_paragraph;
 use knotdock::output::files::balls::PseudoAtomError;
+use knotdock::output::files::exported::ExportError;
 use knotdock::output::files::staging::StagingError;
 use knotdock::output::files::whole_file::FileError;
 use knotdock::output::records::input_record::InputRecordError;
@@ -92,6 +93,18 @@ impl From<StagingError> for Failure {
     fn from(error: StagingError) -> Self {
         match error {
             StagingError::Write(error) => error.into(),
+            StagingError::Interrupted { .. } => {
+                Self::other(&error).at(error.path()).remedy(error.remedy())
+            }
+            error => Self::input(&error).at(error.path()).remedy(error.remedy()),
+        }
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Write(error) => error.into(),
             error => Self::input(&error).at(error.path()).remedy(error.remedy()),
         }
     }

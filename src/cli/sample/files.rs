@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use knotdock::output::files::balls::{write_mesh, write_pseudo_atoms, write_table};
 use knotdock::output::files::sample_picture::write_picture;
-use knotdock::output::files::whole_file::is_stream;
+use knotdock::output::files::whole_file::{StagedFile, is_stream};
 use knotdock_structures::Knots;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampling::Ball;
@@ -22,12 +22,11 @@ pub(super) enum Export {
 
 impl Export {
     /// Writes balls in this form.
-    pub fn write(self, knots: &Knots, path: &Path) -> Result<(), Failure> {
-        match self {
+    pub fn write(self, knots: &Knots, path: &Path) -> Result<StagedFile, Failure> {
+        Ok(match self {
             Self::Mesh => write_mesh(knots, path)?,
             Self::PseudoAtoms => write_pseudo_atoms(knots, path)?,
-        }
-        Ok(())
+        })
     }
 }
 
@@ -86,16 +85,19 @@ impl Sample {
         balls: &[Ball],
         export: Option<Export>,
     ) -> Result<Vec<String>, Failure> {
-        // First what balls may not fit into, so that nothing is left of a command that fails by it.
-        if let (Some(path), Some(export)) = (&self.export, export) {
-            export.write(knots, path)?;
-        }
-        write_table(knots, &self.output)?;
+        // None takes its place before all of them are on the device.
+        let mut staged = vec![write_table(knots, &self.output)?];
         let mut files = vec![&self.output];
-        files.extend(&self.export);
-        if let Some(path) = &self.picture {
-            write_picture(solid, balls, path)?;
+        if let (Some(path), Some(export)) = (&self.export, export) {
+            staged.push(export.write(knots, path)?);
             files.push(path);
+        }
+        if let Some(path) = &self.picture {
+            staged.push(write_picture(solid, balls, path)?);
+            files.push(path);
+        }
+        for file in staged {
+            file.place()?;
         }
         let names = files.iter().map(|file| file.display().to_string());
         Ok(names.collect())

@@ -11,16 +11,17 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
 use crate::output::files::complexes::file_name;
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::disk;
+use crate::output::files::whole_file::{FileError, write_new};
 use crate::output::records::program::VERSION;
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::PoseRow;
 
-/// Writes the assemblies of `rows` into `folder` as `rank_0001.obj` ... and returns the names, in the order of the
+/// Writes the assemblies of `rows` into a staging folder as `rank_0001.obj` ... and returns the names, in the order of the
 /// rows.
 ///
 /// # Errors
-/// [`FileError`] when the folder cannot be made or a file cannot be written.
+/// [`FileError`] when the folder cannot be made, or a file is there or cannot be written.
 pub fn write_assemblies(
     receptor: &Mesh,
     ligand: &Mesh,
@@ -28,14 +29,14 @@ pub fn write_assemblies(
     folder: &Path,
 ) -> Result<Vec<String>, FileError> {
     if !rows.is_empty() {
-        std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+        disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
     rows.iter()
         .map(|row| {
             let name = file_name(row.rank, "obj");
-            write_whole(&folder.join(&name), |file| {
-                write_assembly(file, receptor, ligand, row)
-            })?;
+            let path = folder.join(&name);
+            write_new(&path, |file| write_assembly(file, receptor, ligand, row))
+                .map_err(|source| FileError::writing(&path, source))?;
             Ok(name)
         })
         .collect()

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use knotdock_structures::Knots;
 
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, StagedFile};
 
 /// Header of the table.
 pub const COLUMNS: &str = "x,y,z,r,weight";
@@ -15,8 +15,8 @@ pub const COLUMNS: &str = "x,y,z,r,weight";
 ///
 /// # Errors
 /// [`FileError`] when the file cannot be made or written.
-pub fn write_table(knots: &Knots, path: &Path) -> Result<(), FileError> {
-    write_whole(path, |file| {
+pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> {
+    StagedFile::write(path, |file| {
         writeln!(file, "{COLUMNS}")?;
         for ((center, radius), weight) in knots.centers.iter().zip(&knots.radii).zip(&knots.weights)
         {
@@ -35,9 +35,9 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 /// [`FileError`] when the file cannot be made or written.
-pub fn write_mesh(knots: &Knots, path: &Path) -> Result<(), FileError> {
+pub fn write_mesh(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> {
     let (vertices, triangles) = icosphere();
-    write_whole(path, |file| {
+    StagedFile::write(path, |file| {
         writeln!(file, "# {} balls written by knotdock sample", knots.len())?;
         for (index, (center, radius)) in knots.centers.iter().zip(&knots.radii).enumerate() {
             writeln!(file, "o ball_{}", index + 1)?;
@@ -129,7 +129,7 @@ pub enum PseudoAtomError {
 ///
 /// # Errors
 /// [`PseudoAtomError`] when a coordinate does not fit its columns or the file cannot be written.
-pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<(), PseudoAtomError> {
+pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, PseudoAtomError> {
     for (index, center) in knots.centers.iter().enumerate() {
         if let Some(&value) = center
             .iter()
@@ -141,7 +141,7 @@ pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<(), PseudoAtomEr
             });
         }
     }
-    write_whole(path, |file| {
+    let staged = StagedFile::write(path, |file| {
         writeln!(
             file,
             "REMARK 99 {} BALLS OF KNOTDOCK SAMPLE; RADIUS AS TEMPERATURE FACTOR, WEIGHT AS OCCUPANCY",
@@ -163,7 +163,7 @@ pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<(), PseudoAtomEr
         writeln!(file, "END")?;
         io::Result::Ok(())
     })?;
-    Ok(())
+    Ok(staged)
 }
 
 #[cfg(test)]
@@ -182,7 +182,7 @@ mod tests {
     fn a_table_reads_back_bit_for_bit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("knots.csv");
-        write_table(&knots(), &path).unwrap();
+        write_table(&knots(), &path).unwrap().place().unwrap();
         let text = std::fs::read_to_string(path).unwrap();
         let mut lines = text.lines();
         assert_eq!(lines.next(), Some("x,y,z,r,weight"));
@@ -204,7 +204,7 @@ mod tests {
     fn a_mesh_of_balls_has_nearly_their_volume() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("balls.obj");
-        write_mesh(&knots(), &path).unwrap();
+        write_mesh(&knots(), &path).unwrap().place().unwrap();
         let (mesh, report) = knotdock_structures::mesh::read(&path).unwrap();
         assert!(report.is_sound() && report.parts == 2 && report.triangles == 160);
         let volume = 4.0 / 3.0 * std::f64::consts::PI * (0.001 + 8.0);
@@ -225,7 +225,7 @@ mod tests {
         ));
         assert!(!path.exists());
         let near = Knots::new(vec![[-1.5, 2.25, 1234.5]], vec![1.75]).unwrap();
-        write_pseudo_atoms(&near, &path).unwrap();
+        write_pseudo_atoms(&near, &path).unwrap().place().unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         let atom = text.lines().nth(1).unwrap();
         let column = |from: usize, to: usize| atom[from - 1..to].trim().to_owned();

@@ -8,7 +8,8 @@ use knotdock_structures::molecule::{
     ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
 };
 
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::disk;
+use crate::output::files::whole_file::{FileError, write_new};
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
@@ -32,11 +33,12 @@ pub fn file_names(rank: usize) -> [String; 3] {
     ["pdb", "cif", "obj"].map(|extension| file_name(rank, extension))
 }
 
-/// Writes the complexes of `rows` into `folder` as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
+/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
 /// complex does not fit the PDB format. Of a ring all copies are written.
 ///
 /// # Errors
-/// [`FileError`] when the folder cannot be made, a file cannot be written, or a row's pose is not one of such a ring.
+/// [`FileError`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
+/// such a ring.
 pub fn write_complexes(
     [receptor, ligand]: [&Molecule; 2],
     arrangement: Arrangement,
@@ -44,7 +46,7 @@ pub fn write_complexes(
     folder: &Path,
 ) -> Result<Written, FileError> {
     if !rows.is_empty() {
-        std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+        disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
     }
     let poses = |row: &PoseRow| {
         let images = arrangement.images(&row.pose);
@@ -75,11 +77,13 @@ pub fn write_complexes(
         let name = file_name(row.rank, format.extension());
         let others = placed(poses);
         let remarks = remarks(row, arrangement);
-        write_whole(&folder.join(&name), |mut file| {
+        let path = folder.join(&name);
+        let written = write_new(&path, |mut file| {
             let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
             chains = Some(map.map_err(io_error)?);
             Ok(())
-        })?;
+        });
+        written.map_err(|source| FileError::writing(&path, source))?;
         names.push(name);
     }
     let chains = match chains {

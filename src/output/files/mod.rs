@@ -2,9 +2,19 @@
 
 pub mod assemblies;
 pub mod balls;
+pub mod checksum;
+mod commit;
 pub mod complexes;
-pub mod exclusive;
+mod disk;
+pub mod exported;
+mod fault;
+pub mod folder_lock;
 pub mod molecule_file;
+mod own_files;
+mod places;
+pub mod product;
 pub mod sample_picture;
 pub mod staging;
+mod staging_error;
+mod staging_folder;
 pub mod whole_file;

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::plot::svg::{Colour, Svg};
 
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, StagedFile};
 
 /// Pixels along the longer edge of a slice.
 const PIXELS: usize = 72;
@@ -33,9 +33,9 @@ const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\""
 ///
 /// # Errors
 /// [`FileError`] when the file cannot be made or written.
-pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<(), FileError> {
+pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<StagedFile, FileError> {
     let text = picture(solid, balls);
-    write_whole(path, |file| file.write_all(text.as_bytes()))
+    StagedFile::write(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// The axes and the scale of the picture.

@@ -1,150 +1,52 @@
-//! Whole files or none.
+//! A run's directory: all of a new run or all of the older one.
 //!
-//! A run is built in `DIR/.partial/` and its entries are renamed into `DIR` when all of them are written, `run.json`
-//! last: a directory with a `run.json` holds a whole run. A process that is killed leaves only `.partial` names,
-//! which the next run into the same directory removes. Nothing in `DIR` that is not a run's own is ever touched. A
-//! run that goes on holds a lock in `DIR/.partial/`, which the system lets go of however the run ends, so that no
-//! other run takes its files for a killed one's.
+//! A run is written in a staging folder beside its directory, `.NAME.knotdock-…`, and takes its place when all of it is
+//! on the device (see [`super::commit`]). Where nothing may be written beside the directory, or the directory is a
+//! mount point or the current one, the staging folder lies in it. A process that is killed leaves only staging
+//! folders, which the next run into the same directory clears. Nothing in the directory that a run did not write is
+//! ever removed.
 
-use std::fs;
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::output::files::exclusive::ExclusiveLock;
-use crate::output::files::whole_file::{FileError, PARTIAL};
-
-/// Files that a command puts into its directory.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Product {
-    /// The entries, in the order in which they are moved there.
-    entries: &'static [&'static str],
-    /// The one that comes last and says which program wrote it.
-    record: &'static str,
-}
-
-impl Product {
-    /// Refuses a directory that holds one of these, unless `force` is true, or entries of these names that are none.
-    /// `interrupted` says that a staging folder was found there, so that entries without their record are a killed
-    /// run's.
-    fn refuse_existing(
-        &self,
-        directory: &Path,
-        interrupted: bool,
-        force: bool,
-    ) -> Result<(), StagingError> {
-        let mut entries = self.entries.iter();
-        let Some(entry) = entries.find(|entry| directory.join(entry).symlink_metadata().is_ok())
-        else {
-            return Ok(());
-        };
-        if !interrupted && !is_ours(&directory.join(self.record)) {
-            return Err(StagingError::NotARun {
-                directory: directory.to_owned(),
-                entry,
-                record: self.record,
-            });
-        }
-        if !force {
-            return Err(StagingError::ExistingRun(directory.to_owned()));
-        }
-        Ok(())
-    }
-}
-
-/// Files of `knotdock dock`.
-pub const RUN: Product = Product {
-    entries: &["top", "poses.csv", "run.json"],
-    record: "run.json",
-};
-
-/// Files of `knotdock tradeoff`.
-pub const TRADEOFF: Product = Product {
-    entries: &["tradeoff.svg", "tradeoff.csv", "tradeoff.json"],
-    record: "tradeoff.json",
-};
-
-/// Why output could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum StagingError {
-    /// The directory holds a run, and overwriting it was not requested.
-    #[error("{} already holds a run", .0.display())]
-    ExistingRun(PathBuf),
-    /// Another process is writing its run there.
-    #[error("another run is being written to {}", .0.display())]
-    Busy(PathBuf),
-    /// The directory holds a run's names, but they are not of a run.
-    #[error("{} holds {entry} but no {record} of knotdock, so it is not a run that may be overwritten", directory.display())]
-    NotARun {
-        /// The directory.
-        directory: PathBuf,
-        /// The file or folder in it that a run would replace.
-        entry: &'static str,
-        /// The record that would show it to be a run.
-        record: &'static str,
-    },
-    /// Something could not be written.
-    #[error(transparent)]
-    Write(#[from] FileError),
-}
-
-impl StagingError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::ExistingRun(_) => {
-                "choose another directory with -o, or pass --force to replace the run"
-            }
-            Self::Busy(_) => "wait for it to end, or choose another directory with -o",
-            Self::NotARun { .. } => "choose another directory with -o",
-            Self::Write(error) => error.remedy(),
-        }
-    }
-
-    /// The file or directory in question.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::ExistingRun(directory)
-            | Self::Busy(directory)
-            | Self::NotARun { directory, .. } => directory,
-            Self::Write(error) => error.path(),
-        }
-    }
-}
+use super::checksum::sha256_of_file;
+pub use super::commit::SetAside;
+use super::commit::{self, NEW};
+use super::disk;
+use super::places::{Places, resolved};
+use super::product::{Product, RUN};
+pub use super::staging_error::StagingError;
+use super::staging_folder::StagingFolder;
+use super::whole_file::{FileError, parent, write_new};
 
 /// A run's directory while the run goes on: files are written under [`Staging::folder`] and appear all together on
 /// [`Staging::commit`]. Dropped before that, it leaves the directory as it was.
 #[derive(Debug)]
 pub struct Staging {
     product: &'static Product,
+    /// As the user named it.
     directory: PathBuf,
+    /// Without links.
+    resolved: PathBuf,
+    /// `None` once it is removed, or must stay.
+    staging: Option<StagingFolder>,
+    /// The folder in it that is written to.
     folder: PathBuf,
-    made_directory: bool,
-    state: State,
-    /// Locked for as long as the run goes on.
-    lock: Option<ExclusiveLock>,
-}
-
-/// The file in the staging folder that a run locks.
-const LOCK: &str = "lock";
-
-/// Progress of a staging, which decides what its end has to remove.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    /// Being filled: the folder goes, and the directory if it was made for it.
-    Open,
-    /// Moved into place: the folder with the replaced run goes.
-    Committed,
-    /// Holds what could not be moved back: everything stays.
-    Kept,
+    /// Whether the staging folder lies beside the directory and not in it.
+    beside: bool,
+    /// Folders above the directory that were made for it.
+    made: Vec<PathBuf>,
 }
 
 impl Staging {
-    /// Makes `directory` if there is none and the staging folder in it, which also shows that it can be written to.
+    /// Makes a staging folder for a run in `directory`, which also shows that it can be written to.
     ///
     /// # Errors
-    /// [`StagingError::ExistingRun`] when a run is there and `force` is false, [`StagingError::NotARun`] when what is
-    /// there no run has written, [`StagingError::Busy`] when another run is being written there,
-    /// [`StagingError::Write`] when nothing can be.
+    /// [`StagingError::ExistingRun`] or [`StagingError::BrokenRun`] when a run is there and `force` is false,
+    /// [`StagingError::NotARun`] when what is there no run has written, [`StagingError::Busy`] when another run is
+    /// being written there, [`StagingError::Write`] when nothing can be.
     pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
         Self::of(&RUN, directory, force)
     }
@@ -158,40 +60,47 @@ impl Staging {
         directory: &Path,
         force: bool,
     ) -> Result<Self, StagingError> {
-        let folder = directory.join(PARTIAL);
-        // A staging folder here means that a run goes on, as its lock will tell, or was killed, possibly between its
-        // renames: what that left is ours.
-        let interrupted = folder.is_dir();
-        product.refuse_existing(directory, interrupted, force)?;
-        Self::claim(product, directory, interrupted, force)
-    }
-
-    /// Makes and locks the staging folder of a directory in which nothing was found that may not be replaced.
-    fn claim(
-        product: &'static Product,
-        directory: &Path,
-        interrupted: bool,
-        force: bool,
-    ) -> Result<Self, StagingError> {
-        let folder = directory.join(PARTIAL);
         let unwritable = |source| FileError::unwritable(directory, source);
-        let made_directory = !directory.exists();
-        fs::create_dir_all(&folder).map_err(unwritable)?;
-        let lock = ExclusiveLock::take(&folder.join(LOCK)).map_err(unwritable)?;
-        let Some(lock) = lock else {
-            return Err(StagingError::Busy(directory.to_owned()));
+        let resolved = resolved(directory).map_err(unwritable)?;
+        let places = Places {
+            directory,
+            resolved: &resolved,
         };
-        let staging = Self {
+        places.clear(product)?;
+        places.refuse_existing(product, force)?;
+        let above = parent(&resolved);
+        let mut staging = Self {
             product,
             directory: directory.to_owned(),
-            folder,
-            made_directory,
-            state: State::Open,
-            lock: Some(lock),
+            folder: PathBuf::new(),
+            beside: places.may_be_beside(),
+            made: disk::create_dir_all(above).map_err(unwritable)?,
+            staging: None,
+            resolved: resolved.clone(),
         };
-        // Another run may have come to its end between the first look and the lock.
-        product.refuse_existing(directory, interrupted, force)?;
-        clear(&staging.folder).map_err(unwritable)?;
+        let name = resolved.file_name().unwrap_or_default();
+        let made = match staging.beside {
+            true => StagingFolder::create(above, name),
+            false => StagingFolder::create(&resolved, OsStr::new("")),
+        };
+        let made = match made {
+            // Where nothing may be written beside the directory, perhaps it may in it.
+            Err(_) if staging.beside && resolved.is_dir() => {
+                staging.beside = false;
+                StagingFolder::create(&resolved, OsStr::new(""))
+            }
+            made => made,
+        };
+        let own = made.map_err(unwritable)?;
+        staging.folder = own.path().join(NEW);
+        let own = staging.staging.insert(own);
+        // Another run may have begun, or come to its end, between the first look and the lock.
+        if let Some(folder) = places.others(Some(own))?.in_use {
+            let directory = directory.to_owned();
+            return Err(StagingError::Busy { directory, folder });
+        }
+        places.refuse_existing(product, force)?;
+        disk::create_dir(&staging.folder).map_err(unwritable)?;
         Ok(staging)
     }
 
@@ -200,145 +109,295 @@ impl Staging {
         &self.folder
     }
 
-    /// Moves what was written into the run's directory, in place of an older run.
+    /// Writes a file of the run.
     ///
     /// # Errors
-    /// [`StagingError::Write`] when a rename fails; the older run's entries are put back.
-    pub fn commit(mut self) -> Result<(), StagingError> {
-        let replaced = self.folder.join("replaced");
-        fs::create_dir(&replaced).map_err(|source| FileError::writing(&replaced, source))?;
-        let entries = self.product.entries;
-        let outward = entries
-            .iter()
-            .rev()
-            .map(|entry| (self.directory.join(entry), replaced.join(entry)));
-        let inward = entries
-            .iter()
-            .map(|entry| (self.folder.join(entry), self.directory.join(entry)));
-        let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
-        for (from, to) in outward.chain(inward) {
-            if from.symlink_metadata().is_err() {
+    /// [`FileError::Write`] when it cannot be written, under the name that it would have had.
+    pub fn write(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+    ) -> Result<(), FileError> {
+        write_new(&self.folder.join(name), fill)
+            .map_err(|source| FileError::writing(&self.directory.join(name), source))
+    }
+
+    /// SHA-256 of each file written so far, by its path from the directory with `/` between folders. The product's
+    /// record holds them as `files`.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] when one cannot be read.
+    pub fn checksums(&self) -> Result<BTreeMap<String, String>, FileError> {
+        let failed = |source| FileError::writing(&self.folder, source);
+        let mut checksums = BTreeMap::new();
+        for path in disk::tree(&self.folder).map_err(failed)? {
+            let file = self.folder.join(&path);
+            if file.is_dir() {
                 continue;
             }
-            if let Err(source) = fs::rename(&from, &to) {
-                for (from, to) in done.iter().rev() {
-                    if fs::rename(to, from).is_err() {
-                        // The staging folder now holds something of the older run: leave it for the user.
-                        self.state = State::Kept;
-                    }
-                }
-                return Err(FileError::writing(&to, source).into());
-            }
-            done.push((from, to));
+            let names = path.iter().map(|name| name.to_string_lossy());
+            let name = names.collect::<Vec<_>>().join("/");
+            checksums.insert(name, sha256_of_file(&file).map_err(failed)?);
         }
-        self.state = State::Committed;
-        Ok(())
+        Ok(checksums)
+    }
+
+    /// Moves what was written into the run's directory, in place of an older run, once it is on the device. Returns
+    /// the files of the user's that were in the way.
+    ///
+    /// # Errors
+    /// [`StagingError::Write`] when that fails and the older run stands as it was, [`StagingError::Interrupted`] when
+    /// it does not.
+    pub fn commit(mut self) -> Result<Vec<SetAside>, StagingError> {
+        let places = Places {
+            directory: &self.directory,
+            resolved: &self.resolved,
+        };
+        let own = places.own_files(self.product)?;
+        let Some(staging) = self.staging.take() else {
+            return Ok(Vec::new());
+        };
+        let done = commit::commit(self.product, &staging, &self.resolved, own, self.beside);
+        match done {
+            Ok(done) => {
+                self.made.clear();
+                // The run stands. What stays of the staging folder is cleared by the next run.
+                if !done.is_left {
+                    let _ = staging.remove();
+                }
+                Ok(done.set_aside)
+            }
+            Err(error) if error.undone => {
+                self.staging = Some(staging);
+                Err(FileError::writing(&error.path, error.source).into())
+            }
+            Err(error) => {
+                self.made.clear();
+                Err(StagingError::Interrupted {
+                    directory: self.directory.clone(),
+                    folder: staging.path().to_owned(),
+                    source: error.source,
+                })
+            }
+        }
     }
 }
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // Windows removes no file that is open; elsewhere nobody may take the folder for a killed run's before it is
-        // gone.
-        if cfg!(windows) {
-            self.lock = None;
-        }
         // A failure to tidy up has nobody to report to; the next run clears what is left.
-        if self.state == State::Kept {
-            return;
+        if let Some(staging) = self.staging.take() {
+            let _ = staging.remove();
         }
-        let _ = fs::remove_dir_all(&self.folder);
-        if self.made_directory && self.state == State::Open {
-            let _ = fs::remove_dir(&self.directory);
+        for folder in self.made.iter().rev() {
+            let _ = disk::remove_dir(folder);
         }
     }
 }
 
-/// Removes what a killed run left in a staging folder, but for the lock.
-fn clear(folder: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            fs::remove_dir_all(&path)?;
-        } else if path != folder.join(LOCK) {
-            fs::remove_file(&path)?;
+/// Finishes a commit that an interrupted run left in a directory, so that the directory can be read, and clears what
+/// else such runs left.
+///
+/// # Errors
+/// [`StagingError::Interrupted`] when it cannot be finished.
+pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
+    let directory = match directory.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => directory,
+    };
+    let Ok(resolved) = directory.canonicalize() else {
+        return Ok(());
+    };
+    let places = Places {
+        directory,
+        resolved: &resolved,
+    };
+    // Where the folder above may not be listed, no run has been staged.
+    let Ok(others) = places.others(None) else {
+        return Ok(());
+    };
+    for staging in others.left {
+        if commit::is_committing(&staging) {
+            places.finish(&RUN, staging)?;
+        } else {
+            // In a place that may not be written to it is in nobody's way.
+            let _ = staging.remove();
         }
     }
     Ok(())
 }
 
-/// Whether a record is one of ours.
-fn is_ours(record: &Path) -> bool {
-    fs::read(record)
-        .ok()
-        .and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok())
-        .is_some_and(|run| run.get("program").and_then(|name| name.as_str()) == Some("knotdock"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn fill(staging: &Staging, text: &str) {
-        fs::create_dir(staging.folder().join("top")).unwrap();
-        fs::write(staging.folder().join("top/rank_0001.pdb"), text).unwrap();
-        fs::write(staging.folder().join("poses.csv"), text).unwrap();
-        fs::write(
-            staging.folder().join("run.json"),
-            format!(r#"{{"program":"knotdock","text":"{text}"}}"#),
-        )
-        .unwrap();
+        disk::create_dir(&staging.folder().join("top")).unwrap();
+        for name in ["top/rank_0001.pdb", "poses.csv"] {
+            staging
+                .write(name, |file| file.write_all(text.as_bytes()))
+                .unwrap();
+        }
+        let record = serde_json::json!({
+            "program": "knotdock",
+            "files": staging.checksums().unwrap(),
+        });
+        let record = record.to_string();
+        staging
+            .write("run.json", |file| file.write_all(record.as_bytes()))
+            .unwrap();
+    }
+
+    fn run(directory: &Path, text: &str) -> Vec<SetAside> {
+        let staging = Staging::open(directory, true).unwrap();
+        fill(&staging, text);
+        staging.commit().unwrap()
+    }
+
+    fn text(path: &Path) -> String {
+        fs::read_to_string(path).unwrap()
+    }
+
+    /// Names in a folder, in order.
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = disk::entries(folder).unwrap().into_iter();
+        entries
+            .map(|(path, _)| path.file_name().unwrap().to_string_lossy().into_owned())
+            .collect()
     }
 
     #[test]
     fn a_failed_run_loses_nothing_and_leaves_nothing() {
         let root = tempfile::tempdir().unwrap();
-        let directory = root.path().join("run");
+        let directory = root.path().join("all/runs/run");
         drop(Staging::open(&directory, false).unwrap());
-        assert!(!directory.exists(), "a directory made for nothing must go");
+        assert_eq!(
+            names(root.path()),
+            [""; 0],
+            "folders made for nothing must go"
+        );
 
-        let first = Staging::open(&directory, false).unwrap();
-        fill(&first, "first");
-        first.commit().unwrap();
+        run(&directory, "first");
         fs::write(directory.join("notes.txt"), "mine").unwrap();
-
         let second = Staging::open(&directory, true).unwrap();
         fill(&second, "second");
         drop(second); // the run failed before its end
-        assert_eq!(
-            fs::read_to_string(directory.join("poses.csv")).unwrap(),
-            "first"
-        );
-        assert!(!directory.join(PARTIAL).exists());
+        assert_eq!(text(&directory.join("poses.csv")), "first");
 
-        let third = Staging::open(&directory, true).unwrap();
-        fill(&third, "third");
-        third.commit().unwrap();
+        assert_eq!(run(&directory, "third"), []);
         for file in ["poses.csv", "top/rank_0001.pdb"] {
-            assert_eq!(fs::read_to_string(directory.join(file)).unwrap(), "third");
+            assert_eq!(text(&directory.join(file)), "third");
         }
-        assert_eq!(
-            fs::read_to_string(directory.join("notes.txt")).unwrap(),
-            "mine"
-        );
-        assert!(!directory.join(PARTIAL).exists());
+        assert_eq!(text(&directory.join("notes.txt")), "mine");
+        let expected = ["notes.txt", "poses.csv", "run.json", "top"];
+        assert_eq!(names(&directory), expected);
+        assert_eq!(names(directory.parent().unwrap()), ["run"]);
     }
 
     #[test]
     fn an_older_run_is_replaced_on_request_only_and_a_stranger_never() {
         let root = tempfile::tempdir().unwrap();
-        fs::write(root.path().join("poses.csv"), "not ours").unwrap();
+        let directory = root.path().join("run");
+        run(&directory, "first");
+        assert!(matches!(
+            Staging::open(&directory, false),
+            Err(StagingError::ExistingRun(_))
+        ));
+        let stranger = root.path().join("stranger");
+        fs::create_dir(&stranger).unwrap();
+        fs::write(stranger.join("poses.csv"), "not ours").unwrap();
         // Where no run is, --force is not the remedy.
         for force in [false, true] {
             assert!(matches!(
-                Staging::open(root.path(), force),
+                Staging::open(&stranger, force),
                 Err(StagingError::NotARun { .. })
             ));
         }
-        assert_eq!(
-            fs::read_to_string(root.path().join("poses.csv")).unwrap(),
-            "not ours"
+        assert_eq!(text(&stranger.join("poses.csv")), "not ours");
+    }
+
+    /// Found by hostile calls: after a power cut neither a run nor `--force` was of use.
+    #[test]
+    fn a_broken_run_is_replaced_on_request() {
+        let root = tempfile::tempdir().unwrap();
+        for (number, torn) in [
+            "",
+            "\0\0\0",
+            "{\"schema\": 2, \"program\": \"knotdock\", \"fi",
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let directory = root.path().join(number.to_string());
+            run(&directory, "first");
+            fs::write(directory.join("run.json"), torn).unwrap();
+            fs::write(directory.join("poses.csv"), "").unwrap();
+            assert!(matches!(
+                Staging::open(&directory, false),
+                Err(StagingError::BrokenRun { .. })
+            ));
+            // The complex shows no sign of this program, so it may be the user's.
+            assert_eq!(run(&directory, "second").len(), 1);
+            assert_eq!(names(&directory), ["poses.csv", "run.json", "top"]);
+            assert_eq!(text(&directory.join("poses.csv")), "second");
+            assert_eq!(text(&directory.join("top/rank_0001.kept.pdb")), "first");
+        }
+    }
+
+    /// Found by hostile calls: `--force` removed what a user had put into a run's folder of complexes.
+    #[test]
+    fn what_is_not_the_runs_own_is_kept() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        run(&directory, "first");
+        fs::write(directory.join("top/rank_0001.pdb"), "edited").unwrap();
+        fs::write(directory.join("top/session.cxs"), "mine").unwrap();
+        let set_aside = run(&directory, "second");
+        assert_eq!(set_aside.len(), 1);
+        let expected = ["rank_0001.kept.pdb", "rank_0001.pdb", "session.cxs"];
+        assert_eq!(names(&directory.join("top")), expected);
+        assert_eq!(text(&directory.join("top/rank_0001.kept.pdb")), "edited");
+        assert_eq!(text(&directory.join("top/rank_0001.pdb")), "second");
+    }
+
+    /// Found by hostile calls: a link of the staging folder's name led to a folder that was then emptied.
+    #[cfg(unix)]
+    #[test]
+    fn no_link_is_followed() {
+        use std::os::unix::fs::symlink;
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name);
+        fs::create_dir_all(at("thesis/top")).unwrap();
+        fs::write(at("thesis/top/rank_0001.pdb"), "mine").unwrap();
+        fs::create_dir(at("run")).unwrap();
+        for name in [
+            "run/.partial",
+            "run/.knotdock-abcdefghijkl",
+            ".run.knotdock-abcdefghijkl",
+        ] {
+            symlink(at("thesis"), at(name)).unwrap();
+        }
+        run(&at("run"), "first");
+        symlink(at("thesis/top"), at("linked_top")).unwrap();
+        fs::remove_dir_all(at("run/top")).unwrap();
+        symlink(at("thesis/top"), at("run/top")).unwrap();
+        assert!(matches!(
+            Staging::open(&at("run"), true),
+            Err(StagingError::NotARun { entry: "top", .. })
+        ));
+        assert_eq!(text(&at("thesis/top/rank_0001.pdb")), "mine");
+        assert_eq!(names(&at("thesis")), ["top"]);
+        // A directory named by a link is the one that it leads to.
+        symlink(at("other"), at("link")).unwrap();
+        assert!(
+            Staging::open(&at("link"), true).is_err(),
+            "it leads nowhere"
         );
+        fs::create_dir(at("other")).unwrap();
+        run(&at("link"), "first");
+        assert!(at("link").symlink_metadata().unwrap().is_symlink());
+        assert_eq!(text(&at("other/poses.csv")), "first");
     }
 
     /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its
@@ -352,7 +411,7 @@ mod tests {
         for force in [false, true] {
             assert!(matches!(
                 Staging::open(&directory, force),
-                Err(StagingError::Busy(_))
+                Err(StagingError::Busy { .. })
             ));
         }
         first.commit().unwrap();
@@ -361,40 +420,23 @@ mod tests {
             Err(StagingError::ExistingRun(_))
         ));
         drop(Staging::open(&directory, true).unwrap());
-        assert_eq!(
-            fs::read_to_string(directory.join("poses.csv")).unwrap(),
-            "first"
-        );
+        assert_eq!(text(&directory.join("poses.csv")), "first");
     }
 
-    /// Found by a review: a run that ended after another had looked and before that one held the lock was replaced
-    /// without --force.
+    #[cfg(unix)]
     #[test]
-    fn a_run_that_ends_before_the_lock_is_taken_is_not_replaced() {
+    fn modes_of_a_directory_and_its_files_are_kept() {
+        use std::os::unix::fs::PermissionsExt;
         let root = tempfile::tempdir().unwrap();
         let directory = root.path().join("run");
-        let first = Staging::open(&directory, false).unwrap();
-        fill(&first, "first");
-        first.commit().unwrap();
-        for interrupted in [false, true] {
-            assert!(matches!(
-                Staging::claim(&RUN, &directory, interrupted, false),
-                Err(StagingError::ExistingRun(_))
-            ));
+        run(&directory, "first");
+        for (name, mode) in [("", 0o750), ("poses.csv", 0o640)] {
+            let mode = fs::Permissions::from_mode(mode);
+            fs::set_permissions(directory.join(name), mode).unwrap();
         }
-        assert_eq!(
-            fs::read_to_string(directory.join("poses.csv")).unwrap(),
-            "first"
-        );
-        assert!(!directory.join(PARTIAL).exists());
-    }
-
-    #[test]
-    fn what_a_killed_run_left_is_cleared() {
-        let root = tempfile::tempdir().unwrap();
-        fs::create_dir_all(root.path().join(".partial/top")).unwrap();
-        fs::write(root.path().join(".partial/poses.csv"), "half").unwrap();
-        let staging = Staging::open(root.path(), false).unwrap();
-        assert!(!staging.folder().join("poses.csv").exists());
+        run(&directory, "second");
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode(&directory), 0o750);
+        assert_eq!(mode(&directory.join("poses.csv")), 0o640);
     }
 }

@@ -1,13 +1,13 @@
 //! A file whole or not at all.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-/// Ending of files that are being written.
-pub const PARTIAL: &str = ".partial";
+use super::disk::{self, NewFile};
+use super::staging_folder::StagingFolder;
 
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -80,58 +80,145 @@ pub fn is_stream(path: &Path) -> bool {
     is_own || fs::metadata(path).is_ok_and(|found| !found.is_file())
 }
 
-/// Writes a single file whole: under a `.partial` name beside `path`, then renamed. What is not a regular file
-/// (`/dev/stdout`, a pipe) is written to as it stands.
-///
-/// # Errors
-/// [`FileError::Unwritable`] when the file cannot be made, [`FileError::Write`] when writing to it fails.
-pub fn write_whole(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
-) -> Result<(), FileError> {
-    let in_place = is_stream(path);
-    // Through a link, what it leads to is replaced and not the link.
-    let resolved = path.canonicalize();
-    let path = match &resolved {
-        Ok(resolved) if !in_place => resolved,
-        _ => path,
-    };
-    let target = if in_place {
-        path.to_owned()
-    } else {
-        let mut name = path.as_os_str().to_owned();
-        name.push(PARTIAL);
-        PathBuf::from(name)
-    };
-    let file = fs::OpenOptions::new()
-        .append(in_place)
-        .write(true)
-        .create(!in_place)
-        .truncate(!in_place)
-        .open(&target)
-        .map_err(|source| FileError::unwritable(path, source))?;
-    let mut buffer = io::BufWriter::new(file);
-    let written = fill(&mut buffer).and_then(|()| io::Write::flush(&mut buffer));
-    if in_place {
-        return written.map_err(|source| FileError::writing(path, source));
-    }
-    written
-        .and_then(|()| fs::rename(&target, path))
-        .map_err(|source| {
-            let _ = fs::remove_file(&target);
-            FileError::writing(path, source)
-        })
+/// A file that is written and not yet in its place. Dropped, it goes, and what is in its place stays.
+#[derive(Debug)]
+pub struct StagedFile {
+    /// Where it goes; `None` for a stream, which is written to in place.
+    place: Option<PathBuf>,
+    folder: Option<StagingFolder>,
 }
 
-/// Writes a value as indented JSON with a line end, whole or not at all.
+/// Name of the file in its staging folder.
+const NEW: &str = "new";
+
+impl StagedFile {
+    /// Writes a file, to the device, in a staging folder beside its place. What is not a regular file (`/dev/stdout`,
+    /// a pipe) is written to as it stands. Through a link, what it leads to is replaced and not the link. A file that
+    /// is replaced leaves its mode.
+    ///
+    /// # Errors
+    /// [`FileError::Unwritable`] when the file cannot be made, [`FileError::Write`] when writing to it fails.
+    pub fn write(
+        path: &Path,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
+        if is_stream(path) {
+            write_in_place(path, fill)?;
+            return Ok(Self {
+                place: None,
+                folder: None,
+            });
+        }
+        let unwritable = |source| FileError::unwritable(path, source);
+        let place = match path.symlink_metadata() {
+            // A link to nothing is an error, not a file to replace.
+            Ok(_) => path.canonicalize().map_err(unwritable)?,
+            Err(_) => path.to_owned(),
+        };
+        let (parent, name) = (parent(&place), place.file_name().unwrap_or_default());
+        // A folder that cannot be listed can still be written to.
+        if let Ok(others) = StagingFolder::others(parent, name, None) {
+            for left in others.left {
+                left.remove().map_err(unwritable)?;
+            }
+        }
+        let mut staged = Self {
+            folder: Some(StagingFolder::create(parent, name).map_err(unwritable)?),
+            place: None,
+        };
+        if let Some(folder) = &staged.folder {
+            let file = folder.path().join(NEW);
+            let written = write_new(&file, fill).and_then(|()| {
+                if let Ok(there) = fs::metadata(&place) {
+                    disk::set_permissions(&file, there.permissions())?;
+                }
+                disk::sync(&file)
+            });
+            written.map_err(|source| FileError::writing(path, source))?;
+        }
+        staged.place = Some(place);
+        Ok(staged)
+    }
+
+    /// Puts the file into its place, at one stroke.
+    ///
+    /// # Errors
+    /// [`FileError::Write`].
+    pub fn place(mut self) -> Result<(), FileError> {
+        let (Some(place), Some(folder)) = (&self.place, &self.folder) else {
+            return Ok(());
+        };
+        let failed = |source| FileError::writing(place, source);
+        disk::rename(&folder.path().join(NEW), place).map_err(failed)?;
+        disk::sync(parent(place)).map_err(failed)?;
+        if let Some(folder) = self.folder.take() {
+            // The file is in its place. What stays here is cleared by the next one.
+            let _ = folder.remove();
+        }
+        Ok(())
+    }
+}
+
+impl Drop for StagedFile {
+    fn drop(&mut self) {
+        if let Some(folder) = self.folder.take() {
+            // A failure to tidy up has nobody to report to; the next one clears what is left.
+            let _ = folder.remove();
+        }
+    }
+}
+
+/// Writes a single file whole: beside `path`, then moved there at one stroke.
 ///
 /// # Errors
-/// As [`write_whole`].
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
-    write_whole(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, value)?;
-        writeln!(file)
-    })
+/// As [`StagedFile::write`].
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
+    StagedFile::write(path, fill)?.place()
+}
+
+/// Writes a file that was not there, and does not wait for the device.
+pub(super) fn write_new(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut buffer = BufWriter::new(NewFile::create(path)?);
+    fill(&mut buffer)?;
+    buffer.flush()
+}
+
+/// Writes to a device or a pipe.
+fn write_in_place(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let file = File::options()
+        .append(true)
+        .open(path)
+        .map_err(|source| FileError::unwritable(path, source))?;
+    let mut buffer = BufWriter::new(file);
+    fill(&mut buffer)
+        .and_then(|()| buffer.flush())
+        .map_err(|source| FileError::writing(path, source))
+}
+
+/// The folder of a file.
+pub(super) fn parent(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Writes a value as indented JSON with a line end.
+///
+/// # Errors
+/// Those of the stream.
+pub fn to_json(stream: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *stream, value)?;
+    writeln!(stream)
 }
 
 #[cfg(test)]
@@ -167,6 +254,39 @@ mod tests {
         ] {
             assert_eq!(is_stream(Path::new(name)), expected, "{name}");
         }
+    }
+
+    /// Found by hostile calls: a user's `table.csv.partial` was overwritten, and a link of that name followed.
+    #[test]
+    fn files_of_such_names_stay() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("table.csv");
+        let mine = ["table.csv.partial", ".table.csv.knotdock-abcdefghijkl"];
+        for name in mine {
+            fs::write(root.path().join(name), "mine").unwrap();
+        }
+        write_whole(&path, |file| file.write_all(b"new")).unwrap();
+        for name in mine {
+            assert_eq!(fs::read_to_string(root.path().join(name)).unwrap(), "mine");
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 3);
+    }
+
+    /// A file that others may not read stays so when it is written anew.
+    #[cfg(unix)]
+    #[test]
+    fn a_file_keeps_its_mode() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("table.csv");
+        fs::write(&path, "old").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        write_whole(&path, |file| file.write_all(b"new")).unwrap();
+        assert_eq!(
+            fs::metadata(&path).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
     }
 
     /// Found by a review: a link was replaced by the file, even where it was `/dev/stdout`.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::output::files::whole_file::{FileError, write_json};
+use crate::output::files::whole_file::{FileError, to_json, write_whole};
 use crate::tradeoff::cost_model::CostModel;
 
 /// Number of the layout of the file; it rises when an entry or what a coefficient multiplies changes.
@@ -69,7 +69,7 @@ pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), FileE
         threads,
         cost_model: *model,
     };
-    write_json(path, &file)
+    write_whole(path, |stream| to_json(stream, &file))
 }
 
 /// Whether a file is a cost model that knotdock wrote, of whichever version.

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
+
+use crate::output::files::checksum::sha256;
 
 /// An input file as recorded: what to read and how to know it again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,12 +116,6 @@ impl InputRecord {
             })
         }
     }
-}
-
-/// SHA-256 in hexadecimal.
-fn sha256(bytes: &[u8]) -> String {
-    let digits = Sha256::digest(bytes);
-    digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The native complex that the poses were measured against.

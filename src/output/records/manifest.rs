@@ -3,7 +3,8 @@
 //! `docs/formats.md` describes each entry. Everything outside the objects `timing` and `machine` is the same, byte for
 //! byte, for the same input, options and CPU feature level.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::io;
 
 use knotdock_structures::molecule::ChainMap;
 use serde::Serialize;
@@ -15,7 +16,7 @@ use crate::dock::plan::DockPlan;
 use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
 use crate::options::DockOptions;
-use crate::output::files::whole_file::{FileError, write_json};
+use crate::output::files::whole_file::to_json;
 use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::program::Program;
 use crate::priors::active_residues::AssumedSite;
@@ -153,6 +154,7 @@ pub struct Manifest<'a> {
     finer_search: Option<FineSearched>,
     error: ErrorRecord,
     results: Results,
+    files: BTreeMap<String, String>,
     chains: Option<&'a ChainMap>,
     #[serde(rename = "match")]
     matching: Option<&'a MatchReport>,
@@ -172,6 +174,8 @@ pub struct ManifestParts<'a> {
     pub outcome: &'a DockOutcome,
     /// Counts of it.
     pub results: Results,
+    /// SHA-256 of each other file of the run, by its path from the directory.
+    pub files: BTreeMap<String, String>,
     /// Chain names in the complexes; none of meshes.
     pub chains: Option<&'a ChainMap>,
     /// Report on the native's matching, if there is one.
@@ -204,6 +208,7 @@ impl<'a> Manifest<'a> {
                 lifted_axis: parts.outcome.rank_error,
             },
             results: parts.results,
+            files: parts.files,
             chains: parts.chains,
             matching: parts.matching,
             timing: parts.timing,
@@ -211,11 +216,11 @@ impl<'a> Manifest<'a> {
         })
     }
 
-    /// Writes the manifest, whole or not at all.
+    /// Writes the manifest to a stream.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        write_json(path, self)
+    /// Those of the stream.
+    pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
+        to_json(stream, self)
     }
 }

@@ -1,6 +1,7 @@
 //! `tradeoff.csv` and `tradeoff.json`: what a sweep of settings measured, a row or object a setting.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::io;
 
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -8,7 +9,7 @@ use serde_json::{Map, Number, Value};
 use crate::evaluate::MatchReport;
 use crate::options::DockOptions;
 use crate::options::check::name_of;
-use crate::output::files::whole_file::{FileError, write_json, write_whole};
+use crate::output::files::whole_file::to_json;
 use crate::output::records::manifest::{Inputs, Machine};
 use crate::output::records::program::Program;
 use crate::output::tables::fields::number;
@@ -128,22 +129,20 @@ fn field(value: &Value) -> String {
     }
 }
 
-/// Writes the table, whole or not at all.
+/// Writes the table to a stream.
 ///
 /// # Errors
-/// [`FileError`].
-pub fn write_table(tradeoff: &Tradeoff, path: &Path) -> Result<(), FileError> {
-    write_whole(path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        for (index, run) in tradeoff.measured.iter().enumerate() {
-            let columns = columns(run);
-            if index == 0 {
-                writer.write_record(columns.iter().map(|(name, _)| name))?;
-            }
-            writer.write_record(columns.iter().map(|(_, value)| field(value)))?;
+/// Those of the stream.
+pub fn write_table(tradeoff: &Tradeoff, stream: &mut dyn io::Write) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(stream);
+    for (index, run) in tradeoff.measured.iter().enumerate() {
+        let columns = columns(run);
+        if index == 0 {
+            writer.write_record(columns.iter().map(|(name, _)| name))?;
         }
-        writer.flush()
-    })
+        writer.write_record(columns.iter().map(|(_, value)| field(value)))?;
+    }
+    writer.flush()
 }
 
 /// `tradeoff.json`.
@@ -158,6 +157,7 @@ pub struct TradeoffRecord<'a> {
     settings: Vec<Map<String, Value>>,
     refused: &'a [Refused],
     advice: Option<&'a Advice>,
+    files: BTreeMap<String, String>,
     #[serde(rename = "match")]
     matching: Option<&'a MatchReport>,
     machine: Machine,
@@ -175,6 +175,8 @@ pub struct TradeoffParts<'a> {
     pub advice: Option<&'a Advice>,
     /// Report on the native's matching, if there is one.
     pub matching: Option<&'a MatchReport>,
+    /// SHA-256 of each other file, by its name.
+    pub files: BTreeMap<String, String>,
     /// Where it ran.
     pub machine: Machine,
 }
@@ -204,16 +206,17 @@ impl<'a> TradeoffRecord<'a> {
                 .collect(),
             refused: &parts.tradeoff.refused,
             advice: parts.advice,
+            files: parts.files,
             matching: parts.matching,
             machine: parts.machine,
         })
     }
 
-    /// Writes the record, whole or not at all.
+    /// Writes the record to a stream.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        write_json(path, self)
+    /// Those of the stream.
+    pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
+        to_json(stream, self)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
@@ -100,14 +100,26 @@ fn header() -> Vec<&'static str> {
     header
 }
 
-/// Whether a file may be replaced by a batch's results: there is none, or it has their header.
+/// Whether a file may be replaced by a batch's results: there is none, it has their header, or it has no content.
 pub fn is_ours(path: &Path) -> bool {
     let Ok(file) = fs::File::open(path) else {
         return !path.exists();
     };
-    let mut line = String::new();
-    // A file that is not text is not ours.
-    BufReader::new(file).read_line(&mut line).is_ok() && line.trim_end() == header().join(",")
+    let header = header().join(",");
+    let (mut start, limit) = (Vec::new(), header.len() as u64 + 2);
+    if file.take(limit).read_to_end(&mut start).is_err() {
+        return false;
+    }
+    let line = start
+        .split(|&byte| byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    is_blank(&start) || line.trim_ascii_end() == header.as_bytes()
+}
+
+/// Whether bytes are none, or zeros as a power cut leaves them.
+fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|&byte| byte == 0)
 }
 
 /// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they
@@ -116,7 +128,9 @@ pub fn is_ours(path: &Path) -> bool {
 /// # Errors
 /// What is wrong with the table, where one is there and cannot be read.
 pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRecord>, csv::Error> {
-    if !path.exists() {
+    // What a power cut left without content is written anew.
+    let is_empty = |path: &Path| fs::read(path).is_ok_and(|bytes| is_blank(&bytes));
+    if !path.exists() || is_empty(path) {
         return Ok(Vec::new());
     }
     // Letters of either case are one where file systems think so.
@@ -230,5 +244,11 @@ mod tests {
         assert_eq!(rows_of_others(&path, &[failed]).unwrap().len(), 1);
         fs::write(&path, "name,value\n").unwrap();
         assert!(!is_ours(&path));
+        // Found by hostile calls: a power cut left an empty table, which every later batch refused.
+        for empty in ["", "\0\0\0\0"] {
+            fs::write(&path, empty).unwrap();
+            assert!(is_ours(&path));
+            assert_eq!(rows_of_others(&path, &[]).unwrap().len(), 0);
+        }
     }
 }

@@ -1,0 +1,284 @@
+//! Changes of the disk: all that the program makes, moves and removes goes through here.
+//!
+//! New files and folders are made exclusively: what is there already, a link too, is an error and stays. Each change
+//! is announced to [`fault`], so that tests can end the program at any of them.
+
+use std::fs::{self, File, Permissions};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::fault::point;
+
+/// A file that is being written.
+#[derive(Debug)]
+pub(super) struct NewFile {
+    file: File,
+    path: PathBuf,
+}
+
+impl NewFile {
+    /// Makes a file that was not there, with the mode that the process gives to new files.
+    ///
+    /// # Errors
+    /// What the system says; [`io::ErrorKind::AlreadyExists`] where something has the name.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        point("create", path)?;
+        let file = File::options()
+            .read(true)
+            .write(true)
+            .create_new(true)
+            .open(path)?;
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+        })
+    }
+
+    /// The open file.
+    pub fn into_file(self) -> File {
+        self.file
+    }
+}
+
+impl io::Write for NewFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        point("write", &self.path)?;
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Makes a folder that was not there.
+pub(super) fn create_dir(path: &Path) -> io::Result<()> {
+    point("mkdir", path)?;
+    fs::create_dir(path)
+}
+
+/// Makes a folder and those above it, where they are not there; the new ones, from the top.
+pub(super) fn create_dir_all(path: &Path) -> io::Result<Vec<PathBuf>> {
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.is_dir();
+    let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
+    let mut made = Vec::new();
+    for folder in missing.into_iter().rev() {
+        match create_dir(folder) {
+            Ok(()) => made.push(folder.to_owned()),
+            // Another process may have made it.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(made)
+}
+
+/// Moves a file or folder within a file system, in place of a file of the new name.
+pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    point("rename", to)?;
+    fs::rename(from, to)
+}
+
+/// Moves a file or folder within a file system to a name that nothing has.
+///
+/// # Errors
+/// [`io::ErrorKind::AlreadyExists`] where something has the name.
+pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
+    point("rename", to)?;
+    match system::rename_new(from, to) {
+        Err(error) if is_unsupported(&error) => {
+            // Between the look and the move another process could take the name; there is no better way there.
+            if to.symlink_metadata().is_ok() {
+                return Err(io::ErrorKind::AlreadyExists.into());
+            }
+            fs::rename(from, to)
+        }
+        done => done,
+    }
+}
+
+/// Exchanges two files or folders of a file system at one stroke.
+///
+/// # Errors
+/// See [`is_unsupported`] for systems that cannot do it.
+pub(super) fn exchange(one: &Path, other: &Path) -> io::Result<()> {
+    point("exchange", other)?;
+    system::exchange(one, other)
+}
+
+/// Whether an error says that the system or the file system knows no such operation.
+pub(super) fn is_unsupported(error: &io::Error) -> bool {
+    // A file system that does not know a flag calls it an invalid argument.
+    matches!(
+        error.kind(),
+        io::ErrorKind::Unsupported | io::ErrorKind::InvalidInput
+    )
+}
+
+/// Removes a file, or a link itself.
+pub(super) fn remove_file(path: &Path) -> io::Result<()> {
+    point("unlink", path)?;
+    fs::remove_file(path)
+}
+
+/// Removes an empty folder.
+pub(super) fn remove_dir(path: &Path) -> io::Result<()> {
+    point("rmdir", path)?;
+    fs::remove_dir(path)
+}
+
+/// Removes a folder with all that is in it. Links are removed, not followed.
+pub(super) fn remove_tree(folder: &Path) -> io::Result<()> {
+    for (path, is_folder) in entries(folder)? {
+        if is_folder {
+            remove_tree(&path)?;
+        } else {
+            remove_file(&path)?;
+        }
+    }
+    remove_dir(folder)
+}
+
+/// The entries of a folder in the order of their names, each with whether it is a folder itself and no link.
+pub(super) fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
+    let mut entries = fs::read_dir(folder)?
+        .map(|entry| {
+            let entry = entry?;
+            Ok((entry.path(), entry.file_type()?.is_dir()))
+        })
+        .collect::<io::Result<Vec<_>>>()?;
+    entries.sort();
+    Ok(entries)
+}
+
+/// The files below a folder, links among them, by their paths from it, in order; folders that are empty too.
+pub(super) fn tree(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    fn below(folder: &Path, root: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+        let entries = entries(folder)?;
+        if entries.is_empty()
+            && let Ok(empty) = folder.strip_prefix(root)
+            && folder != root
+        {
+            found.push(empty.to_owned());
+        }
+        for (path, is_folder) in entries {
+            if is_folder {
+                below(&path, root, found)?;
+            } else if let Ok(file) = path.strip_prefix(root) {
+                found.push(file.to_owned());
+            }
+        }
+        Ok(())
+    }
+    let mut found = Vec::new();
+    below(folder, folder, &mut found)?;
+    Ok(found)
+}
+
+/// Has a file or folder written to the device, so that a power cut does not undo it.
+pub(super) fn sync(path: &Path) -> io::Result<()> {
+    point("sync", path)?;
+    // Windows opens no folder as a file, and keeps their entries itself.
+    if cfg!(windows) && path.is_dir() {
+        return Ok(());
+    }
+    match File::open(path)?.sync_all() {
+        // Some network file systems know no such call for folders.
+        Err(error) if is_unsupported(&error) => Ok(()),
+        done => done,
+    }
+}
+
+/// Has a folder and all that is in it written to the device.
+pub(super) fn sync_tree(folder: &Path) -> io::Result<()> {
+    for (path, is_folder) in entries(folder)? {
+        if is_folder {
+            sync_tree(&path)?;
+        } else {
+            sync(&path)?;
+        }
+    }
+    sync(folder)
+}
+
+/// Gives a file or folder a mode.
+pub(super) fn set_permissions(path: &Path, permissions: Permissions) -> io::Result<()> {
+    point("chmod", path)?;
+    fs::set_permissions(path, permissions)
+}
+
+/// Renames with flags, where the system has them.
+#[cfg(any(target_os = "linux", target_os = "android", target_os = "macos"))]
+mod system {
+    use std::io;
+    use std::path::Path;
+
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+
+    pub fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
+        Ok(renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE)?)
+    }
+
+    pub fn exchange(one: &Path, other: &Path) -> io::Result<()> {
+        // So that tests take the way of systems without it.
+        if cfg!(debug_assertions) && std::env::var_os("KNOTDOCK_NO_EXCHANGE").is_some() {
+            return Err(io::ErrorKind::Unsupported.into());
+        }
+        Ok(renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE)?)
+    }
+}
+
+/// Renames with flags, where the system has none.
+#[cfg(not(any(target_os = "linux", target_os = "android", target_os = "macos")))]
+mod system {
+    use std::io;
+    use std::path::Path;
+
+    pub fn rename_new(_: &Path, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    pub fn exchange(_: &Path, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_there_is_never_replaced_by_something_new() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name);
+        fs::write(at("mine"), "mine").unwrap();
+        fs::write(at("new"), "new").unwrap();
+        let exists = |error: io::Error| error.kind() == io::ErrorKind::AlreadyExists;
+        assert!(exists(NewFile::create(&at("mine")).unwrap_err()));
+        assert!(exists(rename_new(&at("new"), &at("mine")).unwrap_err()));
+        #[cfg(unix)]
+        {
+            // A link to nothing is something, too.
+            std::os::unix::fs::symlink(at("nowhere"), at("link")).unwrap();
+            assert!(exists(NewFile::create(&at("link")).unwrap_err()));
+            assert!(exists(rename_new(&at("new"), &at("link")).unwrap_err()));
+            assert!(!at("nowhere").exists());
+        }
+        assert_eq!(fs::read_to_string(at("mine")).unwrap(), "mine");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_a_tree_is_removed_and_not_followed() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name);
+        fs::create_dir_all(at("tree/inner")).unwrap();
+        fs::create_dir(at("thesis")).unwrap();
+        fs::write(at("thesis/chapter"), "mine").unwrap();
+        std::os::unix::fs::symlink(at("thesis"), at("tree/inner/link")).unwrap();
+        assert_eq!(tree(&at("tree")).unwrap(), [Path::new("inner/link")]);
+        remove_tree(&at("tree")).unwrap();
+        assert!(!at("tree").exists());
+        assert_eq!(fs::read_to_string(at("thesis/chapter")).unwrap(), "mine");
+    }
+}

@@ -1,0 +1,106 @@
+//! What a folder holds, to compare.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+/// A closed mesh.
+pub const TETRAHEDRON: &str =
+    "v 0 0 0\nv 3 0 0\nv 0 3 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// The files of a folder by their paths, and the folders, those of records without what differs from run to run.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Snapshot(pub BTreeMap<String, String>);
+
+impl Snapshot {
+    pub fn of(folder: &Path) -> Self {
+        let mut files = BTreeMap::new();
+        add(folder, folder, &mut files);
+        Self(files)
+    }
+
+    /// Whether a staging folder is there.
+    pub fn has_litter(&self) -> bool {
+        self.0.keys().any(|path| path.contains(".knotdock-"))
+    }
+
+    /// The same without staging folders.
+    pub fn without_litter(mut self) -> Self {
+        self.0.retain(|path, _| !path.contains(".knotdock-"));
+        self
+    }
+
+    /// The paths at which another differs, in a line; empty where none does.
+    pub fn difference(&self, other: &Self) -> String {
+        let paths = self.0.keys().chain(other.0.keys());
+        let mut paths: Vec<&String> = paths.collect();
+        paths.sort();
+        paths.dedup();
+        let one = |path: &String| match (self.0.get(path), other.0.get(path)) {
+            (Some(one), Some(other)) if one == other => None,
+            (Some(_), Some(_)) => Some(format!("{path} differs")),
+            (Some(_), None) => Some(format!("{path} is too many")),
+            _ => Some(format!("{path} is missing")),
+        };
+        let lines: Vec<String> = paths.into_iter().filter_map(one).collect();
+        lines.join(", ")
+    }
+
+    /// Only what is below a folder.
+    pub fn below(&self, folder: &str) -> Self {
+        let inside = self.0.iter().filter(|(path, _)| path.starts_with(folder));
+        Self(
+            inside
+                .map(|(path, text)| (path.clone(), text.clone()))
+                .collect(),
+        )
+    }
+}
+
+fn add(folder: &Path, root: &Path, files: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path
+            .strip_prefix(root)
+            .unwrap()
+            .to_string_lossy()
+            .into_owned();
+        if path.is_dir() {
+            files.insert(name, "folder".to_owned());
+            add(&path, root, files);
+        } else {
+            let text = String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned();
+            // Records hold the inputs' paths.
+            let text = text.replace(&*root.to_string_lossy(), "HERE");
+            files.insert(name, settled(text));
+        }
+    }
+}
+
+/// A record without times; other text as it is.
+fn settled(text: String) -> String {
+    match serde_json::from_str::<Value>(&text) {
+        Ok(Value::Object(mut record)) if record.contains_key("program") => {
+            record.remove("timing");
+            record.remove("machine");
+            Value::Object(record).to_string()
+        }
+        _ => text,
+    }
+}
+
+/// Copies a folder.
+pub fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).unwrap();
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Crashes: each command is ended at every change that it makes to the disk, and every such change is made to fail.
+//!
+//! `KNOTDOCK_FAULT` (see `src/output/files/fault.rs`) does both, in builds with debug assertions. After each: the
+//! user's files are as they were, the old or the new result stands whole, and a second call ends well and leaves
+//! nothing behind.
+#![cfg(debug_assertions)]
+
+#[path = "../molecules/mod.rs"]
+mod molecules;
+
+mod folder;
+mod scenario;
+
+use std::fs;
+use std::path::Path;
+
+use folder::Snapshot;
+use scenario::{Scenario, run};
+
+/// Options of the smallest docking.
+const SMALL: &str = "--rotations 4 --poses 6 --resolution 8 --effects shape --quiet";
+
+/// Writes the two molecules.
+fn inputs(folder: &Path) {
+    fs::write(folder.join("receptor.pdb"), molecules::receptor()).unwrap();
+    fs::write(folder.join("ligand.pdb"), molecules::ligand()).unwrap();
+}
+
+/// The inputs, and a run of them by other options.
+fn with_a_run(folder: &Path) {
+    inputs(folder);
+    let older = format!(
+        "dock receptor.pdb ligand.pdb -o run --write-top 2 --no-cluster {SMALL} --per-rotation 2"
+    );
+    run(folder, &older);
+}
+
+/// The same, with files of the user's in the run's directory.
+fn with_a_run_and_notes(folder: &Path) {
+    with_a_run(folder);
+    fs::write(folder.join("run/notes.txt"), "mine").unwrap();
+    fs::write(folder.join("run/top/session.cxs"), "mine").unwrap();
+    fs::write(folder.join("run/top/rank_0002.pdb"), "edited").unwrap();
+}
+
+fn dock(extra: &str) -> String {
+    format!("dock receptor.pdb ligand.pdb --write-top 2 {SMALL} {extra}")
+}
+
+#[test]
+fn a_first_run() {
+    Scenario::new(inputs, &dock("-o runs/run")).check();
+}
+
+/// The older run and the new one are exchanged at one stroke: one of the two stands after every crash.
+#[test]
+fn a_run_in_place_of_another() {
+    let scenario = Scenario::new(with_a_run, &dock("-o run --force"));
+    assert!(
+        scenario
+            .changes()
+            .iter()
+            .any(|change| change.starts_with("exchange"))
+    );
+    scenario.check();
+}
+
+/// Beside files of the user's, and where the system cannot exchange, the next call finishes a commit that was cut.
+#[test]
+fn a_run_among_files_of_the_users() {
+    let scenario = Scenario::new(with_a_run_and_notes, &dock("-o run --force"));
+    assert!(
+        !scenario
+            .changes()
+            .iter()
+            .any(|change| change.starts_with("exchange"))
+    );
+    scenario.by_journal().check();
+}
+
+#[test]
+fn a_run_without_an_exchange() {
+    Scenario::new(with_a_run, &dock("-o run --force"))
+        .with_variable("KNOTDOCK_NO_EXCHANGE", "1")
+        .by_journal()
+        .check();
+}
+
+#[test]
+fn a_run_into_the_current_folder() {
+    Scenario::new(inputs, &dock("-o . --force"))
+        .by_journal()
+        .check();
+}
+
+#[test]
+fn complexes_of_a_run() {
+    Scenario::new(with_a_run, "export run --rank 1-4 --quiet")
+        .additive()
+        .check();
+    Scenario::new(with_a_run, "export run --rank 3,4 -o out/complexes --quiet")
+        .additive()
+        .check();
+}
+
+/// Each file by itself is the old one or the new one.
+#[test]
+fn balls_of_a_mesh() {
+    let mesh = |folder: &Path| {
+        fs::write(folder.join("tetrahedron.obj"), folder::TETRAHEDRON).unwrap();
+        for file in ["knots.csv", "balls.obj", "slices.svg"] {
+            fs::write(folder.join(file), "old").unwrap();
+        }
+    };
+    let sample = "sample tetrahedron.obj --grid 2^9 -o knots.csv --export balls.obj --picture slices.svg --force --quiet";
+    Scenario::new(mesh, sample).by_file().check();
+}
+
+/// Of each pair the old or no run stands, or the new one; the table has a row for each pair.
+#[test]
+fn a_batch() {
+    let pairs = |folder: &Path| {
+        inputs(folder);
+        let table =
+            "name,receptor,ligand\none,receptor.pdb,ligand.pdb\ntwo,ligand.pdb,receptor.pdb\n";
+        fs::write(folder.join("pairs.csv"), table).unwrap();
+    };
+    let options = SMALL.replace("--quiet", "");
+    let batch = format!("batch pairs.csv -o batch --quiet -- --write-top 1 {options}");
+    Scenario::new(pairs, &batch)
+        .by_directory(&["batch/one", "batch/two"])
+        .check();
+}
+
+#[test]
+fn a_sweep_of_settings() {
+    let sweep = |folder: &Path| {
+        inputs(folder);
+        fs::create_dir(folder.join("sweep")).unwrap();
+        let record = r#"{"program": "knotdock", "files": {}}"#;
+        fs::write(folder.join("sweep/tradeoff.json"), record).unwrap();
+    };
+    let options = "--rotations 4 --poses 6 --resolution 8 --effects shape --parameters tolerance";
+    let tradeoff = format!("tradeoff receptor.pdb ligand.pdb -o sweep --force --quiet {options}");
+    Scenario::new(sweep, &tradeoff).measured().check();
+}
+
+#[test]
+fn a_table_evaluated_in_place() {
+    let evaluate = "evaluate run/poses.csv --native native.pdb -o run/poses.csv --force --quiet";
+    let native = |folder: &Path| {
+        with_a_run(folder);
+        let complex = molecules::receptor().replace("END\n", "") + &molecules::ligand();
+        fs::write(folder.join("native.pdb"), complex).unwrap();
+    };
+    Scenario::new(native, evaluate).by_file().check();
+}
+
+/// What is replaced is on the device before the older run goes: a power cut finds one of the two.
+#[test]
+fn a_run_is_on_the_device_before_another_goes() {
+    for scenario in [
+        Scenario::new(with_a_run, &dock("-o run --force")),
+        Scenario::new(with_a_run_and_notes, &dock("-o run --force")),
+        Scenario::new(inputs, &dock("-o run")),
+    ] {
+        let changes = scenario.changes();
+        let place = |text: &str| changes.iter().position(|change| change.contains(text));
+        let last_of = |text: &str| changes.iter().rposition(|change| change.contains(text));
+        let taken = changes.iter().position(|change| {
+            change.starts_with("exchange")
+                || (change.starts_with("rename") && !change.contains(".knotdock-"))
+        });
+        for written in changes
+            .iter()
+            .filter(|change| change.starts_with("create") && change.contains("/new/"))
+        {
+            let file = written.trim_start_matches("create");
+            let synced = place(&format!("sync{file}"));
+            assert!(
+                synced.is_some() && synced < taken,
+                "{written}: {changes:#?}"
+            );
+            assert!(synced > last_of(&format!("write{file}")), "{written}");
+        }
+        // The older files go after the folder that has the new ones is on the device, too.
+        let removed = changes
+            .iter()
+            .rposition(|change| change.starts_with("unlink"));
+        let folder = changes
+            .iter()
+            .rposition(|change| change.starts_with("sync") && !change.contains(".knotdock-"));
+        assert!(folder > taken && folder < removed, "{changes:#?}");
+    }
+}
+
+/// Files of a folder by their paths; only to see that the comparison can fail.
+#[test]
+fn snapshots_differ_where_files_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(
+        at("run.json"),
+        r#"{"program":"knotdock","timing":1,"machine":2,"x":3}"#,
+    )
+    .unwrap();
+    let first = Snapshot::of(folder.path());
+    fs::write(
+        at("run.json"),
+        r#"{"program":"knotdock","timing":7,"machine":8,"x":3}"#,
+    )
+    .unwrap();
+    assert_eq!(first.difference(&Snapshot::of(folder.path())), "");
+    fs::write(
+        at("run.json"),
+        r#"{"program":"knotdock","timing":7,"machine":8,"x":4}"#,
+    )
+    .unwrap();
+    assert_ne!(first.difference(&Snapshot::of(folder.path())), "");
+    let second = Snapshot::of(folder.path());
+    fs::create_dir(at(".run.knotdock-abcdefghijkl")).unwrap();
+    assert!(Snapshot::of(folder.path()).has_litter() && !second.has_litter());
+}
