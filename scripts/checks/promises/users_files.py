@@ -28,8 +28,8 @@ def plant(folder, name, kind):
             with open(path, "x") as file:
                 file.write(f"the user's {name}\n")
         elif kind == "folder":
-            path.mkdir()
-            for inside in ("poses.csv", "mine.txt"):
+            (path / "new").mkdir(parents=True)
+            for inside in ("poses.csv", "mine.txt", "lock", "new/poses.csv"):
                 (path / inside).write_text(f"the user's {name}/{inside}\n")
         elif kind == "hard link":
             os.link(folder / "thesis/chapter.txt", path)
@@ -125,7 +125,8 @@ FOREIGN = ["notes.txt", ".hidden", "top/notes.txt", "top/rank_0001.png", "top/mi
 def foreign_files(trial):
     """Files of the user's in a run's folder and in its top/ survive --force, batch and export.
 
-    Notes, pictures and folders of the user's lie in the folder of an older run, which is then replaced or added to.
+    Notes, pictures and folders of the user's lie in the folder of an older run, and files of the run are edited; then
+    it is replaced or added to. The user's files stay where they are, edited ones there or under another name.
     """
     write_inputs(trial.folder)
     is_batch = trial.random.random() < 0.3
@@ -144,9 +145,15 @@ def foreign_files(trial):
         if trial.random.random() < 0.6:
             name = f"{folder}/{name}"
             users[name] = trial.make(name, f"the user's {name}\n").read_bytes()
+    edited = []
+    if "export" not in words and trial.random.random() < 0.5:
+        path = trial.folder / folder / trial.random.choice(["poses.csv", "top/rank_0001.pdb", "top/rank_0002.pdb"])
+        edited.append(path.read_bytes() + b"REMARK edited by the user\n")
+        path.write_bytes(edited[0])
     for _ in range(trial.random.choice([1, 1, 2])):
         trial.run(*words)
     found = tree(trial.folder)
+    trial.check(all(content in found.values() for content in edited), "a file of the run that was edited is nowhere")
     lost = differences({name: found[name] for name in users if name in found}, users)
     trial.check(not lost, f"of the user's: {lost}")
 
