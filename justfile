@@ -16,6 +16,11 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
 
+# What is promised, tried many times (at most 20 minutes); writes the table of docs/trust.md
+trust *options:
+    cargo build --release
+    scripts/checks/trust.py target/release/knotdock --write docs/trust.md {{options}}
+
 # Layout and lints of the scripts; needs ruff (PyPI)
 lint-scripts:
     ruff format --check scripts

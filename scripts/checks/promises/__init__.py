@@ -1,0 +1,66 @@
+"""The promises that scripts/checks/trust.py tests: one function each, and one line here."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+from promises import (
+    exact_scores,
+    hostile_input,
+    hostile_sizes,
+    kills,
+    memory,
+    names,
+    ranks,
+    same_bytes,
+    system_limits,
+    two_at_once,
+    users_files,
+    write_failures,
+)
+
+
+@dataclass
+class Promise:
+    """A promise. The first paragraph of the function's comment is what is promised, the rest how it is tested."""
+
+    trial: Callable
+    short: int  # trials in the short form
+    full: int
+
+    @property
+    def name(self):
+        return self.trial.__name__
+
+    @property
+    def words(self):
+        """What is promised, and how it is tested."""
+        first, _, rest = (self.trial.__doc__ or "").partition("\n\n")
+        return " ".join(first.split()), " ".join(rest.split())
+
+
+PROMISES = [
+    Promise(users_files.names_on_the_way, 10, 300),
+    Promise(users_files.links_for_outputs, 12, 200),
+    Promise(users_files.foreign_files, 6, 100),
+    Promise(users_files.edited_complexes, 6, 100),
+    Promise(two_at_once.docks_at_once, 2, 40),
+    Promise(two_at_once.batches_at_once, 2, 40),
+    Promise(kills.kills, 16, 600),
+    Promise(write_failures.file_size_limit, 10, 200),
+    Promise(write_failures.full_disk, 6, 100),
+    Promise(write_failures.no_permission, 6, 40),
+    Promise(system_limits.threads_refused, 4, 60),
+    Promise(system_limits.memory_refused, 4, 100),
+    Promise(memory.refusals, 3, 45),
+    Promise(same_bytes.any_threads, 10, 200),
+    Promise(same_bytes.again, 6, 100),
+    Promise(exact_scores.docked_scores, 6, 200),
+    Promise(exact_scores.gradients, 3, 40),
+    Promise(exact_scores.distances, 4, 100),
+    Promise(ranks.noise, 1, 30),
+    Promise(ranks.frames, 1, 40),
+    Promise(hostile_input.damaged_files, 60, 2000),
+    Promise(hostile_sizes.bounded_time, 11, 44),
+    Promise(names.spreadsheet_cells, 3, 40),
+    Promise(names.control_characters, 6, 100),
+]

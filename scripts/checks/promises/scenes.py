@@ -1,0 +1,127 @@
+"""Small inputs, and the calls that write files: what each makes, with and without an older result in its place."""
+
+import functools
+import re
+import shutil
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from promises.folders import Watch, comparable, tree
+from promises.trial import ROOT, Trial
+
+CASES = ROOT / "tests/scoring_table/cases"
+EXAMPLES = ROOT / "structures/examples"
+
+BLOCK = [(0, 0), (6, 0), (6, 4), (4, 4), (3.4, 2), (2.2, 2), (2, 4), (0, 4)]  # with a groove
+KEY = [(9, 1), (10, 1), (10.5, 2.8), (10.5, 4), (9, 4)]
+
+
+def prism(outline, height):
+    """OBJ text of an outline (corners counterclockwise) drawn up to a height: a closed mesh."""
+    n = len(outline)
+    lines = [f"v {x} {y} {z}" for z in (0, height) for x, y in outline]
+    faces = [range(n, 0, -1), range(n + 1, 2 * n + 1)]
+    faces += [(i + 1, (i + 1) % n + 1, n + (i + 1) % n + 1, n + i + 1) for i in range(n)]
+    return "\n".join(lines + ["f " + " ".join(map(str, face)) for face in faces]) + "\n"
+
+
+PAIRS = "receptor,ligand,name\nreceptor.pdb,ligand.pdb,one\nligand.pdb,receptor.pdb,two\n"
+
+
+def write_inputs(folder):
+    """Writes two small proteins of helices, their complex, two meshes and a table of pairs into a folder."""
+    for side in ("receptor", "ligand"):
+        shutil.copy(CASES / f"helices_{side}.pdb", folder / f"{side}.pdb")
+    texts = [(folder / f"{side}.pdb").read_text().replace("END\n", "") for side in ("receptor", "ligand")]
+    moved = texts[1].replace(" ALA A ", " ALA C ")
+    (folder / "native.pdb").write_text(texts[0] + moved + "END\n")
+    (folder / "block.obj").write_text(prism(BLOCK, 3))
+    (folder / "key.obj").write_text(prism(KEY, 2.8))
+    (folder / "pairs.csv").write_text(PAIRS)
+
+
+FEW = ["--rotations", "4", "--poses", "20"]
+DOCK = ["dock", "receptor.pdb", "ligand.pdb", *FEW, "-o", "run"]
+OLD = ["dock", "receptor.pdb", "ligand.pdb", "--rotations", "3", "--poses", "9", "-o", "run"]
+SAMPLE = ["sample", "block.obj", "--grid", "2^10", "-o", "k.csv", "--export", "k.obj", "--picture", "k.svg"]
+OLD_SAMPLE = ["sample", "key.obj", "--grid", "2^10", "-o", "k.csv", "--export", "k.obj", "--picture", "k.svg"]
+BATCH = ["batch", "pairs.csv", "-o", "runs", "--", *FEW]
+OLD_BATCH = ["batch", "pairs.csv", "-o", "runs", "--", "--rotations", "3", "--poses", "9"]
+SWEEP = ["tradeoff", "receptor.pdb", "ligand.pdb", "--parameters", "per-rotation", *FEW, "-o", "sweep"]
+INSPECT = ["inspect", "receptor.pdb", "--atoms", "atoms.csv", "--write", "kept.pdb"]
+EVALUATE = ["evaluate", "run", "--native", "native.pdb", "-o", "measured.csv"]
+
+
+@dataclass
+class Scene:
+    """A call that writes files, calls that come before it, and units: entries that are old or new as a whole."""
+
+    name: str
+    words: list
+    before: list = field(default_factory=list)
+    units: tuple = ()
+    outputs: tuple = ()  # entries that a link may stand in place of
+
+    def prepare(self, trial):
+        write_inputs(trial.folder)
+        for words in self.before:
+            trial.run(words[0], "-q", *words[1:], may_fail=False)
+
+
+RUN = ("run", "run/top", "run/poses.csv", "run/run.json", "run/top/rank_0001.pdb", "run/top/rank_0002.pdb")
+BALLS = ("k.csv", "k.obj", "k.svg")
+SWEPT = ("sweep", "sweep/tradeoff.csv", "sweep/tradeoff.json", "sweep/tradeoff.svg")
+BATCHED = ("runs", "runs/results.csv", "runs/one", "runs/one/top", "runs/two/poses.csv")
+MORE = ("more/rank_0002.pdb", "more/rank_0012.pdb")
+SCENES = [
+    Scene("dock", DOCK, units=("run",), outputs=RUN),
+    Scene("dock --force", [*DOCK, "--force"], [OLD], ("run",), RUN),
+    Scene("sample", SAMPLE, units=BALLS, outputs=BALLS),
+    Scene("sample --force", [*SAMPLE, "--force"], [OLD_SAMPLE], BALLS, BALLS),
+    Scene("batch", BATCH, units=("runs/one", "runs/two"), outputs=BATCHED),
+    Scene("batch --force", [*BATCH, "--force"], [OLD_BATCH], ("runs/one", "runs/two"), BATCHED),
+    Scene("export", ["export", "run", "--rank", "11,12"], [DOCK], ("run/top/rank_0011.pdb", "run/top/rank_0012.pdb"),
+          ("run/top/rank_0011.pdb", "run/top")),
+    Scene("export --force", ["export", "run", "--rank", "2,12", "-o", "more", "--force"],
+          [DOCK, ["export", "run", "--rank", "2", "-o", "more"]], MORE, ("more", *MORE)),
+    Scene("tradeoff", SWEEP, units=("sweep",), outputs=SWEPT),
+    Scene("tradeoff --force", [*SWEEP, "--force"], [SWEEP], ("sweep",), SWEPT),
+    Scene("inspect", INSPECT, units=("atoms.csv", "kept.pdb"), outputs=("atoms.csv", "kept.pdb")),
+    Scene("inspect --force", [*INSPECT, "--force"], [INSPECT], ("atoms.csv", "kept.pdb"), ("atoms.csv", "kept.pdb")),
+    Scene("evaluate", EVALUATE, [DOCK], ("measured.csv",), ("measured.csv",)),
+    Scene("evaluate --force", [*EVALUATE, "--force"], [DOCK, EVALUATE], ("measured.csv",), ("measured.csv",)),
+]  # fmt: skip
+
+
+@dataclass
+class Usual:
+    """What a scene's call does where nothing is in its way: files before and after, names on the way, duration."""
+
+    old: dict
+    new: dict
+    passing: list
+    seconds: float
+    events: int
+
+
+@functools.cache
+def usual(knotdock, name):
+    """Runs a scene undisturbed."""
+    scene = next(scene for scene in SCENES if scene.name == name)
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Trial(knotdock, name, 0, 0, Path(folder).resolve(), False)
+        scene.prepare(trial)
+        old = tree(trial.folder)
+        watch = Watch(trial.folder)
+        counted = []
+        process = trial.start(scene.words[0], "-q", *scene.words[1:])
+        call = trial.finish(process, watch=lambda process: counted.append(watch.follow(process)))
+        watch.close()
+        if call.code or trial.failures:
+            raise RuntimeError(f"{trial.commands[-1]} fails undisturbed: {call.err} {trial.failures}")
+        new = tree(trial.folder)
+        own = re.compile(rf"(?<!\d){process.pid}(?!\d)")
+        passing = sorted({own.sub("PID", name) for name in watch.names - set(old) - set(new)})
+        old, new = comparable(old, trial.folder), comparable(new, trial.folder)
+        return Usual(old, new, passing, call.seconds, sum(counted))
