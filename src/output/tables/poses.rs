@@ -14,6 +14,7 @@ use serde_json::Value;
 
 use crate::dock::outcome::RankedPose;
 use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 use crate::output::tables::pose_columns::columns;
 
@@ -114,10 +115,10 @@ impl PoseTable {
     /// # Errors
     /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(stream);
-        writer.write_record(&self.header)?;
+        let mut writer = TableWriter::new(stream);
+        writer.row(&self.header)?;
         for record in &self.records {
-            writer.write_record(record)?;
+            writer.row(record)?;
         }
         writer.flush()
     }
