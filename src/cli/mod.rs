@@ -15,6 +15,7 @@ mod sample;
 mod score;
 mod tradeoff;
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -27,6 +28,7 @@ use knotdock::options::text::first_paragraph;
 use knotdock::threads;
 use messages::console::Console;
 use messages::failure::Failure;
+use messages::shown::shown;
 use messages::suggestions;
 
 use crate::system_limits::report_as_json;
@@ -70,15 +72,9 @@ pub fn main() -> ExitCode {
     if json {
         report_as_json();
     }
-    let parsed = Cli::command()
-        .mut_subcommands(with_negative_numbers)
-        .mut_subcommand("dock", dock::refusing_recorded)
-        .try_get_matches_from(&arguments)
-        .and_then(|matches| Cli::from_arg_matches(&matches))
-        .map_err(suggestions::explained);
-    let cli = match parsed {
+    let cli = match parsed(&arguments) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error, json),
+        Err(error) => return refuse(&escaped(error, &arguments), json),
     };
     let console = Console::from(cli.program);
     if let Err(error) = threads::stay_on_main() {
@@ -117,6 +113,41 @@ fn wants_json(arguments: &[OsString]) -> bool {
         .any(|argument| argument == "--json")
 }
 
+/// The command line as read.
+fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    Cli::command()
+        .mut_subcommands(with_negative_numbers)
+        .mut_subcommand("dock", dock::refusing_recorded)
+        .try_get_matches_from(arguments)
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+        .map_err(suggestions::explained)
+}
+
+/// Whether a terminal may show an argument as it stands.
+fn is_plain(argument: &OsString) -> bool {
+    matches!(shown(&argument.to_string_lossy()), Cow::Borrowed(_))
+}
+
+/// The error with the control characters of arguments escaped: clap repeats them as they stand, or drops them.
+fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
+    if arguments.iter().all(is_plain) {
+        return error;
+    }
+    let escaped = arguments.iter().map(|argument| {
+        let argument = argument.to_string_lossy();
+        OsString::from(shown(&argument).as_ref())
+    });
+    let escaped: Vec<OsString> = escaped.collect();
+    // A table of energies is read as its option is: its file goes by its own name alone.
+    let is_of_potential = error
+        .source()
+        .is_some_and(|source| source.is::<PotentialFileError>());
+    match parsed(&escaped) {
+        Err(again) if again.kind() == error.kind() && !is_of_potential => again,
+        _ => error,
+    }
+}
+
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
 fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     let for_information = matches!(
@@ -136,9 +167,11 @@ fn refuse(error: &clap::Error, json: bool) -> ExitCode {
             .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
         let failure = Failure::input(first_paragraph(error)).remedy(remedy);
         console.fail(&failure);
-    } else {
+    } else if arguments.iter().all(is_plain) {
         // A terminal that is gone needs no message.
         let _ = error.print();
+    } else {
+        console.error(error.render());
     }
     if for_information {
         ExitCode::SUCCESS

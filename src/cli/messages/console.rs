@@ -1,6 +1,8 @@
 //! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
 //! output and every word on standard error; under `--quiet` no words but errors.
 //!
+//! Control characters of files and names are escaped: [`shown`].
+//!
 //! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
@@ -14,6 +16,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::Progress;
 
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::shown::{shown, shown_json};
 
 /// Why a part of the report could not be written, the first time that happened.
 static LOST: OnceLock<io::Error> = OnceLock::new();
@@ -36,10 +39,11 @@ impl Console {
             return;
         }
         if self.json {
-            write_line(&mut io::stderr(), &text.to_string());
+            write_line(&mut io::stderr(), &shown(&text.to_string()));
         } else {
             let mut stream = io::stdout();
-            let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
+            let text = text.to_string();
+            let written = writeln!(stream, "{}", shown(&text)).and_then(|()| stream.flush());
             if let Err(error) = written {
                 // Only the first failure is reported.
                 let _ = LOST.set(error);
@@ -62,13 +66,14 @@ impl Console {
     /// Writes a warning on standard error.
     pub fn warn(&self, text: impl ToString) {
         if !self.quiet {
-            write_line(&mut io::stderr(), &format!("warning: {}", text.to_string()));
+            let text = format!("warning: {}", text.to_string());
+            write_line(&mut io::stderr(), &shown(&text));
         }
     }
 
     /// Writes on standard error what went wrong and does not end the command.
     pub fn error(&self, text: impl ToString) {
-        write_line(&mut io::stderr(), &text.to_string());
+        write_line(&mut io::stderr(), &shown(&text.to_string()));
     }
 
     /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
@@ -78,7 +83,8 @@ impl Console {
             return Ok(());
         }
         let mut stream = io::stdout();
-        match writeln!(stream, "{object}").and_then(|()| stream.flush()) {
+        let object = object.to_string();
+        match writeln!(stream, "{}", shown_json(&object)).and_then(|()| stream.flush()) {
             Err(error) => unwritten(&error),
             Ok(()) => Ok(()),
         }
@@ -87,9 +93,10 @@ impl Console {
     /// Writes a failure: for a person on standard error, for a program on standard output as well.
     pub fn fail(&self, failure: &Failure) {
         if self.json {
-            write_line(&mut io::stdout(), &failure.json().to_string());
+            let object = failure.json().to_string();
+            write_line(&mut io::stdout(), &shown_json(&object));
         }
-        write_line(&mut io::stderr(), &failure.text());
+        write_line(&mut io::stderr(), &shown(&failure.text()));
     }
 
     /// A progress bar on standard error; none when that is not a terminal or words are not wanted.

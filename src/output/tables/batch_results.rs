@@ -7,6 +7,7 @@ use csv::StringRecord;
 use serde_json::Value;
 
 use crate::bounded_read::{MAX_RECORD, MAX_TABLE, read_bounded_file};
+use crate::output::tables::cells::{TableWriter, unquoted_row};
 use crate::output::tables::fields::number;
 
 use crate::output::files::whole_file::{FileError, write_whole};
@@ -133,6 +134,7 @@ pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRec
     let own: HashSet<String> = pairs.iter().map(|pair| pair.name.to_lowercase()).collect();
     let mut rows: Vec<StringRecord> = csv::Reader::from_reader(table.as_slice())
         .into_records()
+        .map(|row| row.map(|row| unquoted_row(&row)))
         .collect::<Result<_, _>>()?;
     rows.retain(|row| {
         let name = row.get(0).unwrap_or_default();
@@ -151,8 +153,8 @@ pub fn write_results(
     others: &[StringRecord],
 ) -> Result<(), FileError> {
     write_whole(path, |file| {
-        let mut table = csv::WriterBuilder::new().from_writer(file);
-        table.write_record(header())?;
+        let mut table = TableWriter::new(file);
+        table.row(header())?;
         for result in results {
             let none = RunSummary::default();
             let (status, error, run) = match &result.outcome {
@@ -171,10 +173,10 @@ pub fn write_results(
             row.extend(run.counts.map(count));
             row.extend(BEST.map(|name| run.best(name)));
             row.push(count(run.first_acceptable));
-            table.write_record(row)?;
+            table.row(row)?;
         }
         for row in others {
-            table.write_record(row)?;
+            table.row(row)?;
         }
         table.flush()
     })

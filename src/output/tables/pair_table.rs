@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 
 use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::output::tables::cells::unquoted;
 use crate::output::tables::csv_lines::line_of;
 
 /// What a line begins with that is no row.
@@ -178,7 +179,7 @@ fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
         options: Vec::new(),
     };
     for (column, field) in header.iter().zip(record) {
-        let field = field.to_owned();
+        let field = unquoted(field).to_owned();
         match column {
             "name" => row.name = field,
             "receptor" => row.receptor = field,

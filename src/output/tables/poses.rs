@@ -13,6 +13,7 @@ use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
 use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 
 /// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
@@ -85,10 +86,10 @@ impl PoseTable {
     /// # Errors
     /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(stream);
-        writer.write_record(&self.header)?;
+        let mut writer = TableWriter::new(stream);
+        writer.row(&self.header)?;
         for record in &self.records {
-            writer.write_record(record)?;
+            writer.row(record)?;
         }
         writer.flush()
     }

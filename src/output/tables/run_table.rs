@@ -6,6 +6,7 @@ use csv::StringRecord;
 use serde_json::Value;
 
 use crate::dock::outcome::RankedPose;
+use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 use crate::output::tables::pose_columns::{PoseColumn, columns};
 use crate::output::tables::poses::{PoseRow, row_object};
@@ -64,12 +65,12 @@ impl<'a> RunTable<'a> {
     /// # Errors
     /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(stream);
-        writer.write_record(&self.header())?;
+        let mut table = TableWriter::new(stream);
+        table.row(&self.header())?;
         for (index, pose) in self.poses.iter().enumerate() {
-            writer.write_record(&self.record(index, pose))?;
+            table.row(&self.record(index, pose))?;
         }
-        writer.flush()
+        table.flush()
     }
 }
 
