@@ -1,7 +1,7 @@
 //! Why a search was refused or failed, and what to do about it.
 
-use crate::threads::ThreadsError;
 use crate::dock::memory::size::as_size;
+use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_scoring::terms::effect::Effect;

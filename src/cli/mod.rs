@@ -74,7 +74,7 @@ pub fn main() -> ExitCode {
     }
     let cli = match parsed(&arguments) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&escaped(error, &arguments), json),
+        Err(error) => return refuse(&escaped(error, &arguments), &arguments, json),
     };
     let console = Console::from(cli.program);
     if let Err(error) = threads::stay_on_main() {
@@ -149,7 +149,7 @@ fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
 }
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
-fn refuse(error: &clap::Error, json: bool) -> ExitCode {
+fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> ExitCode {
     let for_information = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion

@@ -180,7 +180,9 @@ mod tests {
             pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
         ];
         let mut file = std::fs::File::create(&path).unwrap();
-        RunTable::new(&poses, false, &[]).write_to(&mut file).unwrap();
+        RunTable::new(&poses, false, &[])
+            .write_to(&mut file)
+            .unwrap();
         let read = PoseTable::read(&path).unwrap();
         for (row, expected) in read.rows().iter().zip(&poses) {
             assert_eq!(row.pose.translation, expected.pose.translation);
