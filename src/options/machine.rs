@@ -11,7 +11,8 @@ pub struct MachineOptions {
     /// Threads.
     #[command(flatten)]
     pub threads: Threads,
-    /// Memory that a search may take, such as 800M (10^6) or 4GiB (2^30 bytes) [default: 80% of what is free].
+    /// Memory that the whole run may take, program, reading and sampling included, such as 800M (10^6) or 4GiB (2^30
+    /// bytes) [default: 80% of what is free].
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub memory: Option<u64>,
 }

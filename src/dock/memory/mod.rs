@@ -15,6 +15,9 @@ use stages::{AtOnce, MemoryStage, Sizes};
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
 const GRAPHICS_BYTES: u64 = 512 << 20;
 
+/// Rotations that are ever in flight: more threads than any machine has.
+const MAX_IN_FLIGHT: usize = 1 << 16;
+
 /// Memory of a run, in bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MemoryPlan {
@@ -45,25 +48,17 @@ impl MemoryPlan {
             let limits = (named(needed), allowed);
             return Err(too_little(scene, options, (space, refined), limits));
         }
-        let fits = |at_once: &AtOnce| allowed.is_none_or(|allowed| sizes.peak(*at_once) <= allowed);
-        let most = options.machine.threads.count();
-        let flights = (1..=most).rev().map(|rotations| AtOnce {
-            rotations,
-            effects: 1,
-        });
-        let most_in_flight = flights
-            .into_iter()
-            .find(fits)
-            .unwrap_or(AtOnce::ONE)
-            .rotations;
+        let fits = |rotations, effects| {
+            let needed = sizes.peak(AtOnce { rotations, effects });
+            allowed.is_none_or(|allowed| needed <= allowed)
+        };
+        let threads = options.machine.threads.count().min(MAX_IN_FLIGHT);
+        let most_in_flight = most(threads, |rotations| fits(rotations, 1));
         let rotations = most_in_flight.min(options.search.rotations);
-        let parts = (1..=rotations)
-            .rev()
-            .map(|effects| AtOnce { rotations, effects });
-        let at_once = parts.into_iter().find(fits).unwrap_or(AtOnce {
+        let at_once = AtOnce {
             rotations,
-            effects: 1,
-        });
+            effects: most(rotations, |effects| fits(rotations, effects)),
+        };
         let graphics = match options.search.engine {
             EngineChoice::Cpu => 0,
             EngineChoice::Gpu => {
@@ -103,11 +98,10 @@ impl MemoryPlan {
 
     /// Rotations in flight at the rank that the engine turned out to have, at least one.
     pub fn in_flight_at(&self, rank: usize) -> usize {
-        let fits = |count: &usize| {
-            let needed = self.sizes.search_peak(*count, rank);
+        most(self.in_flight(), |count| {
+            let needed = self.sizes.search_peak(count, rank);
             self.allowed.is_none_or(|allowed| needed <= allowed)
-        };
-        (1..=self.in_flight()).rev().find(fits).unwrap_or(1)
+        })
     }
 
     /// Bytes that the run takes at its peak.
@@ -119,6 +113,20 @@ impl MemoryPlan {
     pub fn largest(&self) -> Option<MemoryStage> {
         self.sizes.largest(self.at_once)
     }
+}
+
+/// The largest number from 1 to `limit` that fits, where all below one that fits do; 1 where none does.
+fn most(limit: usize, fits: impl Fn(usize) -> bool) -> usize {
+    let (mut fitting, mut end) = (1, limit.max(1) + 1);
+    while fitting + 1 < end {
+        let middle = fitting.midpoint(end);
+        if fits(middle) {
+            fitting = middle;
+        } else {
+            end = middle;
+        }
+    }
+    fitting
 }
 
 /// The error of a run that does not fit, with the finest grid or resolution that would.
@@ -201,6 +209,15 @@ fn rounded_up(spacing: f64, angstrom: f64) -> f64 {
 mod tests {
     use super::*;
     use std::cell::Cell;
+
+    #[test]
+    fn the_most_that_fits_is_found_by_halving() {
+        for limit in [1, 2, 3, 17, 1000] {
+            for room in [0, 1, 2, 5, 16, 17, 18, 5000] {
+                assert_eq!(most(limit, |count| count <= room), room.clamp(1, limit));
+            }
+        }
+    }
 
     /// Each step was planned twice, from the finest on: refusing --resolution 0.1 took half a minute.
     #[test]

@@ -3,10 +3,13 @@
 /// Steps in which a size is named, and twice what is left for the process's own size to vary, in bytes.
 const NAMED_STEP: u64 = 1_000_000;
 
+/// One part in so many of what is needed is left for reading by several threads to vary.
+const VARIES: u64 = 50;
+
 /// A limit to name for what is needed: whole megabytes, with room for what the process itself takes to vary.
 pub fn named(needed: u64) -> u64 {
     needed
-        .saturating_add(NAMED_STEP / 2)
+        .saturating_add(NAMED_STEP / 2 + needed / VARIES)
         .checked_next_multiple_of(NAMED_STEP)
         .unwrap_or(u64::MAX)
 }
@@ -24,14 +27,14 @@ mod tests {
     use super::*;
     use crate::options::values::size;
 
-    /// What is named can be pasted, and leaves half a megabyte.
+    /// What is named can be pasted, and leaves half a megabyte and 2%.
     #[test]
     fn named_sizes_are_read_back() {
         for (needed, text) in [
             (1, "1M"),
-            (499_999, "1M"),
+            (490_000, "1M"),
             (500_001, "2M"),
-            (84_500_000, "85M"),
+            (84_500_000, "87M"),
         ] {
             assert_eq!(as_size(named(needed)), text);
             assert_eq!(size(text), Ok(named(needed)));

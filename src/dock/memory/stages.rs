@@ -40,7 +40,7 @@ const TERM_TABLES: u64 = 2 << 20;
 /// Bytes of an atom in a complex that is being written, with its line.
 const ATOM_WRITTEN: u64 = 1 << 8;
 /// Bytes of a row's values against a known complex.
-const QUALITY: u64 = 512;
+const QUALITY: u64 = 384;
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.
 const THREAD: u64 = 1 << 20;
 /// One part in so many of a stage's memory is lost between buffers: measured, 6% to 19% of what is alive on one thread.
