@@ -186,51 +186,59 @@ fn threads_that_cannot_be_started_are_a_failure() {
     assert!(!place.path("run").exists() && !place.path("knots.csv").exists());
 }
 
-/// An account that may have no more processes: one thread is enough for all work, and more are refused.
+/// The words before a program's that let it have no more processes, nor threads: as another account where the one at
+/// hand is the superuser, whose processes are not limited. Not every shell knows `ulimit -u`.
+fn without_processes(place: &Place) -> Vec<&'static str> {
+    let user = place.command("id").arg("-u").output().unwrap().stdout;
+    let other = [
+        "setpriv",
+        "--reuid=65534",
+        "--regid=65534",
+        "--clear-groups",
+    ];
+    let other = if user == b"0\n" { &other[..] } else { &[] };
+    [other, &["prlimit", "--nproc=1"]].concat()
+}
+
+/// An account that may have no more processes: one thread is enough for all work, and more are refused. Nor does the
+/// progress on a terminal need a thread, whose failure was a panic.
 #[test]
 fn an_account_without_processes_left_can_work_on_one_thread() {
+    let name = "an_account_without_processes_left_can_work_on_one_thread";
     let place = Place::new();
-    // The superuser's processes are not limited. Another account has to reach the folder and the program.
-    let is_root = place.command("id").arg("-u").output().unwrap().stdout == b"0\n";
-    let limited = |words: &str| {
-        let mut command = place.command(if is_root { "setpriv" } else { "prlimit" });
-        if is_root {
-            command.args([
-                "--reuid=65534",
-                "--regid=65534",
-                "--clear-groups",
-                "prlimit",
-            ]);
-        }
-        // Not every shell knows `ulimit -u`.
-        command.args(["--nproc=1", "./program"]);
-        command.args(words.split_whitespace()).output()
+    let before = without_processes(&place);
+    let limited = |words: &[&str]| {
+        let mut command = place.command(before[0]);
+        command.args(&before[1..]).args(words).output()
     };
+    // The other account has to reach the folder and the program.
     fs::copy(cargo_bin!("knotdock"), place.path("program")).unwrap();
-    let opened = place
-        .command("chmod")
-        .args(["-R", "a+rwX", "."])
-        .output()
-        .unwrap();
+    let mut opening = place.command("chmod");
+    let opened = opening.args(["-R", "a+rwX", "."]).output().unwrap();
     assert!(opened.status.success());
-    match limited("--version") {
-        Ok(output) if output.status.success() => {}
-        _ => {
-            let reason = "no account with a limit on its processes can be taken here";
-            return not_run(
-                "an_account_without_processes_left_can_work_on_one_thread",
-                reason,
-            );
-        }
+    let succeeds = |words: &[&str]| limited(words).is_ok_and(|output| output.status.success());
+    if !succeeds(&["./program", "--version"]) || succeeds(&["sh", "-c", "(exit 0); (exit 0)"]) {
+        return not_run(
+            name,
+            "no account with a limit on its processes can be taken here",
+        );
     }
-    let sample = "sample box.obj --grid 2^12 --json";
-    let refused = error(&limited(&format!("{sample} -j 2")).unwrap(), 1);
+    let sample = "./program sample box.obj --grid 2^12 --json -j";
+    let sample: Vec<&str> = sample.split(' ').collect();
+    let refused = error(&limited(&[&sample[..], &["2"]].concat()).unwrap(), 1);
     let message = refused["message"].as_str().unwrap();
     assert!(message.contains("did not start 2 threads"), "{message}");
-    let output = limited(&format!("{sample} -j 1")).unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(succeeds(&[&sample[..], &["1"]].concat()));
+
+    let dock = "./program dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 -o run -j 1";
+    let mut terminal = place.command("script");
+    terminal.args(["-qec", &format!("{} {dock}", before.join(" ")), "/dev/null"]);
+    match terminal.output() {
+        Ok(output) => {
+            let words = String::from_utf8_lossy(&output.stdout);
+            assert!(output.status.success(), "{words}");
+            assert!(words.contains(" gone, "), "no progress: {words}");
+        }
+        Err(_) => not_run(name, "there is no `script` here, which plays a terminal"),
+    }
 }
