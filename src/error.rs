@@ -1,5 +1,7 @@
 //! Why a search was refused or failed, and what to do about it.
 
+use crate::dock::memory::size::as_size;
+use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
 use knotdock_scoring::terms::effect::Effect;
@@ -40,10 +42,10 @@ pub enum SearchError {
         /// What it lacks.
         reason: String,
     },
-    /// Not even one rotation in flight fits into the memory allowed.
-    #[error("one rotation in flight needs {needed} bytes, and {allowed} are allowed")]
+    /// Even with one rotation in flight the run does not fit into the memory allowed.
+    #[error("the run needs {needed} bytes of memory, and {allowed} are allowed")]
     Memory {
-        /// Bytes needed.
+        /// Bytes that suffice.
         needed: u64,
         /// Bytes allowed.
         allowed: u64,
@@ -67,8 +69,8 @@ pub enum SearchError {
         allowed: u64,
     },
     /// The threads could not be started.
-    #[error("threads could not be started: {0}")]
-    Threads(String),
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
     /// The graphics processor cannot be used.
     #[error("--engine gpu: {0}")]
     Graphics(String),
@@ -96,6 +98,7 @@ impl SearchError {
                 "give the option a value in its range".to_owned()
             }
             Self::Memory {
+                needed,
                 spacing: Some(spacing),
                 resolution,
                 pass_length,
@@ -109,25 +112,27 @@ impl SearchError {
                     with("--resolution", resolution),
                     with("--pass-length", pass_length),
                 );
+                let needed = as_size(*needed);
                 let coarser = format!("--spacing {spacing}{resolution}{pass_length}");
                 if *shows_little {
                     format!(
-                        "allow more with --memory, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
+                        "allow more with --memory {needed}, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
                     )
                 } else {
                     format!(
-                        "use {coarser}, allow more with --memory, or check for atoms or parts far from the rest"
+                        "use {coarser}, allow more with --memory {needed}, or check for atoms or parts far from the rest"
                     )
                 }
             }
-            Self::Memory { .. } => {
-                "allow more with --memory, or check for atoms or parts far from the rest".to_owned()
+            Self::Memory { needed, .. } => {
+                let needed = as_size(*needed);
+                format!("allow more with --memory {needed}, or check for atoms or parts far from the rest")
             }
             Self::Graphics(_) => {
                 "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
                     .to_owned()
             }
-            Self::Threads(_) => "ask for fewer --threads".to_owned(),
+            Self::Threads(error) => error.remedy().to_owned(),
             Self::Effect {
                 effect: Effect::Restraint,
                 ..

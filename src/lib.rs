@@ -1,5 +1,6 @@
 //! knotdock: the pipeline from two structures, or two meshes, to a ranked list of poses.
 
+pub mod bounded_read;
 pub mod dock;
 pub mod error;
 pub mod evaluate;
@@ -14,4 +15,5 @@ pub mod progress;
 pub mod rank;
 pub mod score;
 pub mod search;
+pub mod threads;
 pub mod tradeoff;

@@ -2,6 +2,7 @@
 
 mod program;
 
+use knotdock::output::files::folder_lock::FolderLock;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -397,17 +398,19 @@ fn two_batches_into_one_directory_lose_no_row() {
     let table = |rows: &str| write_pairs(folder.path(), &format!("name;Receptor;Ligand\n{rows}"));
     let call = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 12");
     table("first;helices_receptor.pdb;helices_ligand.pdb\n");
-    let lock = folder.path().join("out/results.csv.lock");
+    // A user's file of the name that the lock once had: it went with the batch.
+    let mine = folder.path().join("out/results.csv.lock");
     fs::create_dir(folder.path().join("out")).unwrap();
-    let held = fs::File::create(&lock).unwrap();
-    held.lock().unwrap();
+    fs::write(&mine, "mine").unwrap();
+    let held = FolderLock::take(&folder.path().join("out")).unwrap();
+    assert!(held.is_some());
     let refused = batch(folder.path(), &call);
     assert_eq!(refused.status.code(), Some(2));
     let said = String::from_utf8_lossy(&refused.stderr);
     assert!(said.contains("another batch is being written"), "{said}");
     drop(held);
     assert!(batch(folder.path(), &call).status.success());
-    assert!(!lock.exists());
+    assert_eq!(fs::read_to_string(&mine).unwrap(), "mine");
     let first = results(folder.path());
 
     table("second;charged_helices_receptor.pdb;charged_helices_ligand.pdb\n");

@@ -77,6 +77,7 @@ fn dock_says_where_the_run_is_and_what_is_best() {
             "cpu_features",
             "effects",
             "error",
+            "files",
             "finer_search",
             "inputs",
             "machine",

@@ -9,6 +9,7 @@
 
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
+use crate::engine::receptor_spectra::LigandFunctions;
 use crate::exact::PoseGradient;
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
@@ -53,10 +54,14 @@ pub struct PotentialGrid {
 }
 
 impl PotentialGrid {
-    /// Bytes that the field of a plan takes.
-    pub fn bytes(plan: &Plan) -> usize {
-        let size = fine_size(plan);
-        plan.functions() * 4 * size[0] * size[1] * (size[2] + LANES)
+    /// Bytes that the field of a plan takes while it is made: its grids, and the spectrum of one.
+    pub fn bytes(plan: &Plan, ligand: &Knots) -> usize {
+        let [mx, my, mz] = fine_size(plan);
+        let LigandFunctions { columns, effects } = LigandFunctions::of_score(plan, ligand);
+        let weight = |knot: usize, function: usize| columns[function][knot];
+        let grids = combinations(&effects, ligand.len(), weight).grids.len();
+        let spectrum = size_of::<Complex<f32>>() * mx * my * (mz / 2 + 2);
+        grids * size_of::<f32>() * mx * my * (mz + LANES) + spectrum
     }
 
     /// Samples the potentials from the receptor's spectra.
@@ -68,7 +73,10 @@ impl PotentialGrid {
             .fold(f64::INFINITY, f64::min);
         let kernel = SpreadingKernel::<f32>::new(WIDTH, oversampling);
         let mut sampler = Sampler::new(plan, &kernel);
-        let seen = combinations(spectra, ligand.len());
+        let functions = 0..spectra.full_rank();
+        let effects: Vec<Effect> = functions.map(|function| spectra.effect(function)).collect();
+        let weight = |knot: usize, function: usize| spectra.ligand_weight(knot, function);
+        let seen = combinations(&effects, ligand.len(), weight);
         let grids = seen
             .grids
             .iter()
@@ -303,16 +311,22 @@ struct Combinations {
 
 /// Knots of one radius and one class have one potential: the functions of the classes are added up beforehand, so that
 /// a knot reads one grid for all of them. Charges, of which there are many values, keep a grid of their own.
-fn combinations<T: Real>(spectra: &ReceptorSpectra<T>, count: usize) -> Combinations {
-    let (charges, classes): (Vec<usize>, Vec<usize>) = (0..spectra.full_rank())
-        .partition(|&function| spectra.effect(function) == Effect::Electrostatics);
+///
+/// `effects` are those of the functions, and `weight` is that of a function at one of the `count` knots.
+fn combinations(
+    effects: &[Effect],
+    count: usize,
+    weight: impl Fn(usize, usize) -> f64,
+) -> Combinations {
+    let (charges, classes): (Vec<usize>, Vec<usize>) =
+        (0..effects.len()).partition(|&function| effects[function] == Effect::Electrostatics);
     let mut keys: BTreeMap<Vec<(usize, u64)>, usize> = BTreeMap::new();
     let mut grids: Vec<Vec<(usize, f32)>> = Vec::new();
     let mut knots = Vec::with_capacity(count);
     let weights = |knot: usize, functions: &[usize]| -> Vec<(usize, f64)> {
         functions
             .iter()
-            .map(|&function| (function, spectra.ligand_weight(knot, function)))
+            .map(|&function| (function, weight(knot, function)))
             .filter(|&(_, weight)| weight != 0.0)
             .collect()
     };
@@ -323,7 +337,7 @@ fn combinations<T: Real>(spectra: &ReceptorSpectra<T>, count: usize) -> Combinat
             .collect();
         distinct.len() <= 2 * classes.len()
     };
-    let mut single = vec![None; spectra.full_rank()];
+    let mut single = vec![None; effects.len()];
     for knot in 0..count {
         let mut reads = Vec::new();
         let separate = if merge {
@@ -337,7 +351,7 @@ fn combinations<T: Real>(spectra: &ReceptorSpectra<T>, count: usize) -> Combinat
             }
             weights(knot, &charges)
         } else {
-            let all: Vec<usize> = (0..spectra.full_rank()).collect();
+            let all: Vec<usize> = (0..effects.len()).collect();
             weights(knot, &all)
         };
         for (function, weight) in separate {

@@ -186,19 +186,20 @@ fn dock_pair(dock: Dock) -> Result<bool, Failure> {
         quiet: true,
         ..Console::default()
     };
-    let docking = dock.prepare(silent)?;
-    if docking.is_done() {
-        return Ok(false);
-    }
-    if let Some(directory) = docking.in_the_way() {
-        return Err(Failure::input(
-            "the directory holds a run of other inputs or options, or by another version, or only part of this one",
-        )
-        .at(directory)
-        .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
-    }
-    docking.run(silent)?;
-    Ok(true)
+    dock.prepared(silent, |docking| {
+        if docking.is_done() {
+            return Ok(false);
+        }
+        if let Some(directory) = docking.in_the_way() {
+            return Err(Failure::input(
+                "the directory holds a run of other inputs or options, or by another version, or only part of this one",
+            )
+            .at(directory)
+            .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
+        }
+        docking.run(silent)?;
+        Ok(true)
+    })
 }
 
 /// What came of a pair, in a line.

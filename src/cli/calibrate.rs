@@ -6,6 +6,7 @@ use clap::Args;
 use knotdock::options::Threads;
 use knotdock::output::records::cost_model_file::{default_path, is_ours, read, write};
 use knotdock::output::tables::report::align;
+use knotdock::threads::on;
 use knotdock::tradeoff::calibrate::calibrate;
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;
@@ -42,7 +43,7 @@ impl Calibrate {
         }
         let threads = self.threads.count();
         let progress = console.progress();
-        let model = calibrate(threads, &progress)
+        let model = on(threads, || calibrate(threads, &progress))?
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         if !model.is_sound() {

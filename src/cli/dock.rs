@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Arg, Args, Command, Id};
+use knotdock::dock::memory::process;
 use knotdock::options::values::{above_zero, duration};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
+use knotdock::threads;
 use knotdock::tradeoff::choice::Wanted;
 
 use crate::cli::arguments::machine::settled;
@@ -18,7 +20,7 @@ use crate::cli::messages::failure::Failure;
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
 /// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input
-/// and options give the same bytes for any number of threads.
+/// and options give the same bytes for any number of threads, except with --budget.
 #[derive(Args, Debug)]
 pub struct Dock {
     /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
@@ -50,7 +52,8 @@ pub struct Dock {
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
     /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search
-    /// stops earlier. run.json records where, so that the run can be repeated. `knotdock calibrate` measures how fast
+    /// stops earlier, so that the same call need not give the same bytes. run.json records where: `--rerun` of it gives the
+    /// same bytes. `knotdock calibrate` measures how fast
     /// this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
@@ -107,16 +110,33 @@ impl Dock {
         Request::read([receptor, ligand], self.native.read()?, given)
     }
 
-    /// Reads and plans.
-    pub fn prepare(self, console: Console) -> Result<Docking, Failure> {
+    /// Reads and plans, and hands the docking on to `then`: all on the threads that the options name.
+    pub fn prepared<T: Send>(
+        self,
+        console: Console,
+        then: impl FnOnce(Docking) -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
         let clock = Clock::start();
-        let given = self.options.given()?;
-        let machine = settled(&given.options.machine);
-        let mut request = match &self.rerun {
-            Some(path) => Request::recorded(path, console)?,
+        process::begin();
+        let mut given = self.options.given()?;
+        // Known before anything is read, for reading takes memory, too.
+        given.options.machine = settled(&given.options.machine);
+        threads::on(given.options.machine.threads.count(), || {
+            then(self.prepare(given, clock, console)?)
+        })?
+    }
+
+    /// Reads and plans.
+    fn prepare(
+        self,
+        given: GivenOptions,
+        clock: Clock,
+        console: Console,
+    ) -> Result<Docking, Failure> {
+        let request = match &self.rerun {
+            Some(path) => Request::recorded(path, given.options.machine, console)?,
             None => self.request(given)?,
         };
-        request.options.machine = machine;
         let directory = self.output.unwrap_or_else(|| request.directory());
         let wanted = Wanted {
             accuracy: self.accuracy,
@@ -130,7 +150,7 @@ impl Dock {
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let done = self.prepare(console)?.run(console)?;
+        let done = self.prepared(console, |docking| docking.run(console))?;
         console.result(&done)?;
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use knotdock::dock::memory::process;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
@@ -14,15 +15,14 @@ use knotdock::output::records::manifest::{
 };
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::fields::Column;
-use knotdock::output::tables::poses::PoseTable;
 use knotdock::output::tables::quality;
 use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
+use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::{Value, json};
 
-use super::arguments::memory;
 use crate::cli::arguments::machine::machine;
 use crate::cli::arguments::native::{NativeFiles, announce, measure};
 use crate::cli::calibrate::cost_model;
@@ -152,12 +152,11 @@ impl Docking {
         let Self { directory, .. } = &self;
         let top = directory.join("top");
         let complexes = written.complexes.iter().map(|name| top.join(name));
-        let best = firsts(&outcome.poses).into_iter().take(BEST);
         Ok(json!({
             "directory": directory.display().to_string(),
             "poses": directory.join("poses.csv").display().to_string(),
             "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "best": written.table.objects(best),
+            "best": written.best,
             "run": written.manifest,
         }))
     }
@@ -168,17 +167,15 @@ impl Docking {
             request, evaluator, ..
         } = self;
         let output = &request.options.output;
-        let mut table = PoseTable::new(&outcome.poses, output.diagnostics);
+        let rows = pose_rows(&outcome.poses);
         let quality = match evaluator {
-            Some(evaluator) => quality::columns(&measure(evaluator, table.rows())),
+            Some(evaluator) => quality::columns(&measure(evaluator, &rows)),
             None => Vec::new(),
         };
-        for column in &quality {
-            table.set_column(column);
-        }
+        let table = RunTable::new(&outcome.poses, output.diagnostics, &quality);
         staging.write("poses.csv", |file| table.write_to(file))?;
-        let top = table.rows().get(..output.write_top);
-        let top = top.unwrap_or(table.rows());
+        let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
+        let top = rows.get(..output.write_top).unwrap_or(&rows);
         let written =
             request
                 .bodies
@@ -210,7 +207,7 @@ impl Docking {
         Ok(Written {
             manifest: serde_json::to_value(&manifest).map_err(Failure::other)?,
             complexes: written.names,
-            table,
+            best,
             quality,
         })
     }
@@ -262,7 +259,8 @@ pub fn warn_set_aside(files: &[SetAside], console: Console) {
 
 /// What a run wrote.
 struct Written {
-    table: PoseTable,
+    /// Rows of the best clusters, as JSON.
+    best: Vec<Value>,
     /// Columns of the table that a known complex added.
     quality: Vec<Column>,
     /// Names of the complexes in `top/`.
@@ -334,7 +332,7 @@ impl Clock {
             wall_seconds: self.monotonic.elapsed().as_secs_f64(),
             stages: outcome.timing.clone(),
             effects: EffectTime::of(&outcome.effects),
-            peak_memory_bytes: memory::peak(),
+            peak_memory_bytes: process::peak(),
         }
     }
 }

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use knotdock::evaluate::{Capri, Criterion, PoseQuality};
-use knotdock::options::{InputOptions, definitions};
+use knotdock::options::{InputOptions, Threads, definitions};
 use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};
+use knotdock::threads;
 use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};
@@ -42,11 +43,18 @@ pub struct Evaluate {
     /// Replace the file of `--output` where it is already there, be it the table that is read.
     #[arg(long, requires = "output")]
     force: bool,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 impl Evaluate {
     /// Evaluates.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.evaluate(console))?
+    }
+
+    /// Evaluates on the threads of the caller.
+    fn evaluate(self, console: Console) -> Result<(), Failure> {
         let table_path = if self.poses.is_dir() {
             self.poses.join("poses.csv")
         } else {

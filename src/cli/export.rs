@@ -4,12 +4,14 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
+use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
 use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::threads;
 use serde_json::json;
 
 use crate::cli::arguments::output_file::check_not_read;
@@ -33,11 +35,18 @@ pub struct Export {
     /// Replace complexes that are there and differ, be it that someone has edited them.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 impl Export {
     /// Writes the complexes.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.export(console))?
+    }
+
+    /// Writes them on the threads of the caller.
+    fn export(self, console: Console) -> Result<(), Failure> {
         finish_interrupted(&self.run)?;
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;

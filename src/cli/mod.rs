@@ -15,6 +15,7 @@ mod sample;
 mod score;
 mod tradeoff;
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -24,9 +25,13 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use knotdock::options::PotentialFileError;
 use knotdock::options::text::first_paragraph;
+use knotdock::threads;
 use messages::console::Console;
 use messages::failure::Failure;
+use messages::shown::shown;
 use messages::suggestions;
+
+use crate::system_limits::report_as_json;
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,
 /// and samples meshes.
@@ -63,17 +68,19 @@ fn version() -> &'static str {
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let parsed = Cli::command()
-        .mut_subcommands(with_negative_numbers)
-        .mut_subcommand("dock", dock::refusing_recorded)
-        .try_get_matches_from(&arguments)
-        .and_then(|matches| Cli::from_arg_matches(&matches))
-        .map_err(suggestions::explained);
-    let cli = match parsed {
+    let json = wants_json(&arguments);
+    if json {
+        report_as_json();
+    }
+    let cli = match parsed(&arguments) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error, &arguments),
+        Err(error) => return refuse(&escaped(error, &arguments), &arguments, json),
     };
     let console = Console::from(cli.program);
+    if let Err(error) = threads::stay_on_main() {
+        console.fail(&error.into());
+        return ExitCode::FAILURE;
+    }
     let done = match cli.command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => match command.run(console) {
@@ -98,16 +105,55 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Whether a JSON object is wanted, as far as can be said of a command line that may be wrong.
+fn wants_json(arguments: &[OsString]) -> bool {
+    arguments
+        .iter()
+        .take_while(|argument| *argument != "--")
+        .any(|argument| argument == "--json")
+}
+
+/// The command line as read.
+fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    Cli::command()
+        .mut_subcommands(with_negative_numbers)
+        .mut_subcommand("dock", dock::refusing_recorded)
+        .try_get_matches_from(arguments)
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+        .map_err(suggestions::explained)
+}
+
+/// Whether a terminal may show an argument as it stands.
+fn is_plain(argument: &OsString) -> bool {
+    matches!(shown(&argument.to_string_lossy()), Cow::Borrowed(_))
+}
+
+/// The error with the control characters of arguments escaped: clap repeats them as they stand, or drops them.
+fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
+    if arguments.iter().all(is_plain) {
+        return error;
+    }
+    let escaped = arguments.iter().map(|argument| {
+        let argument = argument.to_string_lossy();
+        OsString::from(shown(&argument).as_ref())
+    });
+    let escaped: Vec<OsString> = escaped.collect();
+    // A table of energies is read as its option is: its file goes by its own name alone.
+    let is_of_potential = error
+        .source()
+        .is_some_and(|source| source.is::<PotentialFileError>());
+    match parsed(&escaped) {
+        Err(again) if again.kind() == error.kind() && !is_of_potential => again,
+        _ => error,
+    }
+}
+
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
-fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> ExitCode {
     let for_information = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     );
-    let json = arguments
-        .iter()
-        .take_while(|argument| *argument != "--")
-        .any(|argument| argument == "--json");
     let console = Console {
         json,
         ..Console::default()
@@ -121,9 +167,11 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
             .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
         let failure = Failure::input(first_paragraph(error)).remedy(remedy);
         console.fail(&failure);
-    } else {
+    } else if arguments.iter().all(is_plain) {
         // A terminal that is gone needs no message.
         let _ = error.print();
+    } else {
+        console.error(error.render());
     }
     if for_information {
         ExitCode::SUCCESS

@@ -3,10 +3,12 @@
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::error::SearchError;
+use knotdock::options::DockOptions;
 use knotdock::options::values::at_least_one;
 use knotdock::output::tables::report;
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
+use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
@@ -61,6 +63,13 @@ impl Score {
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
         let dock = self.options.given()?.options;
+        threads::on(dock.machine.threads.count(), || {
+            self.score(&pose, &dock, console)
+        })?
+    }
+
+    /// Scores on the threads of the caller.
+    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
         let options = ScoreOptions {
             engine: dock.kernel.engine(),
             modes: self.modes,
@@ -76,13 +85,13 @@ impl Score {
         let [receptor, ligand] = inputs.map(|input| input.molecule);
         console.say(format!("Receptor: {}", receptor.report));
         console.say(format!("Ligand: {}", ligand.report));
-        let scene = Scene::new(&receptor, &ligand, &dock).map_err(refused)?;
-        let scored = score::score(&scene, &pose, &options).map_err(refused)?;
-        let geometry = PoseGeometry::of(&receptor, &ligand, &pose).map_err(Failure::input)?;
+        let scene = Scene::new(&receptor, &ligand, dock).map_err(refused)?;
+        let scored = score::score(&scene, pose, &options).map_err(refused)?;
+        let geometry = PoseGeometry::of(&receptor, &ligand, pose).map_err(Failure::input)?;
         let pose_terms = scene
-            .rescorer(&dock)
+            .rescorer(dock)
             .map_or_else(TermValues::default, |rescorer| {
-                rescorer.score(&pose, &mut Workspace::default())
+                rescorer.score(pose, &mut Workspace::default())
             });
         let pose_score = scored.exact + pose_terms.sum();
         console.say(format!("\n{}", ladder_text(&scored)));

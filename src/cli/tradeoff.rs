@@ -11,6 +11,7 @@ use knotdock::output::files::staging::Staging;
 use knotdock::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::tables::report::align;
 use knotdock::progress::Progress;
+use knotdock::threads;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
 use knotdock::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
@@ -18,7 +19,7 @@ use serde_json::json;
 
 use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
-use crate::cli::arguments::options::{OfTradeoff, OptionArguments};
+use crate::cli::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::cli::docking::warn_set_aside;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
@@ -61,18 +62,25 @@ fn parameters_help() -> String {
 impl TradeoffCommand {
     /// Sweeps.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let given = self.options.given()?;
+        let mut given = self.options.given()?;
+        given.options.machine = settled(&given.options.machine);
         if given.options.search.symmetry.is_some() {
             return Err(
                 Failure::input("settings of a search for rings are not swept")
                     .remedy("leave `symmetry` out of the file of options"),
             );
         }
+        threads::on(given.options.machine.threads.count(), || {
+            self.sweep(given, console)
+        })?
+    }
+
+    /// Sweeps on the threads of the caller.
+    fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Failure> {
         let pair = [&self.receptor, &self.ligand];
         let mut request = Request::read(pair, self.native.read()?, given)?;
         check(&request, self.parameters.as_deref().unwrap_or_default())?;
         let parameters = self.parameters.unwrap_or_else(Parameter::all);
-        request.options.machine = settled(&request.options.machine);
         let directory = self.output.unwrap_or_else(|| {
             let [receptor, ligand] = request.bodies.labels();
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))

@@ -32,29 +32,32 @@ pub(super) fn effect_timings<T: Real>(
         .iter()
         .filter(|effect| **effect != Effect::Shape)
         .fold(spectra.clone(), |spectra, &effect| spectra.without(effect));
-    // Made all at once, and timed one by one. Where one effect is on, it is the whole.
+    // Made at once, as many as memory has room for, and timed one by one. Where one effect is on, it is the whole.
     let others = if active.len() > 1 {
         active.as_slice()
     } else {
         &[]
     };
-    let mut parts: Vec<(Effect, CpuEngine<T>)> = others
-        .par_iter()
-        .map(|&effect| {
-            let ChosenRank { engine, .. } = match effect {
-                Effect::Shape => rank_of(plan, &alone),
-                effect => rank_of(plan, &spectra.without(effect)),
-            };
-            (effect, engine)
-        })
-        .collect();
-    // An engine goes once it is timed.
-    let mut part = |effect: Effect| {
-        let place = parts.iter().position(|(of, _)| *of == effect);
-        place.map_or(whole, |place| {
-            let (_, engine) = parts.swap_remove(place);
-            (engine.rank(), milliseconds(plan, &engine))
-        })
+    let without = |effect: Effect| {
+        let ChosenRank { engine, .. } = match effect {
+            Effect::Shape => rank_of(plan, &alone),
+            effect => rank_of(plan, &spectra.without(effect)),
+        };
+        engine
+    };
+    let mut parts: Vec<(Effect, (usize, f64))> = Vec::new();
+    for together in others.chunks(plan.memory.effects_at_once()) {
+        let engines: Vec<CpuEngine<T>> =
+            together.par_iter().map(|&effect| without(effect)).collect();
+        // An engine goes once it is timed.
+        let timed = engines
+            .into_iter()
+            .map(|engine| (engine.rank(), milliseconds(plan, &engine)));
+        parts.extend(together.iter().copied().zip(timed));
+    }
+    let part = |effect: Effect| {
+        let part = parts.iter().find(|(of, _)| *of == effect);
+        part.map_or(whole, |(_, part)| *part)
     };
     plan.decisions
         .iter()

@@ -3,7 +3,7 @@
 pub mod effect_decisions;
 mod effect_timings;
 pub mod flexible_regions;
-mod memory;
+pub mod memory;
 pub mod outcome;
 pub mod pair;
 pub mod plan;

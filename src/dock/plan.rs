@@ -2,7 +2,8 @@
 
 use crate::dock::effect_decisions::Decision;
 use crate::dock::flexible_regions::FlexibleRegions;
-use crate::dock::memory::{MemoryPlan, most_in_flight};
+use crate::dock::memory::MemoryPlan;
+use crate::dock::memory::stages::MemoryStage;
 use crate::dock::scene::{LengthUnit, Scene};
 use crate::error::SearchError;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
@@ -56,10 +57,13 @@ pub struct DockPlan {
     /// Length that stands for one Ångström, in `unit`.
     #[serde(skip)]
     pub(crate) angstrom: f64,
-    /// Bytes that everything but rotations in flight takes.
+    /// Bytes that everything but rotations in flight takes, beside the program and the inputs.
     pub fixed_bytes: u64,
     /// Bytes that a rotation in flight takes.
     pub bytes_in_flight: u64,
+    /// Memory by stage, within the limit.
+    #[serde(skip)]
+    pub(crate) memory: MemoryPlan,
     /// Effects that are on, and why.
     #[serde(skip)]
     pub decisions: Vec<Decision>,
@@ -100,9 +104,10 @@ pub fn plan(
 pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
     options.check()?;
     let engine = scene.engine_plan(options)?;
-    let memory = MemoryPlan::new(&scene, &engine, options)?;
     let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
-    let limits = (memory.in_flight, memory.graphics);
+    let refined = refined(&space, &scene.decisions, options);
+    let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
+    let limits = (memory.in_flight(), memory.graphics);
     let search = SearchPlan::new(Arc::new(engine), space, options, limits);
     let engine = &search.engine;
     let radii = match engine.basis() {
@@ -125,8 +130,9 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         pass_frequency: 1.0 / engine.options().kernel.pass_length,
         stop_frequency: engine.kernel().stop(),
         radii,
-        fixed_bytes: memory.fixed,
-        bytes_in_flight: memory.per_rotation,
+        fixed_bytes: memory.fixed(),
+        bytes_in_flight: memory.per_rotation(),
+        memory,
         decisions: scene.decisions,
         active: scene.active,
         labels: scene.labels,
@@ -169,17 +175,7 @@ impl DockPlan {
 
     /// Number of poses to refine: all where none lies on the grid, as of rings.
     pub fn refined(&self) -> usize {
-        if !self.search.space.is_on_grid() {
-            return self.options.search.poses;
-        }
-        let alone = self
-            .decisions
-            .iter()
-            .all(|decision| decision.effect == Effect::Shape || !decision.on);
-        self.options
-            .search
-            .refine
-            .unwrap_or(if alone { REFINED_BY_SHAPE } else { 0 })
+        refined(&self.search.space, &self.decisions, &self.options)
     }
 
     /// The pose terms prepared for rescoring; `None` if no term acts.
@@ -200,7 +196,7 @@ impl DockPlan {
 
     /// Rotations that would be in flight if there were more than enough of them.
     pub(crate) fn most_in_flight(&self) -> usize {
-        most_in_flight(&self.options, self.fixed_bytes, self.bytes_in_flight)
+        self.memory.most_in_flight
     }
 
     /// Whether an effect is on.
@@ -210,8 +206,22 @@ impl DockPlan {
 
     /// Bytes that the run is expected to take at its peak.
     pub fn memory_bytes(&self) -> u64 {
-        self.fixed_bytes
-            + self.search.in_flight as u64 * self.bytes_in_flight
-            + self.search.graphics_bytes
+        self.memory.bytes()
     }
+
+    /// The stage of the run that takes the most memory, with its parts.
+    pub fn largest_stage(&self) -> Option<MemoryStage> {
+        self.memory.largest()
+    }
+}
+
+/// Number of poses to refine: all where none lies on the grid, as of rings.
+fn refined(space: &PoseSpace, decisions: &[Decision], options: &DockOptions) -> usize {
+    if !space.is_on_grid() {
+        return options.search.poses;
+    }
+    let mut decisions = decisions.iter();
+    let alone = decisions.all(|decision| decision.effect == Effect::Shape || !decision.on);
+    let default = if alone { REFINED_BY_SHAPE } else { 0 };
+    options.search.refine.unwrap_or(default)
 }

@@ -18,6 +18,7 @@ use crate::search::deadline::Deadline;
 use crate::search::scan::{Scanned, scan};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
+use crate::threads;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::peaks::Peak;
@@ -40,6 +41,9 @@ const REFINED_TOGETHER: usize = 4;
 
 /// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
 /// of a molecule, the centres of the balls of a mesh.
+///
+/// Runs on [`DockPlan::in_flight`] threads: those of the caller's rayon pool if it has so many, else a pool of its own,
+/// and never the global pool ([`threads::on`]). Planning and sampling run in the caller's pool.
 ///
 /// # Errors
 /// [`SearchError`] when threads cannot be had or no pose scores.
@@ -66,14 +70,10 @@ pub fn dock_until(
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, SearchError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(plan.in_flight())
-        .build()
-        .map_err(|error| SearchError::Threads(error.to_string()))?;
-    pool.install(|| match plan.options.search.precision {
+    threads::on(plan.in_flight(), || match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
-    })
+    })?
 }
 
 /// The run, with the fast path in a floating-point type.
@@ -92,15 +92,18 @@ fn dock_in<T: Real>(
         effects,
     } = Prepared::<T>::new(plan, progress)?;
     clock.lap("prepare");
-    let found = find(plan, &engine, deadline, (progress, &mut clock))?;
+    let mut found = find(plan, &engine, deadline, (progress, &mut clock))?;
     let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
     let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
+    // The engine goes before the potentials come, which may take ten times its memory.
+    let (rank, adapter) = (engine.cpu.rank(), engine.adapter.clone());
+    drop(engine);
     let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
-    let refined = refine(plan, &spectra, (&found.peaks, &grid_poses), &body, progress);
-    drop(spectra);
+    let refined = refine(plan, spectra, (&found.peaks, &grid_poses), &body, progress);
     clock.lap("refine");
 
     grid_poses.truncate(ERROR_POSES);
+    grid_poses.shrink_to_fit();
     let check = Check::new(&scorer, &grid_poses);
     clock.lap("check");
 
@@ -110,6 +113,9 @@ fn dock_in<T: Real>(
     let stopped = found.stopped(plan, kept);
     let poses = (&found.peaks[..kept], &refined[..kept]);
     let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
+    drop(refined);
+    found.peaks.truncate(ERROR_POSES);
+    found.peaks.shrink_to_fit();
     clock.lap("rescore");
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
@@ -146,17 +152,18 @@ fn dock_in<T: Real>(
         stopped,
         error,
         rank_error,
-        rank: engine.cpu.rank(),
+        rank,
         effects,
         fine: found.fine,
         timing: clock.into_stages(),
-        adapter: engine.adapter,
+        adapter,
     })
 }
 
 /// Prepared engine, spectra and scorer of a run.
 struct Prepared<T: Real> {
-    spectra: ReceptorSpectra<T>,
+    /// The receptor's spectra, where poses are refined.
+    spectra: Option<ReceptorSpectra<T>>,
     engine: ScanEngine<T>,
     scorer: ExactScorer,
     /// Error of the compressed components at the probe rotations, relative to their best score.
@@ -175,9 +182,13 @@ impl<T: Real> Prepared<T> {
             error: rank_error,
         } = rank_of(plan, &spectra);
         let effects = effect_timings(plan, &spectra, &engine);
+        let in_flight = plan.memory.in_flight_at(engine.rank());
         let prepared = Self {
-            engine: ScanEngine::new(&plan.search, engine)?,
-            spectra,
+            engine: ScanEngine {
+                in_flight,
+                ..ScanEngine::new(&plan.search, engine)?
+            },
+            spectra: (plan.refined() > 0).then_some(spectra),
             scorer: plan.exact_scorer()?,
             rank_error,
             effects,
@@ -243,7 +254,7 @@ fn find<T: Real>(
 /// the table's rows give back the same scores.
 fn refine<T: Real>(
     plan: &DockPlan,
-    spectra: &ReceptorSpectra<T>,
+    spectra: Option<ReceptorSpectra<T>>,
     (peaks, grid_poses): (&[Peak], &[Pose]),
     body: &RigidBody,
     progress: &dyn Progress,
@@ -251,7 +262,9 @@ fn refine<T: Real>(
     let count = plan.refined().min(peaks.len());
     progress.stage("refine", count as u64);
     let engine = &plan.search.engine;
-    let field = (count > 0).then(|| PotentialGrid::new(engine, spectra, &plan.ligand));
+    let field = spectra
+        .filter(|_| count > 0)
+        .map(|spectra| PotentialGrid::new(engine, &spectra, &plan.ligand));
     let limits = AscentLimits {
         evaluations: 40,
         distance: 3.0 * plan.spacing,

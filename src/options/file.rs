@@ -19,6 +19,7 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::definition::{Definition, definitions_of};
 use super::text;
+use crate::bounded_read::{MAX_OPTIONS, read_bounded_text};
 
 /// An option that a file gives a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,7 +55,7 @@ pub fn read<T: Args>(path: &Path) -> Result<Vec<Entry>, ConfigError> {
         message,
         remedy,
     };
-    let text = std::fs::read_to_string(path)
+    let text = read_bounded_text(path, MAX_OPTIONS)
         .map_err(|error| failed(None, error.to_string(), "check the file".to_owned()))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     entries::<T>(&text, folder).map_err(|wrong| {

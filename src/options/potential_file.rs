@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::bounded_read::{MAX_TABLE, read_bounded_text};
 use knotdock_scoring::terms::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 
@@ -50,6 +51,7 @@ fn read<P>(
         message,
         remedy: format!("give a table as scripts/{script} writes it, or leave the option out"),
     };
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(None, error.to_string()))?;
+    let text = read_bounded_text(Path::new(path), MAX_TABLE)
+        .map_err(|error| wrong(None, error.to_string()))?;
     parse(&text).map_err(|error| wrong(Some(error.line as u64), error.to_string()))
 }

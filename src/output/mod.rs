@@ -17,6 +17,8 @@
 //! - Numbers are printed in the shortest digits that read back to the same f64; a value that does not exist is an empty
 //!   field in CSV and `null` in JSON, never NaN.
 //! - Two runs of the same input and options differ in no byte but for the objects `timing` and `machine` of `run.json`.
+//!   The exception is `--budget`, under which the clock decides how much is searched; a run repeated from its record is
+//!   none.
 
 pub mod files;
 pub mod records;

@@ -21,7 +21,7 @@ pub(crate) struct Candidate {
     /// The pose that it was refined from.
     pub start: Pose,
     /// All terms at `start`, where they are known already.
-    pub terms: Option<ExactScore>,
+    pub terms: Option<Box<ExactScore>>,
     /// Whether `pose` was moved off the grid.
     pub refined: bool,
     /// Index of the rotation that it came from.
@@ -38,7 +38,8 @@ pub(crate) fn candidates(
     at_start: &[ExactScore],
     rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
-    let mut candidates: Vec<Candidate> = peaks
+    let mut candidates: Vec<Candidate> = Vec::new();
+    peaks
         .par_iter()
         .zip(placed)
         .enumerate()
@@ -51,14 +52,14 @@ pub(crate) fn candidates(
                 score: placed.score + pose_terms.sum(),
                 pose_terms,
                 start: placed.start,
-                terms: at_start.get(index).copied(),
+                terms: at_start.get(index).copied().map(Box::new),
                 refined: placed.refined,
                 rotation: peak.rotation as usize,
                 score_grid: peak.score,
             }
         })
-        .filter(|candidate| candidate.score.is_finite())
-        .collect();
+        .collect_into_vec(&mut candidates);
+    candidates.retain(|candidate| candidate.score.is_finite());
     // The list comes in the order of the grid's scores, which breaks ties.
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
     candidates

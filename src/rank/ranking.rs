@@ -93,7 +93,8 @@ pub(crate) fn report(
         }
     }
     progress.stage("score", wanted.len() as u64);
-    let mut rows: Vec<(RankedPose, usize)> = wanted
+    let mut rows: Vec<(RankedPose, usize)> = Vec::new();
+    wanted
         .into_par_iter()
         .with_max_len(ROWS_TOGETHER)
         .map(|(candidate, cluster)| {
@@ -101,8 +102,8 @@ pub(crate) fn report(
             progress.advance(1);
             (row, cluster)
         })
-        .filter(|(row, _)| row.pose_score.is_finite() && row.score_unfiltered.is_finite())
-        .collect();
+        .collect_into_vec(&mut rows);
+    rows.retain(|(row, _)| row.pose_score.is_finite() && row.score_unfiltered.is_finite());
     rows.sort_by(|(a, _), (b, _)| b.pose_score.total_cmp(&a.pose_score));
     // Rows come best first: the first of a cluster is its best.
     let mut order: Vec<(usize, f64)> = Vec::new();
@@ -185,7 +186,10 @@ impl Candidate {
             cluster_temperature: _,
         } = pose_scorer;
         let others = |pose: &Pose| space.other_copies(scorer, pose);
-        let at_start = || self.terms.unwrap_or_else(|| scorer.score(&self.start));
+        let at_start = || {
+            let known = self.terms.as_deref().copied();
+            known.unwrap_or_else(|| scorer.score(&self.start))
+        };
         let (pose, terms, others, refined) = if self.refined {
             let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
             // An ascent on the fast path's values that the exact sum does not confirm is undone.

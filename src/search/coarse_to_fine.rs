@@ -65,16 +65,17 @@ pub(crate) fn search_finer<T: Real>(
         .rotations
         .fine_groups(|index| chosen[cell_of[index] as usize]);
     progress.stage("fine", rotations as u64);
-    let fine = scan(plan, engine, &groups, usize::MAX, None, progress)?.peaks;
+    let mut crowded = scan(plan, engine, &groups, usize::MAX, None, progress)?.peaks;
 
     let cell = |peak: &Peak| match (peak.rotation as usize).checked_sub(set.len()) {
         Some(index) => cell_of[index],
         None => peak.rotation,
     };
-    let (mut crowded, mut peaks): (Vec<Peak>, Vec<Peak>) = coarse
+    let (from_coarse, mut peaks): (Vec<Peak>, Vec<Peak>) = coarse
         .into_iter()
         .partition(|peak| chosen[peak.rotation as usize]);
-    crowded.extend(fine);
+    crowded.reserve_exact(from_coarse.len());
+    crowded.extend(from_coarse);
     crowded.sort_unstable_by(|a, b| cell(a).cmp(&cell(b)).then(a.order(b)));
     let position = |peak: &Peak| {
         let (_, half_turn) = plan.rotations.rotation(peak.rotation as usize);

@@ -6,7 +6,6 @@ use crate::progress::Progress;
 use crate::search::deadline::Deadline;
 use crate::search::plan::SearchPlan;
 use crate::search::scan_engine::ScanEngine;
-use knotdock_scoring::engine::CpuEngine;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::peaks::{Peak, find_peaks};
@@ -41,14 +40,15 @@ pub(crate) fn scan<T: Real>(
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
         Some(gpu) => scan_on_card(plan, gpu, groups, most, progress)?,
-        None => scan_on_cores(plan, &engine.cpu, groups, most, deadline, progress),
+        None => scan_on_cores(plan, engine, groups, most, deadline, progress),
     };
     #[cfg(not(feature = "gpu"))]
-    let mut scanned = scan_on_cores(plan, &engine.cpu, groups, most, deadline, progress);
+    let mut scanned = scan_on_cores(plan, engine, groups, most, deadline, progress);
     let peaks = &mut scanned.peaks;
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
     peaks.truncate(most);
+    peaks.shrink_to_fit();
     Ok(scanned)
 }
 
@@ -90,12 +90,14 @@ fn scan_on_card(
 /// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
     plan: &SearchPlan,
-    engine: &CpuEngine<T>,
+    engine: &ScanEngine<T>,
     groups: &[RotationGroup],
     most: usize,
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Scanned {
+    let in_flight = engine.in_flight;
+    let engine = &engine.cpu;
     let filter = plan.space.voxel_filter(engine);
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let started = Instant::now();
@@ -107,7 +109,7 @@ fn scan_on_cores<T: Real>(
         }
         groups.get(next.fetch_add(1, Ordering::Relaxed))
     };
-    let peaks = (0..plan.in_flight)
+    let peaks = (0..in_flight)
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
@@ -139,6 +141,11 @@ fn scan_on_cores<T: Real>(
                     progress.advance(1);
                 }
                 searched.fetch_add(group.count(), Ordering::Relaxed);
+            }
+            // The lists of all threads are joined: each is no longer than what is kept.
+            if found.len() > most {
+                found.sort_unstable_by(Peak::order);
+                found.truncate(most);
             }
             found
         })

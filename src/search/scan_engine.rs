@@ -35,6 +35,8 @@ pub(crate) struct ScanEngine<T: Real> {
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
     pub adapter: Option<Adapter>,
+    /// Rotations in flight on the CPU: the plan's, or fewer where the engine needs more memory than was planned.
+    pub in_flight: usize,
 }
 
 impl<T: Real> ScanEngine<T> {
@@ -66,6 +68,7 @@ impl<T: Real> ScanEngine<T> {
                 cpu,
                 gpu: None,
                 adapter: None,
+                in_flight: plan.in_flight,
             });
         }
         let wanted = std::env::var(ADAPTER_VARIABLE).ok();
@@ -87,6 +90,7 @@ impl<T: Real> ScanEngine<T> {
             cpu,
             gpu: Some(gpu),
             adapter: Some(adapter),
+            in_flight: plan.in_flight,
         })
     }
 }
@@ -99,7 +103,11 @@ impl<T: Real> ScanEngine<T> {
     /// [`SearchError::Graphics`] where a graphics processor is wanted, for this build has none.
     pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
         match plan.device {
-            EngineChoice::Cpu => Ok(Self { cpu, adapter: None }),
+            EngineChoice::Cpu => Ok(Self {
+                cpu,
+                adapter: None,
+                in_flight: plan.in_flight,
+            }),
             EngineChoice::Gpu => Err(SearchError::Graphics(
                 "this build was made without the feature `gpu`".to_owned(),
             )),

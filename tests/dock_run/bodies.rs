@@ -89,9 +89,21 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
         folder.path(),
         "dock receptor.pdb rank_0002.pdb --rotations 5 --no-cluster -o other --quiet",
     );
+    // The same complex once more is no matter; one that someone has edited is.
+    run(folder.path(), "export run --rank 2 -o more --quiet");
+    run(folder.path(), "export run --rank 1-3 --quiet");
+    for edited in [
+        "more/rank_0002.pdb",
+        "run/top/rank_0001.pdb",
+        "run/top/rank_0003.pdb",
+    ] {
+        fs::write(folder.path().join(edited), "edited").unwrap();
+    }
     for (arguments, reason) in [
         ("run --rank 99999", "no rank 99999"),
-        ("run --rank 2 -o more", "already there"),
+        ("run --rank 2 -o more", "is not what would be written"),
+        ("run --rank 1", "is not what would be written"),
+        ("run --rank 3", "is not what would be written"),
         ("other --rank 2 -o . --force", "one of those read"),
     ] {
         let failed = cargo_bin_cmd!("knotdock")
@@ -103,6 +115,11 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
         let reported = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
         assert!(reported.contains(reason), "{reported}");
     }
+    run(folder.path(), "export run --rank 2 -o more --force --quiet");
+    assert_eq!(
+        fs::read(folder.path().join("more/rank_0002.pdb")).unwrap(),
+        fs::read(run_folder.join("top/rank_0002.pdb")).unwrap(),
+    );
     let kept = fs::read_to_string(&ligand).unwrap();
     assert_eq!(kept, crate::molecules::ligand());
 }

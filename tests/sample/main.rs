@@ -223,26 +223,29 @@ fn weights_of_a_plate_thinner_than_the_grid_are_numbers() {
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let place = Place::new();
-    for (threads, output) in [("1", "one.csv"), ("3", "three.csv")] {
-        let mut command = place.command(&[
-            "box.obj",
-            "--grid",
-            "4096",
-            "--weights",
-            "fitted",
-            "-o",
-            output,
-            "--picture",
-        ]);
-        command
-            .arg(output.replace("csv", "svg"))
-            .env("RAYON_NUM_THREADS", threads);
-        assert!(command.output().unwrap().status.success());
-    }
-    for ending in ["csv", "svg"] {
-        let [one, three] =
-            ["one", "three"].map(|name| fs::read(place.path(&format!("{name}.{ending}"))).unwrap());
-        assert!(one == three, "{ending}");
+    for options in [
+        "--weights fitted --picture balls.svg",
+        "--method wz --export balls.obj",
+        "--method octree --weights fitted",
+        "--method voxels --level 40 --picture balls.svg",
+        "--mu 0.6 --set a2 --export balls.pdb",
+    ] {
+        let mut written: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
+        for threads in ["1", "2", "5"] {
+            let mut arguments = vec!["box.obj", "--grid", "4096", "--force", "--json", "-j"];
+            arguments.push(threads);
+            arguments.extend(options.split(' '));
+            let output = place.command(&arguments).output().unwrap();
+            let words = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success(), "{words}");
+            let object: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let names = object["files"].as_array().unwrap().iter();
+            let files = names.map(|name| fs::read(place.path(name.as_str().unwrap())).unwrap());
+            written.push((threads.to_owned(), files.collect()));
+        }
+        for (threads, files) in &written[1..] {
+            assert!(*files == written[0].1, "{options} with {threads} threads");
+        }
     }
 }
 

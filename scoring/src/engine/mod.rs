@@ -8,6 +8,7 @@ mod columns;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod memory;
 mod packed;
 pub mod plan;
 mod preparation;
@@ -17,6 +18,7 @@ mod resolved;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};
+pub use memory::EngineMemory;
 pub use plan::{EngineOptions, PairKernel, Plan, PlanError};
 pub use rank::{ChosenRank, choose_rank};
 pub use receptor_spectra::{Factors, ReceptorSpectra};

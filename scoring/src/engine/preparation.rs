@@ -1,6 +1,6 @@
 //! Preparing the engine on CPU cores: everything that does not turn, for a rank of the lifted axis.
 
-use super::cpu::{COLUMNS, CpuEngine, PLANES};
+use super::cpu::CpuEngine;
 use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
 use super::receptor_spectra::{Factors, ReceptorSpectra};
@@ -101,18 +101,6 @@ impl<T: Real> CpuEngine<T> {
             singular: singular.iter().map(|value| value / largest).collect(),
             plan,
         }
-    }
-
-    /// Bytes that a workspace of a plan takes at a rank, before the engine is built.
-    pub fn workspace_estimate(plan: &Plan, rank: usize) -> usize {
-        let [nx, ny, nz] = plan.modes().size;
-        let forward = ligand_forward::<T>(plan, rank);
-        let reals = 2 * COLUMNS * rank * forward.line_length()
-            + 2 * rank * LANES * Packing::new(plan.modes()).count()
-            + 2 * PLANES * nx * ny
-            + nx * ny * nz
-            + nx * ny * (nz + 1);
-        forward.workspace_bytes() + reals * std::mem::size_of::<T>()
     }
 
     /// The engine that [`Self::with_factors`] makes at a lower rank, to the bit: its first components are these.

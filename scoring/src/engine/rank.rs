@@ -82,14 +82,18 @@ impl<T: Real> Probes<T> {
         for probe in 0..PROBES {
             let rotation = set[(2 * probe + 1) * set.len() / (2 * PROBES)];
             full.correlate(&rotation, &mut work);
-            let mut order: Vec<usize> = (0..work.grid.len()).collect();
+            // A grid has fewer voxels than 32 bits number.
+            let mut order: Vec<u32> = (0..work.grid.len() as u32).collect();
             let count = BEST.min(order.len() - 1);
             order.select_nth_unstable_by(count, |&a, &b| {
-                let (first, second) = (work.grid[a].wide(), work.grid[b].wide());
+                let value = |voxel: u32| work.grid[voxel as usize].wide();
+                let (first, second) = (value(a), value(b));
                 second.total_cmp(&first).then(a.cmp(&b))
             });
-            let values: Vec<(usize, T)> =
-                order[..count].iter().map(|&v| (v, work.grid[v])).collect();
+            let values: Vec<(usize, T)> = order[..count]
+                .iter()
+                .map(|&v| (v as usize, work.grid[v as usize]))
+                .collect();
             best = values.iter().fold(best, |best, value| best.max(value.1));
             samples.push(Sample { rotation, values });
         }

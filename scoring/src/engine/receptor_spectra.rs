@@ -49,16 +49,10 @@ impl<T: Real> ReceptorSpectra<T> {
         assert!(plan.holds_ligand(ligand), "the plan is of another ligand");
         let knots = Receptor::<T>::new(plan, receptor);
         let mut spectra = knots.shape_functions(plan, receptor, fold);
-        let ligand_size = spectra.len();
-        let mut columns: Vec<Vec<f64>> = (0..ligand_size)
-            .map(|b| {
-                let value = |j: usize| plan.basis().ligand_value(plan.axis(), b, ligand.radii[j]);
-                (0..ligand.len())
-                    .map(|j| ligand.weights[j] * value(j))
-                    .collect()
-            })
-            .collect();
-        let mut effects = vec![Effect::Shape; ligand_size];
+        let LigandFunctions {
+            mut columns,
+            mut effects,
+        } = LigandFunctions::of_shape(plan, ligand);
         let terms = match fold {
             Quantity::Score => plan.effects(),
             _ => &[],
@@ -188,6 +182,66 @@ impl<T: Real> ReceptorSpectra<T> {
     }
 }
 
+/// Values of the functions at the ligand's knots, and their effects: the ligand's side of a correlation, which needs no
+/// transform.
+pub(crate) struct LigandFunctions {
+    /// [function][knot].
+    pub columns: Vec<Vec<f64>>,
+    /// The effect of each function.
+    pub effects: Vec<Effect>,
+}
+
+impl LigandFunctions {
+    /// Those of shape: d_j v_b(s_j).
+    fn of_shape(plan: &Plan, ligand: &Knots) -> Self {
+        let (_, size) = plan.basis().sizes(plan.axis());
+        let column = |b: usize| {
+            let value = |j: usize| plan.basis().ligand_value(plan.axis(), b, ligand.radii[j]);
+            (0..ligand.len())
+                .map(|j| ligand.weights[j] * value(j))
+                .collect()
+        };
+        Self {
+            columns: (0..size).map(column).collect(),
+            effects: vec![Effect::Shape; size],
+        }
+    }
+
+    /// Those of a score, as [`ReceptorSpectra::new`] makes them.
+    pub(crate) fn of_score(plan: &Plan, ligand: &Knots) -> Self {
+        let mut all = Self::of_shape(plan, ligand);
+        for ActiveTerm { term, .. } in plan.effects() {
+            for class in 0..term.matrix.first().map_or(0, Vec::len) {
+                let seen = |label: &Label| seen_by(term, class, label) != 0.0;
+                let column = class_column(term, class);
+                if term.receptor.iter().any(seen) && column.iter().any(|value| *value != 0.0) {
+                    all.columns.push(column);
+                    all.effects.push(term.effect);
+                }
+            }
+        }
+        all
+    }
+}
+
+/// Values of a term at the ligand's knots of one class: 0 for other classes.
+fn class_column(term: &Term, class: usize) -> Vec<f64> {
+    let of_class = |label: &Label| {
+        if label.class == class {
+            label.value
+        } else {
+            0.0
+        }
+    };
+    term.ligand.iter().map(of_class).collect()
+}
+
+/// What a knot of the receptor weighs for a ligand knot of a class.
+fn seen_by(term: &Term, class: usize, label: &Label) -> f64 {
+    let row = term.matrix.get(label.class);
+    label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
+}
+
 /// What a term is to the ligand's knots of one class.
 struct ClassFunction<T> {
     /// The receptor's transform as the class feels it, through the term's kernel.
@@ -284,24 +338,12 @@ impl<T: Real> Receptor<T> {
         class: usize,
         work: &mut ForwardWorkspace<T>,
     ) -> Option<ClassFunction<T>> {
-        let of_class = |label: &Label| {
-            if label.class == class {
-                label.value
-            } else {
-                0.0
-            }
-        };
-        let column: Vec<f64> = term.ligand.iter().map(of_class).collect();
-        // What the receptor's knots weigh for a ligand knot of this class.
-        let seen = |label: &Label| {
-            let row = term.matrix.get(label.class);
-            label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
-        };
+        let column = class_column(term, class);
         let (inside, weights): (Vec<[f64; 3]>, Vec<T>) = self
             .points
             .iter()
             .zip(&term.receptor)
-            .map(|(point, label)| (*point, seen(label)))
+            .map(|(point, label)| (*point, seen_by(term, class, label)))
             .filter(|(_, weight)| *weight != 0.0)
             .map(|(point, weight)| (point, T::of(weight)))
             .unzip();

@@ -24,6 +24,7 @@ pub fn machine(plan: &DockPlan) -> Machine {
         rotations_in_flight: plan.in_flight(),
         memory_limit_bytes: plan.options.machine.memory,
         memory_estimate_bytes: plan.memory_bytes(),
+        memory_stage: plan.largest_stage(),
         adapter: None,
         command: std::env::args_os()
             .map(|word| word.to_string_lossy().into_owned())

@@ -1,20 +1,18 @@
-//! Memory that is free, and memory that was used.
+//! Memory that is free.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use knotdock::dock::memory::process;
+
 /// Share of the free memory that a run may take when the user names no size.
 const DEFAULT_SHARE: f64 = 0.8;
 
-/// What a run may take when the user names no size: 80% of what is free, or `None` where the system does not say.
+/// What a run may take when the user names no size: what the process holds and 80% of what is free, or `None` where the
+/// system does not say.
 pub fn default_limit() -> Option<u64> {
-    free_memory(Path::new("/")).map(|free| (free as f64 * DEFAULT_SHARE) as u64)
-}
-
-/// The most memory that this process has held so far, in bytes. `None` off Linux.
-pub fn peak() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    Some(keyed(&status, "VmHWM:")?.saturating_mul(1024))
+    let free = free_memory(Path::new("/"))?;
+    Some((free as f64 * DEFAULT_SHARE) as u64 + process::held().unwrap_or(0))
 }
 
 /// Free memory in bytes: what the kernel calls available, or what the process's control groups leave of it if that is

@@ -8,6 +8,7 @@ use knotdock::output::records::input_record::NativeRecord;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::output::tables::report::counted;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
+use rayon::prelude::*;
 
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
@@ -151,7 +152,7 @@ fn reading_notes(molecule: &Molecule) -> Vec<String> {
 
 /// Every pose's quality.
 pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
-    rows.iter()
+    rows.par_iter()
         .map(|row| evaluator.evaluate(&row.pose))
         .collect()
 }

@@ -17,6 +17,7 @@ use knotdock_structures::molecule::{ChainMap, InputSpec};
 
 use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::{Input, folders_of, label};
+use crate::cli::inputs::room::{room_to_read, room_to_sample};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -74,6 +75,7 @@ impl Bodies {
         if are_meshes[0] == are_meshes[1] {
             refuse_without_effect(options, are_meshes[0])?;
         }
+        room_to_read(&specs, options.machine.memory)?;
         match are_meshes {
             [false, false] => {
                 let molecules = Input::all(&specs, &options.input.reading())?;
@@ -158,6 +160,7 @@ impl Bodies {
                     offset,
                     alpha: options.kernel.alpha,
                 };
+                room_to_sample(sampling.per_axis, options.machine.memory)?;
                 let solids = inputs.each_ref().map(|input| &input.solid);
                 let sampling = Sampling::of(solids, &sampling)
                     .map_err(|error| mesh_failure(&error, inputs))?;

@@ -5,3 +5,4 @@ pub mod bodies;
 pub mod meshes;
 pub mod molecules;
 pub mod request;
+mod room;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::mesh::GivenLengths;
-use knotdock::options::DockOptions;
+use knotdock::options::{DockOptions, MachineOptions};
 use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::manifest::Inputs;
 use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
@@ -51,12 +51,17 @@ impl Request {
         })
     }
 
-    /// The request of an earlier run, from its run.json.
-    pub fn recorded(path: &Path, console: Console) -> Result<Self, Failure> {
+    /// The request of an earlier run, from its run.json, on this machine.
+    pub fn recorded(
+        path: &Path,
+        machine: MachineOptions,
+        console: Console,
+    ) -> Result<Self, Failure> {
         if let Some(directory) = path.parent() {
             finish_interrupted(directory)?;
         }
-        let run = RecordedRun::read(path)?;
+        let mut run = RecordedRun::read(path)?;
+        run.options.machine = machine;
         if !run.is_of_this_program() {
             console.warn(format!(
                 "the run is of version {} ({}), this is {VERSION_WITH_COMMIT}: the poses may differ",

@@ -1,17 +1,22 @@
 //! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
 //! output and every word on standard error; under `--quiet` no words but errors.
 //!
+//! Control characters of files and names are escaped: [`shown`].
+//!
 //! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::Progress;
 
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::shown::{shown, shown_json};
 
 /// Why a part of the report could not be written, the first time that happened.
 static LOST: OnceLock<io::Error> = OnceLock::new();
@@ -34,10 +39,11 @@ impl Console {
             return;
         }
         if self.json {
-            write_line(&mut io::stderr(), &text.to_string());
+            write_line(&mut io::stderr(), &shown(&text.to_string()));
         } else {
             let mut stream = io::stdout();
-            let written = writeln!(stream, "{}", text.to_string()).and_then(|()| stream.flush());
+            let text = text.to_string();
+            let written = writeln!(stream, "{}", shown(&text)).and_then(|()| stream.flush());
             if let Err(error) = written {
                 // Only the first failure is reported.
                 let _ = LOST.set(error);
@@ -60,13 +66,14 @@ impl Console {
     /// Writes a warning on standard error.
     pub fn warn(&self, text: impl ToString) {
         if !self.quiet {
-            write_line(&mut io::stderr(), &format!("warning: {}", text.to_string()));
+            let text = format!("warning: {}", text.to_string());
+            write_line(&mut io::stderr(), &shown(&text));
         }
     }
 
     /// Writes on standard error what went wrong and does not end the command.
     pub fn error(&self, text: impl ToString) {
-        write_line(&mut io::stderr(), &text.to_string());
+        write_line(&mut io::stderr(), &shown(&text.to_string()));
     }
 
     /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
@@ -76,7 +83,8 @@ impl Console {
             return Ok(());
         }
         let mut stream = io::stdout();
-        match writeln!(stream, "{object}").and_then(|()| stream.flush()) {
+        let object = object.to_string();
+        match writeln!(stream, "{}", shown_json(&object)).and_then(|()| stream.flush()) {
             Err(error) => unwritten(&error),
             Ok(()) => Ok(()),
         }
@@ -85,9 +93,10 @@ impl Console {
     /// Writes a failure: for a person on standard error, for a program on standard output as well.
     pub fn fail(&self, failure: &Failure) {
         if self.json {
-            write_line(&mut io::stdout(), &failure.json().to_string());
+            let object = failure.json().to_string();
+            write_line(&mut io::stdout(), &shown_json(&object));
         }
-        write_line(&mut io::stderr(), &failure.text());
+        write_line(&mut io::stderr(), &shown(&failure.text()));
     }
 
     /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
@@ -99,9 +108,11 @@ impl Console {
         ) {
             bar.set_style(style.progress_chars("=> "));
         }
+        let shown = !self.quiet && io::stderr().is_terminal();
         ProgressLine {
+            ticker: shown.then(|| Ticker::start(&bar)).flatten(),
             bar,
-            shown: !self.quiet && io::stderr().is_terminal(),
+            shown,
         }
     }
 }
@@ -126,6 +137,52 @@ fn write_line(stream: &mut dyn Write, text: &str) {
 pub struct ProgressLine {
     bar: ProgressBar,
     shown: bool,
+    ticker: Option<Ticker>,
+}
+
+/// Time between two drawings of a line whose bar stands still.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A thread that draws the line anew, so that its time goes on where nothing else does.
+///
+/// indicatif has one, too, and panics where the thread cannot be started.
+struct Ticker {
+    /// Ends the thread where it is dropped.
+    running: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Ticker {
+    /// Starts it; `None` where the system has no thread for it: the line then moves with the work alone.
+    fn start(bar: &ProgressBar) -> Option<Self> {
+        let (running, is_running) = channel::<()>();
+        let bar = bar.clone();
+        let ticks = move || {
+            while is_running.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                if !bar.is_finished() {
+                    bar.tick();
+                }
+            }
+        };
+        let thread = Builder::new()
+            .name("progress".to_owned())
+            .spawn(ticks)
+            .ok()?;
+        Some(Self {
+            running: Some(running),
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Ticker {
+    fn drop(&mut self) {
+        self.running.take();
+        if let Some(thread) = self.thread.take() {
+            // It has nothing to report, and its end is all that is waited for.
+            let _ = thread.join();
+        }
+    }
 }
 
 impl ProgressLine {
@@ -145,7 +202,6 @@ impl Progress for ProgressLine {
         self.bar.set_message(name.to_owned());
         if self.shown {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
-            self.bar.enable_steady_tick(Duration::from_millis(200));
         }
     }
 
@@ -156,6 +212,7 @@ impl Progress for ProgressLine {
 
 impl Drop for ProgressLine {
     fn drop(&mut self) {
+        self.ticker.take();
         self.bar.finish_and_clear();
     }
 }

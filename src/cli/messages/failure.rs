@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::cli::messages::shown::shown_name;
+
 /// Whose fault it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -88,7 +90,7 @@ impl Failure {
     pub fn text(&self) -> String {
         let mut text = format!("error: {}", self.message);
         if let Some(file) = &self.file {
-            text += &format!("\n  in {}", file.display());
+            text += &format!("\n  in {}", shown_name(&file.display().to_string()));
             if let Some(line) = self.line {
                 text += &format!(", line {line}");
             }

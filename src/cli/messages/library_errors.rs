@@ -15,6 +15,7 @@ use knotdock::output::records::input_record::InputRecordError;
 use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
+use knotdock::threads::ThreadsError;
 use knotdock_structures::mesh::MeshError;
 use knotdock_structures::molecule::ReadError;
 
@@ -80,6 +81,9 @@ impl From<InputRecordError> for Failure {
         let remedy = match &error {
             InputRecordError::Read { .. } => {
                 "put the file where the run found it, or beside the directory of the run"
+            }
+            InputRecordError::Stream { .. } => {
+                "dock again from a file, or put what was read under that name beside the directory of the run"
             }
             InputRecordError::Changed { .. } => {
                 "put back the file that the run was made from, or dock again"
@@ -147,6 +151,12 @@ impl From<PseudoAtomError> for Failure {
             }
             PseudoAtomError::File(error) => error.into(),
         }
+    }
+}
+
+impl From<ThreadsError> for Failure {
+    fn from(error: ThreadsError) -> Self {
+        Self::other(&error).remedy(error.remedy())
     }
 }
 

@@ -5,5 +5,6 @@ pub mod dock;
 pub mod failure;
 pub mod library_errors;
 pub mod shared_chains;
+pub mod shown;
 pub mod suggestions;
 pub mod timings;

@@ -7,8 +7,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use knotdock::options::SampleGrid;
 use knotdock::options::values::{above_zero, at_least_one, protrusion};
+use knotdock::options::{SampleGrid, Threads};
+use knotdock::threads;
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
@@ -73,6 +74,8 @@ pub struct Sample {
     /// Replace files that are there.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    threads: Threads,
 }
 
 /// Exponent of the bump that weights are fitted for, unless another is given.
@@ -123,6 +126,11 @@ struct Finished {
 impl Sample {
     /// Samples.
     pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.sample(console))?
+    }
+
+    /// Samples on the threads of the caller.
+    fn sample(self, console: Console) -> Result<(), Failure> {
         let method = self.method()?;
         let export = self.check_files()?;
         let start = Instant::now();

@@ -6,6 +6,8 @@
 pub(super) mod residue;
 pub(super) mod segments;
 
+use std::collections::HashMap;
+
 use knotdock_structures::molecule::{Atom, Molecule};
 
 use crate::evaluate::EvaluateError;
@@ -41,6 +43,7 @@ impl Residues {
     /// [`EvaluateError::NotFinite`] and [`EvaluateError::NoResidues`].
     pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, EvaluateError> {
         let mut chains: Vec<(&str, Vec<&Atom>)> = Vec::new();
+        let mut places: HashMap<&str, usize> = HashMap::new();
         for atom in &molecule.atoms {
             if !atom
                 .position
@@ -55,11 +58,9 @@ impl Residues {
             if atom.element.eq_ignore_ascii_case("H") || atom.element.eq_ignore_ascii_case("D") {
                 continue;
             }
-            match chains
-                .iter_mut()
-                .rev()
-                .find(|(name, _)| *name == atom.chain)
-            {
+            let next = chains.len();
+            let place = *places.entry(atom.chain.as_str()).or_insert(next);
+            match chains.get_mut(place) {
                 Some((_, atoms)) => atoms.push(atom),
                 None => chains.push((&atom.chain, vec![atom])),
             }

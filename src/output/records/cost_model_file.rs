@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::bounded_read::{MAX_OPTIONS, read_bounded_file};
 use crate::output::files::whole_file::{FileError, to_json, write_whole};
 use crate::tradeoff::cost_model::CostModel;
 
@@ -74,7 +75,7 @@ pub fn write(path: &Path, model: &CostModel, threads: usize) -> Result<(), FileE
 
 /// Whether a file is a cost model that knotdock wrote, of whichever version.
 pub fn is_ours(path: &Path) -> bool {
-    let value = fs::read(path).ok();
+    let value = read_bounded_file(path, MAX_OPTIONS).ok();
     let value = value.and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
     value.is_some_and(|value| value["program"] == "knotdock" && !value["cost_model"].is_null())
 }
@@ -84,7 +85,7 @@ pub fn is_ours(path: &Path) -> bool {
 /// # Errors
 /// [`CostModelError`].
 pub fn read(path: &Path) -> Result<Option<CostModel>, CostModelError> {
-    let text = match fs::read(path) {
+    let text = match read_bounded_file(path, MAX_OPTIONS) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(source) => {

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
 
-use crate::output::files::checksum::sha256;
+use crate::output::files::checksum::{sha256, sha256_of_file};
+use crate::output::files::whole_file::is_stream;
 
 /// An input file as recorded: what to read and how to know it again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,6 +32,12 @@ pub enum InputRecordError {
         /// The system's message.
         source: io::Error,
     },
+    /// It is no file, and cannot be read a second time.
+    #[error("{} is no file, but a pipe, a device or a handle of the process, which cannot be read again", path.display())]
+    Stream {
+        /// Its name.
+        path: PathBuf,
+    },
     /// The file is not the one that the run read.
     #[error("{} has changed since the run: its SHA-256 is {found}, the run's was {expected}", path.display())]
     Changed {
@@ -47,7 +54,7 @@ impl InputRecordError {
     /// The file in question.
     pub fn path(&self) -> &Path {
         match self {
-            Self::Read { path, .. } | Self::Changed { path, .. } => path,
+            Self::Read { path, .. } | Self::Stream { path } | Self::Changed { path, .. } => path,
         }
     }
 }
@@ -101,11 +108,16 @@ impl InputRecord {
 
     /// Checks that a file is the one recorded.
     fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
-        let bytes = fs::read(path).map_err(|source| InputRecordError::Read {
+        if is_stream(path) && !path.is_dir() {
+            // Opened, a pipe would wait for whoever writes to it.
+            return Err(InputRecordError::Stream {
+                path: path.to_owned(),
+            });
+        }
+        let found = sha256_of(path).map_err(|source| InputRecordError::Read {
             path: path.to_owned(),
             source,
         })?;
-        let found = sha256(&bytes);
         if found == self.sha256 {
             Ok(())
         } else {
@@ -116,6 +128,19 @@ impl InputRecord {
             })
         }
     }
+}
+
+/// Most bytes of an input: no reader of structures or meshes takes more.
+const MAX_INPUT: u64 = 4 << 30;
+
+/// SHA-256 of a file, in hexadecimal.
+fn sha256_of(path: &Path) -> io::Result<String> {
+    if fs::metadata(path)?.len() > MAX_INPUT {
+        let message =
+            format!("it has more than {MAX_INPUT} bytes, the most that are read of an input");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    sha256_of_file(path)
 }
 
 /// The native complex that the poses were measured against.
@@ -146,6 +171,7 @@ impl NativeRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_changed_input_is_noticed() {

@@ -10,6 +10,7 @@ use knotdock_structures::molecule::ChainMap;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::dock::memory::stages::MemoryStage;
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::{DockOutcome, EffectCost, StageTime};
 use crate::dock::plan::DockPlan;
@@ -117,9 +118,11 @@ pub struct Machine {
     pub threads: usize,
     /// Rotations that were in flight at once.
     pub rotations_in_flight: usize,
-    /// Memory that the search was expected to take, in bytes.
+    /// Memory that the run was expected to take, in bytes.
     pub memory_estimate_bytes: u64,
-    /// Memory that the search was given, in bytes; `null` for no limit.
+    /// The stage that was expected to take it, with its parts in bytes.
+    pub memory_stage: Option<MemoryStage>,
+    /// Memory that the run was given, in bytes; `null` for no limit.
     pub memory_limit_bytes: Option<u64>,
     /// The graphics processor that correlated; `null` where none did.
     pub adapter: Option<Adapter>,

@@ -1,11 +1,11 @@
 //! The part of a `run.json` that later commands read.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 use crate::options::{DockOptions, MachineOptions};
 use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::manifest::SCHEMA;
@@ -71,7 +71,7 @@ impl RecordedRunError {
 }
 
 impl RecordedRun {
-    /// Reads a `run.json`.
+    /// Reads a `run.json`: a file, no pipe, for its inputs are looked for beside it.
     ///
     /// # Errors
     /// [`RecordedRunError`].
@@ -95,10 +95,11 @@ impl RecordedRun {
             ligand: InputRecord,
             native: Option<NativeRecord>,
         }
-        let text = fs::read(path).map_err(|source| RecordedRunError::Open {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text =
+            read_bounded_file(path, MAX_RECORD).map_err(|source| RecordedRunError::Open {
+                path: path.to_owned(),
+                source,
+            })?;
         let content = |line, message| RecordedRunError::Content {
             path: path.to_owned(),
             line,

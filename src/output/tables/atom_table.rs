@@ -3,12 +3,12 @@
 //! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file.
 //! `docs/formats.md` describes the columns.
 
-use std::io;
 use std::path::Path;
 
 use knotdock_structures::molecule::{AtomFate, DropKind};
 
 use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
 
 /// The columns, in order.
@@ -37,12 +37,10 @@ pub const COLUMNS: [&str; 16] = [
 /// [`FileError`].
 pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), FileError> {
     write_whole(path, |file| {
-        let mut table = csv::Writer::from_writer(&mut *file);
-        table.write_record(COLUMNS).map_err(io::Error::other)?;
+        let mut table = TableWriter::new(file);
+        table.row(COLUMNS)?;
         for entry in fates {
-            table
-                .write_record(fields(entry))
-                .map_err(io::Error::other)?;
+            table.row(fields(entry))?;
         }
         table.flush()
     })

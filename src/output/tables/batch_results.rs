@@ -1,13 +1,13 @@
 //! The results of a batch: one row a pair, with the best row of each pair's own table.
 
 use std::collections::HashSet;
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
 use serde_json::Value;
 
+use crate::bounded_read::{MAX_RECORD, MAX_TABLE, read_bounded_file};
+use crate::output::tables::cells::{TableWriter, unquoted_row};
 use crate::output::tables::fields::number;
 
 use crate::output::files::whole_file::{FileError, write_whole};
@@ -68,7 +68,8 @@ impl RunSummary {
                 .as_str()
                 .is_some_and(|class| class != "incorrect")
         };
-        let record = fs::read(directory.join("run.json")).unwrap_or_default();
+        let record = read_bounded_file(&directory.join("run.json"), MAX_RECORD);
+        let record = record.unwrap_or_default();
         let record: Value = serde_json::from_slice(&record).unwrap_or_default();
         Ok(Self {
             counts: ["poses", "clusters"].map(|name| record["results"][name].as_u64()),
@@ -102,19 +103,12 @@ fn header() -> Vec<&'static str> {
 
 /// Whether a file may be replaced by a batch's results: there is none, it has their header, or it has no content.
 pub fn is_ours(path: &Path) -> bool {
-    let Ok(file) = fs::File::open(path) else {
+    let Ok(bytes) = read_bounded_file(path, MAX_TABLE) else {
         return !path.exists();
     };
-    let header = header().join(",");
-    let (mut start, limit) = (Vec::new(), header.len() as u64 + 2);
-    if file.take(limit).read_to_end(&mut start).is_err() {
-        return false;
-    }
-    let line = start
-        .split(|&byte| byte == b'\n')
-        .next()
-        .unwrap_or_default();
-    is_blank(&start) || line.trim_ascii_end() == header.as_bytes()
+    let line = bytes.split(|&byte| byte == b'\n').next();
+    let line = line.unwrap_or_default().trim_ascii_end();
+    is_blank(&bytes) || line == header().join(",").as_bytes()
 }
 
 /// Whether bytes are none, or zeros as a power cut leaves them.
@@ -128,15 +122,19 @@ fn is_blank(bytes: &[u8]) -> bool {
 /// # Errors
 /// What is wrong with the table, where one is there and cannot be read.
 pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRecord>, csv::Error> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let table = read_bounded_file(path, MAX_TABLE)?;
     // What a power cut left without content is written anew.
-    let is_empty = |path: &Path| fs::read(path).is_ok_and(|bytes| is_blank(&bytes));
-    if !path.exists() || is_empty(path) {
+    if is_blank(&table) {
         return Ok(Vec::new());
     }
     // Letters of either case are one where file systems think so.
     let own: HashSet<String> = pairs.iter().map(|pair| pair.name.to_lowercase()).collect();
-    let mut rows: Vec<StringRecord> = csv::Reader::from_path(path)?
+    let mut rows: Vec<StringRecord> = csv::Reader::from_reader(table.as_slice())
         .into_records()
+        .map(|row| row.map(|row| unquoted_row(&row)))
         .collect::<Result<_, _>>()?;
     rows.retain(|row| {
         let name = row.get(0).unwrap_or_default();
@@ -155,8 +153,8 @@ pub fn write_results(
     others: &[StringRecord],
 ) -> Result<(), FileError> {
     write_whole(path, |file| {
-        let mut table = csv::WriterBuilder::new().from_writer(file);
-        table.write_record(header())?;
+        let mut table = TableWriter::new(file);
+        table.row(header())?;
         for result in results {
             let none = RunSummary::default();
             let (status, error, run) = match &result.outcome {
@@ -175,10 +173,10 @@ pub fn write_results(
             row.extend(run.counts.map(count));
             row.extend(BEST.map(|name| run.best(name)));
             row.push(count(run.first_acceptable));
-            table.write_record(row)?;
+            table.row(row)?;
         }
         for row in others {
-            table.write_record(row)?;
+            table.row(row)?;
         }
         table.flush()
     })
@@ -187,6 +185,7 @@ pub fn write_results(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_run_is_summed_up_and_what_is_missing_stays_empty() {

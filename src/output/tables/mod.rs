@@ -2,6 +2,7 @@
 
 pub mod atom_table;
 pub mod batch_results;
+pub mod cells;
 pub(super) mod csv_lines;
 pub mod fields;
 pub mod pair_table;
@@ -10,3 +11,4 @@ pub mod poses;
 pub mod poses_reader;
 pub mod quality;
 pub mod report;
+pub mod run_table;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
+use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::output::tables::cells::unquoted;
 use crate::output::tables::csv_lines::line_of;
 
 /// What a line begins with that is no row.
@@ -76,7 +78,7 @@ impl PairTableError {
 /// # Errors
 /// [`PairTableError`].
 pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableError> {
-    let bytes = std::fs::read(path).map_err(|source| PairTableError::Open {
+    let bytes = read_bounded(path, MAX_TABLE).map_err(|source| PairTableError::Open {
         path: path.to_owned(),
         source,
     })?;
@@ -177,7 +179,7 @@ fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
         options: Vec::new(),
     };
     for (column, field) in header.iter().zip(record) {
-        let field = field.to_owned();
+        let field = unquoted(field).to_owned();
         match column {
             "name" => row.name = field,
             "receptor" => row.receptor = field,

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 
+use crate::bounded_read::{MAX_POSES, read_bounded};
+use crate::output::tables::cells::unquoted_row;
 use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::poses::{PoseRow, PoseTable};
 
@@ -108,7 +110,7 @@ impl PoseTable {
     /// # Errors
     /// [`PoseTableError`], with file and line.
     pub fn read(path: &Path) -> Result<Self, PoseTableError> {
-        let bytes = std::fs::read(path).map_err(|source| PoseTableError::Open {
+        let bytes = read_bounded(path, MAX_POSES).map_err(|source| PoseTableError::Open {
             path: path.to_owned(),
             source,
         })?;
@@ -119,7 +121,7 @@ impl PoseTable {
             message: error.to_string(),
         };
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
-        let header = reader.headers().map_err(malformed)?.clone();
+        let header = unquoted_row(reader.headers().map_err(malformed)?);
         let columns = PoseColumns::find(path, &header)?;
         let mut records = Vec::new();
         let mut rows = Vec::new();
@@ -127,7 +129,7 @@ impl PoseTable {
             let record = record.map_err(malformed)?;
             let line = record.position().map_or(0, line);
             rows.push(columns.row(path, line, &record)?);
-            records.push(record);
+            records.push(unquoted_row(&record));
         }
         Ok(Self {
             header,

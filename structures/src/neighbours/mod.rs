@@ -2,17 +2,20 @@
 //!
 //! - [`CellList`] holds points that are all known beforehand, in one piece of memory: for hot loops.
 //! - [`SpatialHash`] takes points one at a time, at any distance from each other.
+//! - [`CoveringBalls`] says whether one of many balls holds a point, however they crowd.
 //! - [`Bins`] is the counting sort below the first: items by the number of their bin, in any number of dimensions.
 //! - [`cell`] says which cell a point lies in and which cells touch it.
 //!
-//! All of them visit points in one fixed order: cells by rising x, then y, then z, and the points of a cell in the
+//! The lists visit points in one fixed order: cells by rising x, then y, then z, and the points of a cell in the
 //! order in which they were given. Sums over neighbours therefore have the same bits in every run.
 
 mod bins;
 pub mod cell;
 mod cell_list;
+mod covering_balls;
 mod spatial_hash;
 
 pub use bins::Bins;
 pub use cell_list::{CellList, Member};
+pub use covering_balls::CoveringBalls;
 pub use spatial_hash::SpatialHash;

@@ -114,6 +114,8 @@ fn columns(field: &DepthField, balls: &[Ball], bump: Bump) -> Vec<Column> {
                         column.push((node as u32, value));
                     }
                 });
+            // Columns are what sampling holds most of: no room is left in them to grow.
+            column.shrink_to_fit();
             column
         })
         .collect()

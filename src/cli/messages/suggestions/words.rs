@@ -121,7 +121,7 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
             "deterministic",
             "reproducible",
         ],
-        "no seed is needed: nothing is random, and the same input and options give the same bytes",
+        "no seed is needed: nothing is random, and the same input and options give the same bytes (but with --budget)",
     ),
     suggestion(
         &[

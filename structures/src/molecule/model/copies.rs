@@ -36,18 +36,16 @@ impl Molecule {
     /// # Errors
     /// [`CopiesError`] where there are not so many.
     pub fn copies(&self, copies: usize) -> Result<Vec<Vec<[f64; 3]>>, CopiesError> {
-        let mut chains: Vec<&str> = Vec::new();
+        let mut place: HashMap<&str, usize> = HashMap::new();
         for atom in &self.atoms {
-            if !chains.contains(&atom.chain.as_str()) {
-                chains.push(&atom.chain);
-            }
+            let next = place.len();
+            place.entry(&atom.chain).or_insert(next);
         }
-        if chains.is_empty() || !chains.len().is_multiple_of(copies) {
-            let chains = chains.len();
+        let chains = place.len();
+        if chains == 0 || !chains.is_multiple_of(copies) {
             return Err(CopiesError::Chains { chains, copies });
         }
-        let each = chains.len() / copies;
-        let place: HashMap<&str, usize> = chains.into_iter().zip(0..).collect();
+        let each = chains / copies;
         // By place in the copy, residue and name: each copy's position.
         let mut found: HashMap<_, Vec<Option<[f64; 3]>>> = HashMap::new();
         let mut order = Vec::new();

@@ -116,6 +116,8 @@ impl Residue<'_> {
 pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut place: HashMap<ResidueKey<'_>, usize> = HashMap::new();
     let mut grouped: Vec<(ResidueKey<'_>, Vec<usize>)> = Vec::new();
+    // Of residues that come again, the names that they have.
+    let mut names: HashMap<usize, HashSet<&str>> = HashMap::new();
     let mut first = 0;
     for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
         let members = first..first + run.len();
@@ -123,14 +125,22 @@ pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
         let Some(key) = run.first().map(residue_key) else {
             continue;
         };
-        let repeats = |there: &[usize]| {
-            let mut there = there.iter().filter_map(|&index| atoms.get(index));
-            there.any(|one| run.iter().any(|other| one.name == other.name))
-        };
-        let before = place.get(&key).and_then(|&at| grouped.get_mut(at));
-        match before {
-            Some((_, there)) if !repeats(there) => there.extend(members),
-            _ => {
+        let of_run = || run.iter().map(|atom| atom.name.as_str());
+        let before = place.get(&key).copied();
+        let before = before.and_then(|at| Some((at, grouped.get_mut(at)?)));
+        let joined = before.filter(|(at, (_, there))| {
+            let name = |&index: &usize| atoms.get(index).map(|atom| atom.name.as_str());
+            let of_residue = || there.iter().filter_map(name).collect();
+            let names = names.entry(*at).or_insert_with(of_residue);
+            let is_new = !of_run().any(|name| names.contains(name));
+            if is_new {
+                names.extend(of_run());
+            }
+            is_new
+        });
+        match joined {
+            Some((_, (_, there))) => there.extend(members),
+            None => {
                 place.insert(key, grouped.len());
                 grouped.push((key, members.collect()));
             }

@@ -3,7 +3,7 @@
 //! What a crystal resolves of them is one place of many, and wrong poses lie against that place more often than right
 //! ones.
 
-use std::ops::Range;
+use std::collections::BTreeSet;
 
 use serde::Serialize;
 
@@ -45,12 +45,13 @@ impl Molecule {
             let last = chain.ends[1].map(|_| length - near..length);
             let gaps = chain.gaps.iter();
             let gaps = gaps.map(|gap| gap.after.saturating_sub(near)..gap.after + near);
-            let flexible: Vec<Range<usize>> = gaps.chain(first).chain(last).collect();
-            for (place, residue) in chain.residues.iter().enumerate() {
-                if flexible.iter().any(|near| near.contains(&place)) {
-                    found.residues += 1;
-                    found.atoms.extend(&residue.atoms);
-                }
+            let flexible: BTreeSet<usize> = gaps.chain(first).chain(last).flatten().collect();
+            for residue in flexible
+                .iter()
+                .filter_map(|&place| chain.residues.get(place))
+            {
+                found.residues += 1;
+                found.atoms.extend(&residue.atoms);
             }
         }
         found

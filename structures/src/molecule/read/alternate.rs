@@ -23,19 +23,43 @@ const MAX_DISPLACEMENT: f64 = 12.0;
 /// The same where the other location has another residue: backbones stay where they are.
 const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 
+/// Most lettered atoms of one name and residue that are compared with one without a letter: there are letters for some
+/// 60, and more than one atom a letter is a mistake of the file.
+const MAX_OF_NAME: usize = 1000;
+
+/// The lettered atoms of a residue.
+#[derive(Default)]
+struct Lettered<'a> {
+    /// Letters by the residue's name.
+    letters: HashMap<&'a str, BTreeSet<char>>,
+    /// Atoms with their letters by the atom's name.
+    of_name: HashMap<&'a str, Vec<(&'a Atom, char)>>,
+}
+
+impl<'a> Lettered<'a> {
+    fn add(&mut self, atom: &'a Atom, letter: char) {
+        let letters = self.letters.entry(&atom.residue_name).or_default();
+        letters.insert(letter);
+        let of_name = self.of_name.entry(&atom.name).or_default();
+        if of_name.len() < MAX_OF_NAME {
+            of_name.push((atom, letter));
+        }
+    }
+}
+
 /// The locations of atoms that have no letter beside lettered atoms of their residue, by index.
 ///
 /// Where a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name:
 /// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
 /// residue on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
-    let mut lettered: HashMap<Position<'_>, Vec<(&Atom, char)>> = HashMap::new();
+    let mut lettered: HashMap<Position<'_>, Lettered<'_>> = HashMap::new();
     for atom in atoms {
         if let Some(letter) = atom.alternate_location {
             lettered
                 .entry(position(atom))
                 .or_default()
-                .push((atom, letter));
+                .add(atom, letter);
         }
     }
     let mut unnamed = HashMap::new();
@@ -53,14 +77,17 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
             continue;
         };
         let within = |other: &Atom, limit: f64| {
-            other.name == atom.name
-                && squared_distance(other.position, atom.position) <= limit * limit
+            squared_distance(other.position, atom.position) <= limit * limit
         };
+        let of_name = there.of_name.get(atom.name.as_str());
         let of_residue = |own: bool| {
             let is_own = move |other: &Atom| (other.residue_name == atom.residue_name) == own;
-            there.iter().filter(move |(other, _)| is_own(other))
+            let of_name = of_name.into_iter().flatten();
+            of_name.filter(move |(other, _)| is_own(other))
         };
-        let letters: BTreeSet<char> = of_residue(true).map(|(_, letter)| *letter).collect();
+        let no_letters = BTreeSet::new();
+        let letters = there.letters.get(atom.residue_name.as_str());
+        let letters = letters.unwrap_or(&no_letters);
         let having = of_residue(true).filter(|(other, _)| within(other, MAX_DISPLACEMENT));
         let having: BTreeSet<char> = having.map(|(_, letter)| *letter).collect();
         if !having.is_empty() {

@@ -10,20 +10,19 @@ use std::path::Path;
 
 use crate::molecule::chemistry::atom_names::links_nucleotides;
 use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
-use crate::molecule::model::atom::{Atom, squared_distance};
+use crate::molecule::model::atom::Atom;
 use crate::molecule::model::report::BuiltAssembly;
 use crate::molecule::model::report::{DropKind, ReadReport};
 use crate::molecule::model::wording::{count, show_chain};
 use crate::molecule::read::assemblies::{Assemblies, Assembly, Operator, Part};
+use crate::molecule::read::coincidence::Copies;
 use crate::molecule::read::error::ReadError;
 use crate::molecule::read::parse::Parsed;
+use crate::molecule::read::record_filter::record::is_place;
 use crate::molecule::read::select;
 
 /// Most atoms of an assembly: the largest capsids have some ten million.
 const MAX_ATOMS: usize = 50_000_000;
-
-/// Copies of one atom nearer than this, in Å, are one: it lies on an axis of symmetry.
-pub(crate) const ON_AXIS: f64 = 0.5;
 
 /// The name by which assemblies know the chain of an atom.
 fn part_name(record: &Parsed) -> &str {
@@ -67,7 +66,7 @@ pub(crate) fn build(
         .map(|record| record.raw.chain.as_str())
         .collect();
     let mut copies: HashMap<&str, usize> = HashMap::new();
-    let mut images: Vec<Vec<[f64; 3]>> = vec![Vec::new(); parsed.len()];
+    let mut images = vec![Copies::default(); parsed.len()];
     let mut built: Vec<Parsed> = Vec::new();
     let mut on_axes = 0;
     for part in &assembly.parts {
@@ -86,18 +85,16 @@ pub(crate) fn build(
                     continue;
                 };
                 let position = operator.moved(record.exact.position);
-                if !position.iter().all(|x| x.is_finite()) {
+                if !is_place(position) {
                     let what =
                         format!("an operator of assembly {wanted} takes an atom out of all bounds");
                     return Err(broken(file, Some(record.raw.line), what));
                 }
-                let coincides =
-                    |other: &[f64; 3]| squared_distance(*other, position) < ON_AXIS * ON_AXIS;
-                if images.iter().any(coincides) {
+                if images.has(position, |()| true) {
                     on_axes += 1;
                     continue;
                 }
-                images.push(position);
+                images.push((), position);
                 let mut record = record.clone();
                 record.exact.position = position;
                 let copy = copies.get(part_name(&record)).copied().unwrap_or(1);

@@ -40,8 +40,8 @@ pub enum ReadError {
         /// The system's message.
         source: std::io::Error,
     },
-    /// The gzip stream is cut short or damaged.
-    #[error("the gzip data are damaged or cut short: {source}")]
+    /// The gzip stream is cut short or damaged, or other bytes follow it.
+    #[error("the gzip data cannot be unpacked: {source}")]
     Gzip {
         /// The path as given.
         file: PathBuf,

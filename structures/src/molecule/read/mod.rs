@@ -3,6 +3,7 @@
 pub(crate) mod alternate;
 pub(crate) mod assemblies;
 pub(crate) mod assembly;
+pub(crate) mod coincidence;
 pub(crate) mod completeness;
 pub(crate) mod confidence;
 pub(crate) mod error;
@@ -20,7 +21,7 @@ pub(crate) mod select;
 pub(crate) mod source;
 pub(crate) mod wanted;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use crate::molecule::chemistry::{ligands, radii};
@@ -303,18 +304,16 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
 
 fn count_chains(groups: &[Residue<'_>]) -> Vec<ChainCount> {
     let mut chains: Vec<ChainCount> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for group in groups {
-        let at = match chains.iter().position(|chain| chain.name == group.key.0) {
-            Some(at) => at,
-            None => {
-                chains.push(ChainCount {
-                    name: group.key.0.to_string(),
-                    residues: 0,
-                    atoms: 0,
-                });
-                chains.len() - 1
-            }
-        };
+        let at = *places.entry(group.key.0).or_insert_with(|| {
+            chains.push(ChainCount {
+                name: group.key.0.to_string(),
+                residues: 0,
+                atoms: 0,
+            });
+            chains.len() - 1
+        });
         if let Some(chain) = chains.get_mut(at) {
             chain.residues += 1;
             chain.atoms += group.atoms.len();
@@ -324,24 +323,21 @@ fn count_chains(groups: &[Residue<'_>]) -> Vec<ChainCount> {
 }
 
 fn count_groups(groups: &[Residue<'_>]) -> Vec<GroupCount> {
-    let mut counts: Vec<GroupCount> = Vec::new();
+    let mut counts: BTreeMap<(GroupKind, &str), [usize; 2]> = BTreeMap::new();
     for group in groups.iter().filter(|g| g.kind != GroupKind::AminoAcid) {
-        let is_same = |count: &GroupCount| count.name == group.key.3 && count.kind == group.kind;
-        match counts.iter_mut().find(|count| is_same(count)) {
-            Some(count) => {
-                count.residues += 1;
-                count.atoms += group.atoms.len();
-            }
-            None => counts.push(GroupCount {
-                name: group.key.3.to_string(),
-                kind: group.kind,
-                residues: 1,
-                atoms: group.atoms.len(),
-            }),
-        }
+        let [residues, atoms] = counts.entry((group.kind, group.key.3)).or_default();
+        *residues += 1;
+        *atoms += group.atoms.len();
     }
-    counts.sort_by(|a, b| (a.kind, &a.name).cmp(&(b.kind, &b.name)));
+    let counts = counts.into_iter();
     counts
+        .map(|((kind, name), [residues, atoms])| GroupCount {
+            name: name.to_owned(),
+            kind,
+            residues,
+            atoms,
+        })
+        .collect()
 }
 
 fn count_other_names(groups: &[Residue<'_>]) -> Vec<OtherName> {

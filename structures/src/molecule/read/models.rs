@@ -6,10 +6,10 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::molecule::model::atom::squared_distance;
 use crate::molecule::model::report::JoinedModels;
 use crate::molecule::model::wording::count;
-use crate::molecule::read::assembly::{ON_AXIS, copy_name};
+use crate::molecule::read::assembly::copy_name;
+use crate::molecule::read::coincidence::Copies;
 use crate::molecule::read::parse::Parsed;
 use crate::neighbours::cell::{Cell, cell_of};
 
@@ -93,7 +93,7 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
             numbered.map(move |(model, copy)| ((*model, *chain), copy_name(chain, copy, in_file)))
         })
         .collect();
-    let mut seen: HashMap<_, Vec<(usize, [f64; 3])>> = HashMap::new();
+    let mut seen: HashMap<_, Copies<usize>> = HashMap::new();
     let mut repeats = Vec::with_capacity(parsed.len());
     for record in &parsed {
         let (raw, position) = (&record.raw, record.exact.position);
@@ -105,13 +105,10 @@ pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, Joi
             raw.alternate_location,
         );
         let there = seen.entry(key).or_default();
-        let coincides = |(model, other): &(usize, [f64; 3])| {
-            *model != raw.model && squared_distance(*other, position) < ON_AXIS * ON_AXIS
-        };
-        let repeat = relation == Relation::Parts && there.iter().any(coincides);
+        let repeat = relation == Relation::Parts && there.has(position, |model| model != raw.model);
         repeats.push(repeat);
         if !repeat {
-            there.push((raw.model, position));
+            there.push(raw.model, position);
         }
     }
     let renamed: Vec<Option<String>> = parsed

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 
 use crate::molecule::model::format::Format;
 use crate::molecule::read::error::ReadError;
@@ -79,18 +79,14 @@ pub(crate) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadErro
     if compressed {
         // Of an archive the first block is enough.
         let mut head = Vec::new();
-        let first = MultiGzDecoder::new(bytes.as_slice())
+        let first = GzDecoder::new(bytes.as_slice())
             .take(BLOCK)
             .read_to_end(&mut head);
         refuse(first.ok().and_then(|_| archive(&head)))?;
-        let mut unpacked = Vec::with_capacity(bytes.len().saturating_mul(4));
-        MultiGzDecoder::new(bytes.as_slice())
-            .take(LIMIT + 1)
-            .read_to_end(&mut unpacked)
-            .map_err(|source| ReadError::Gzip {
-                file: path.to_path_buf(),
-                source,
-            })?;
+        let unpacked = gunzip(&bytes).map_err(|source| ReadError::Gzip {
+            file: path.to_path_buf(),
+            source,
+        })?;
         bytes = within_limit(path, unpacked)?;
     }
     let text = match String::from_utf8(bytes) {
@@ -98,6 +94,27 @@ pub(crate) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadErro
         Err(error) => String::from_utf8_lossy(error.as_bytes()).into_owned(),
     };
     Ok(Source { text, compressed })
+}
+
+/// Unpacks one gzip stream or several in a row (RFC 1952, section 2.2), up to a byte more than [`LIMIT`]. Zeros may
+/// follow, as tapes and block devices leave them; gzip passes over them, too.
+fn gunzip(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut unpacked = Vec::with_capacity(bytes.len().saturating_mul(4));
+    let mut rest = bytes;
+    while rest.iter().any(|&byte| byte != 0) {
+        if !rest.starts_with(&GZIP_MAGIC) {
+            let what = format!("{} bytes follow that are no gzip stream", rest.len());
+            return Err(std::io::Error::new(ErrorKind::InvalidData, what));
+        }
+        let mut decoder = GzDecoder::new(rest);
+        let room = (LIMIT + 1).saturating_sub(unpacked.len() as u64);
+        decoder.by_ref().take(room).read_to_end(&mut unpacked)?;
+        if unpacked.len() as u64 > LIMIT {
+            break;
+        }
+        rest = decoder.into_inner();
+    }
+    Ok(unpacked)
 }
 
 /// The format by content, or by the file's name where the content leaves it open.
@@ -143,6 +160,25 @@ mod tests {
             let found: Vec<_> = lines(text).collect();
             assert_eq!(found, [(1, "a"), (2, "b")], "{text:?}");
         }
+    }
+
+    /// gzip reads what a tape or a block device has filled up with zeros; this program said "invalid gzip header".
+    #[test]
+    fn several_streams_and_zeros_behind_them_are_read() {
+        let packed = |text: &str| {
+            let mut encoder =
+                flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+            std::io::Write::write_all(&mut encoder, text.as_bytes()).unwrap();
+            encoder.finish().unwrap()
+        };
+        let two = [packed("ATOM 1\n"), packed("ATOM 2\n")].concat();
+        for zeros in [0, 1, 1000] {
+            let padded = [two.clone(), vec![0; zeros]].concat();
+            assert_eq!(gunzip(&padded).unwrap(), b"ATOM 1\nATOM 2\n");
+        }
+        let garbage = gunzip(&[two.as_slice(), b"\0\0more"].concat()).unwrap_err();
+        assert!(garbage.to_string().contains("6 bytes follow"), "{garbage}");
+        assert!(gunzip(&two[..two.len() - 3]).is_err());
     }
 
     #[test]

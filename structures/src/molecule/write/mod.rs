@@ -10,6 +10,7 @@ pub(crate) mod mmcif;
 pub(crate) mod pdb;
 pub(crate) mod row;
 
+use std::collections::HashMap;
 use std::io::Write;
 
 pub use crate::molecule::write::chains::{ChainMap, ChainName, Partner};
@@ -111,8 +112,14 @@ pub fn fits(format: Format, molecule: &Molecule) -> Result<(), WriteError> {
 
 fn complex_rows<'a>(molecules: &[&'a Molecule], map: &'a ChainMap) -> Vec<Row<'a>> {
     let of_molecule = |(place, molecule): (usize, &&'a Molecule)| {
+        let partner = Partner::at(place);
+        let chains = map.chains.iter().filter(|chain| chain.partner == partner);
+        let names: HashMap<&str, &str> = chains
+            .map(|chain| (chain.original.as_str(), chain.written.as_str()))
+            .collect();
         rows(&molecule.atoms, move |atom| {
-            map.written(Partner::at(place), &atom.chain)
+            let own = atom.chain.as_str();
+            names.get(own).copied().unwrap_or(own)
         })
     };
     molecules.iter().enumerate().flat_map(of_molecule).collect()
@@ -138,12 +145,12 @@ fn rows<'a>(atoms: &'a [Atom], chain: impl Fn(&'a Atom) -> &'a str) -> Vec<Row<'
 /// Indices of the last atoms of the chains' polymers: the last residue of ATOM records in each chain, and the modified
 /// residues that follow it directly. What comes after (cofactors, metals, free amino acids) is not part of the polymer.
 fn polymer_ends(atoms: &[Atom]) -> Vec<usize> {
-    struct End<'a> {
-        chain: &'a str,
+    struct End {
         residue: usize,
         atom: usize,
     }
-    let mut ends: Vec<End<'_>> = Vec::new();
+    let mut ends: Vec<End> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for (index, residue) in residues(atoms).iter().enumerate() {
         let is_polymer = matches!(
             residue.kind,
@@ -153,17 +160,20 @@ fn polymer_ends(atoms: &[Atom]) -> Vec<usize> {
             continue;
         };
         let is_hetero = atoms.get(last).is_some_and(|atom| atom.hetero);
-        match ends.iter_mut().find(|end| end.chain == residue.key.0) {
+        let place = places.get(residue.key.0);
+        match place.and_then(|&place| ends.get_mut(place)) {
             Some(end) if !is_hetero || end.residue + 1 == index => {
                 end.residue = index;
                 end.atom = last;
             }
             Some(_) => {}
-            None => ends.push(End {
-                chain: residue.key.0,
-                residue: index,
-                atom: last,
-            }),
+            None => {
+                places.insert(residue.key.0, ends.len());
+                ends.push(End {
+                    residue: index,
+                    atom: last,
+                });
+            }
         }
     }
     ends.iter().map(|end| end.atom).collect()

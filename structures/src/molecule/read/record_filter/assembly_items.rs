@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use crate::molecule::read::assemblies::{Assemblies, Assembly, Operator, Part};
-use crate::molecule::read::record_filter::record::coordinate;
+use crate::molecule::read::record_filter::record::number;
 use crate::molecule::read::record_filter::tokens::Token;
 
 /// Most copies that one row may ask for.
@@ -57,6 +57,7 @@ impl<'a> Items<'a> {
     pub(crate) fn assemblies(&self) -> Assemblies {
         let mut assemblies = Assemblies::default();
         let mut operators = HashMap::new();
+        let mut places: HashMap<&str, usize> = HashMap::new();
         for row in &self.operators.rows {
             if let (Some(id), Some(operator)) = (text(row, "id"), operator(row)) {
                 operators.insert(id, operator);
@@ -64,13 +65,18 @@ impl<'a> Items<'a> {
         }
         for row in &self.parts.rows {
             match part(row, &operators) {
-                Ok((id, part)) => match assemblies.list.iter_mut().find(|one| one.id == id) {
-                    Some(assembly) => assembly.parts.push(part),
-                    None => assemblies.list.push(Assembly {
-                        id: id.to_owned(),
-                        parts: vec![part],
-                    }),
-                },
+                Ok((id, part)) => {
+                    let place = *places.entry(id).or_insert_with(|| {
+                        assemblies.list.push(Assembly {
+                            id: id.to_owned(),
+                            parts: Vec::new(),
+                        });
+                        assemblies.list.len() - 1
+                    });
+                    if let Some(assembly) = assemblies.list.get_mut(place) {
+                        assembly.parts.push(part);
+                    }
+                }
                 Err(what) => {
                     let line = row.values().map(|token| token.line).min();
                     assemblies.broken.get_or_insert((line, what));
@@ -82,14 +88,14 @@ impl<'a> Items<'a> {
 }
 
 fn operator(row: &HashMap<String, Token<'_>>) -> Option<Operator> {
-    let number = |item: String| coordinate(text(row, &item)?);
+    let read = |item: String| number(text(row, &item)?);
     let mut operator = Operator::IDENTITY;
     for (i, shift) in operator.shift.iter_mut().enumerate() {
-        *shift = number(format!("vector[{}]", i + 1))?;
+        *shift = read(format!("vector[{}]", i + 1))?;
     }
     for (i, numbers) in operator.rotation.iter_mut().enumerate() {
         for (j, entry) in numbers.iter_mut().enumerate() {
-            *entry = number(format!("matrix[{}][{}]", i + 1, j + 1))?;
+            *entry = read(format!("matrix[{}][{}]", i + 1, j + 1))?;
         }
     }
     Some(operator)
@@ -142,6 +148,9 @@ fn group_members(
 ) -> Result<Vec<Operator>, String> {
     let mut members = Vec::new();
     let mut add = |id: &str| match operators.get(id) {
+        Some(_) if members.len() == MAX_COPIES => Err(format!(
+            "an oper_expression makes more than {MAX_COPIES} copies"
+        )),
         Some(operator) => {
             members.push(*operator);
             Ok(())

@@ -10,16 +10,13 @@ use crate::molecule::chemistry::elements::NameColumn;
 use crate::molecule::read::error::ReadError;
 use crate::molecule::read::policy::ModelChoice;
 use crate::molecule::read::record_filter::record::{
-    AtomRecord, Exact, FilteredRecords, NO_ALTERNATE, coordinate, field,
+    AtomRecord, COORDINATE, Exact, FilteredRecords, NO_ALTERNATE, SHOWN_NUMBERS, coordinate, field,
+    number,
 };
 use crate::molecule::read::record_filter::tokens::Token;
 
 /// Prefix of the tags of the atom table, in lower case; tags are case-insensitive.
 const CATEGORY: &str = "_atom_site.";
-
-/// How many different residue numbers pdbtbx is shown in a chain: few make it fast, and more than one keep residues
-/// small.
-const SHOWN_NUMBERS: i64 = 1000;
 
 /// The header of the table as pdbtbx expects it.
 const HEADER: &str = "data_filtered\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.label_atom_id\n\
@@ -152,6 +149,11 @@ impl<'a> Table<'a> {
     }
 }
 
+/// A number's text without the standard uncertainty in brackets that may follow it.
+fn certain(text: &str) -> &str {
+    text.split('(').next().unwrap_or(text)
+}
+
 /// One row of the atom table.
 struct Row<'r, 'a> {
     file: &'r Path,
@@ -191,8 +193,13 @@ impl<'a> Row<'_, 'a> {
 
     /// A number, without the standard uncertainty in brackets that may follow it.
     fn number(&self, column: usize) -> Option<f64> {
-        let text = self.value(column)?;
-        coordinate(text.split('(').next().unwrap_or(text))
+        self.value(column).and_then(|text| number(certain(text)))
+    }
+
+    /// A coordinate, likewise.
+    fn coordinate(&self, column: usize) -> Option<f64> {
+        self.value(column)
+            .and_then(|text| coordinate(certain(text)))
     }
 
     /// A value of one character.
@@ -213,7 +220,7 @@ impl<'a> Row<'_, 'a> {
 
     /// The coordinates, where they can be read.
     fn position(&self, columns: &Columns) -> Option<[f64; 3]> {
-        let [x, y, z] = columns.position.map(|column| self.number(column));
+        let [x, y, z] = columns.position.map(|column| self.coordinate(column));
         Some([x?, y?, z?])
     }
 
@@ -222,9 +229,9 @@ impl<'a> Row<'_, 'a> {
         let mut position = [0.0; 3];
         for (axis, name) in ["Cartn_x", "Cartn_y", "Cartn_z"].into_iter().enumerate() {
             let column = columns.position.get(axis).copied().unwrap_or_default();
-            let value = self.number(column).ok_or_else(|| {
+            let value = self.coordinate(column).ok_or_else(|| {
                 let text = self.value(column).unwrap_or("?");
-                self.error(name, text, "a finite number")
+                self.error(name, text, COORDINATE)
             })?;
             if let Some(place) = position.get_mut(axis) {
                 *place = value;
@@ -315,27 +322,24 @@ impl<'a> Row<'_, 'a> {
         filtered
             .text
             .push_str(&format!("{group} {} ", filtered.records.len()));
-        self.quote(&mut filtered.text, "label_atom_id", name)?;
-        let shown_alternate = atom.alternate_location.unwrap_or(NO_ALTERNATE).to_string();
-        self.quote(&mut filtered.text, "label_alt_id", &shown_alternate)?;
-        self.quote(&mut filtered.text, "label_comp_id", &atom.residue_name)?;
-        self.quote(&mut filtered.text, "auth_asym_id", &atom.chain)?;
-        // pdbtbx's reader overflows on large numbers, and goes through all residues of a chain for each new one. What
-        // it takes for one residue is of no matter: the number travels past it.
-        let shown_number = atom.residue_number.rem_euclid(SHOWN_NUMBERS);
-        filtered.text.push_str(&format!("{shown_number} "));
-        match atom.insertion_code {
-            Some(code) => self.quote(&mut filtered.text, "pdbx_PDB_ins_code", &code.to_string())?,
-            None => filtered.text.push_str("? "),
-        }
-        // Element and coordinates travel past pdbtbx.
-        filtered.text.push_str("\"C\" 0 0 0\n");
+        let quote = self.quote("label_atom_id", name)?;
+        let name = if name.is_empty() { "_" } else { name };
+        filtered.text.push_str(&format!("{quote}{name}{quote} "));
+        let character = |character: Option<char>| character.unwrap_or('?').to_string();
+        self.quote("label_alt_id", &character(atom.alternate_location))?;
+        self.quote("label_comp_id", &atom.residue_name)?;
+        self.quote("auth_asym_id", &atom.chain)?;
+        self.quote("pdbx_PDB_ins_code", &character(atom.insertion_code))?;
+        // For each atom pdbtbx goes through all chains, all residues of one and all names of one. What it takes for one
+        // residue is of no matter: all but the atom's name and kind travels past it.
+        let shown_number = filtered.records.len() % SHOWN_NUMBERS;
+        let shown = format!("\"{NO_ALTERNATE}\" \"UNK\" \"A\" {shown_number} ? \"C\" 0 0 0\n");
+        filtered.text.push_str(&shown);
         Ok(())
     }
 
-    /// Writes a value in quotes that pdbtbx ends where they end: it stops at the first quote of the kind it started
-    /// with.
-    fn quote(&self, text: &mut String, item: &'static str, value: &str) -> Result<(), ReadError> {
+    /// The quotes for a value that pdbtbx ends where they end: it stops at the first quote of the kind it started with.
+    fn quote(&self, item: &'static str, value: &str) -> Result<char, ReadError> {
         let is_plain = value.bytes().all(|byte| (32..127).contains(&byte));
         let quote = match (value.contains('"'), value.contains('\'')) {
             (false, _) => '"',
@@ -345,11 +349,6 @@ impl<'a> Row<'_, 'a> {
         if !is_plain {
             return Err(self.error(item, value, "plain ASCII text"));
         }
-        let value = if value.is_empty() { "_" } else { value };
-        text.push(quote);
-        text.push_str(value);
-        text.push(quote);
-        text.push(' ');
-        Ok(())
+        Ok(quote)
     }
 }

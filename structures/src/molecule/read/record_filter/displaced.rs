@@ -5,7 +5,7 @@
 //! columns.
 
 use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide, is_water};
-use crate::molecule::read::record_filter::record::coordinate;
+use crate::molecule::read::record_filter::record::number;
 use crate::molecule::read::record_filter::residue_columns::residue_number;
 
 /// Where the decimal points of the coordinates stand, from 0.
@@ -53,7 +53,7 @@ pub(crate) fn displaced(line: &str) -> Option<Displaced> {
         }
     }
     // Free text may begin with the word; an atom's has three coordinates.
-    let is_decimal = |word: &&str| word.contains('.') && coordinate(word).is_some();
+    let is_decimal = |word: &&str| word.contains('.') && number(word).is_some();
     let decimals = rest.split_whitespace().filter(is_decimal).count();
     (decimals >= 3).then_some(Displaced::Lost)
 }
@@ -121,7 +121,7 @@ fn is_atom_in_columns(record: &str) -> bool {
         && POINTS.iter().all(|&at| bytes.get(at) == Some(&b'.'))
         && numbers
             .iter()
-            .all(|&(from, to)| coordinate(columns(from, to)).is_some())
+            .all(|&(from, to)| number(columns(from, to)).is_some())
         && residue_number(columns(22, 26), columns(26, 27)).is_some()
         && !columns(12, 16).trim().is_empty()
         && columns(11, 12) == " "

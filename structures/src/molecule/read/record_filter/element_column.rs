@@ -3,7 +3,7 @@
 //! PDBQT is PDB with a partial charge in columns 71-76 and an atom type behind it (AutoDock 4.2 User Guide). Chlorine
 //! and the metals have types of two letters, of which columns 77-78 hold but the first.
 
-use crate::molecule::read::record_filter::record::coordinate;
+use crate::molecule::read::record_filter::record::number;
 
 /// Types of AutoDock that are not named after their element.
 const TYPES: [(&str, &str); 9] = [
@@ -22,7 +22,7 @@ const TYPES: [(&str, &str); 9] = [
 pub(crate) fn element(record: &str) -> &str {
     let columns = |from: usize, to: usize| record.get(from..to.min(record.len())).unwrap_or("");
     let charge = columns(70, 76).trim();
-    let is_charge = charge.contains('.') && coordinate(charge).is_some();
+    let is_charge = charge.contains('.') && number(charge).is_some();
     if !is_charge || columns(76, 77) != " " {
         return columns(76, 78).trim();
     }

@@ -15,7 +15,7 @@ use crate::molecule::read::record_filter::displaced::{Displaced, displaced, shif
 use crate::molecule::read::record_filter::element_column::element;
 use crate::molecule::read::record_filter::provenance::{Provenance, is_measured};
 use crate::molecule::read::record_filter::record::{
-    AtomRecord, FilteredRecords, NO_ALTERNATE, coordinate, field,
+    AtomRecord, COORDINATE, FilteredRecords, NO_ALTERNATE, SHOWN_NUMBERS, coordinate, field, number,
 };
 use crate::molecule::read::record_filter::residue_columns::{
     has_wide_chains, residue_and_chain, residue_number,
@@ -218,7 +218,7 @@ fn atom(
         },
         exact: None,
     };
-    write_line(record, &atom, filtered);
+    write_line(record, filtered);
     filtered.records.push(atom);
     Ok(())
 }
@@ -267,7 +267,7 @@ fn check_coordinates(file: &Path, line: usize, record: &str) -> Result<(), ReadE
     {
         if coordinate(text).is_none() {
             let name = format!("coordinate {axis} (columns {columns})");
-            return Err(field(file, line, name, text, "a finite number"));
+            return Err(field(file, line, name, text, COORDINATE));
         }
     }
     if let Some(text) = run_together(positions) {
@@ -284,40 +284,33 @@ fn check_coordinates(file: &Path, line: usize, record: &str) -> Result<(), ReadE
 }
 
 /// Writes the line of an atom that pdbtbx reads.
-fn write_line(record: &str, atom: &AtomRecord, filtered: &mut FilteredRecords) {
-    let mut number = |text: &str, default: &'static str, width: usize| -> String {
+fn write_line(record: &str, filtered: &mut FilteredRecords) {
+    let mut shown = |text: &str, default: &'static str, width: usize| -> String {
         let text = text.trim();
-        if coordinate(text).is_some() {
+        if number(text).is_some() {
             format!("{text:>width$}")
         } else {
             filtered.defaults_filled += 1;
             format!("{default:>width$}")
         }
     };
-    let occupancy = number(slice(record, 54, 60), "1.00", 6);
-    let b_factor = number(slice(record, 60, 66), "0.00", 6);
+    let occupancy = shown(slice(record, 54, 60), "1.00", 6);
+    let b_factor = shown(slice(record, 60, 66), "0.00", 6);
 
     // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
     let serial = filtered.records.len() % 100_000;
-    // Carried past pdbtbx where it is blank or longer than its column.
-    let shown_chain = atom.chain.get(..1).unwrap_or("A");
-    // What pdbtbx's four columns cannot hold is carried, and shown as 0.
-    let shown_number = Some(atom.residue_number)
-        .filter(|number| (-999..=9999).contains(number))
-        .unwrap_or(0);
+    // Chain and residue are carried past pdbtbx, which for each atom goes through all chains and residues that it has.
+    let shown_number = filtered.records.len() % SHOWN_NUMBERS;
     let name = slice(record, 12, 16);
-    let insertion = atom.insertion_code.unwrap_or(' ');
     let [x, y, z] = positions(record);
     // The element travels past pdbtbx; carbon is what it finds fastest.
     filtered.text.push_str(&format!(
-        "{:6}{serial:>5} {name}{}{:<3.3} {shown_chain}{shown_number:>4}{insertion}   {x}{y}{z}{occupancy}{b_factor}{:10} C  \n",
+        "{:6}{serial:>5} {name}{NO_ALTERNATE}UNK A{shown_number:>4}    {x}{y}{z}{occupancy}{b_factor}{:10} C  \n",
         if record.starts_with("HETATM") {
             "HETATM"
         } else {
             "ATOM"
         },
-        atom.alternate_location.unwrap_or(NO_ALTERNATE),
-        atom.residue_name,
         "",
     ));
 }

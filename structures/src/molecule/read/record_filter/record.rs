@@ -10,6 +10,9 @@ use crate::molecule::read::record_filter::provenance::Provenance;
 /// Alternate location given to pdbtbx for atoms that have none, so that it does not copy them into other conformers.
 pub(crate) const NO_ALTERNATE: char = '~';
 
+/// How many different residue numbers pdbtbx is shown: few make it fast, and more than one keep residues small.
+pub(crate) const SHOWN_NUMBERS: usize = 1000;
+
 /// Data of one atom that bypass pdbtbx.
 #[derive(Clone, Debug)]
 pub(crate) struct AtomRecord {
@@ -95,8 +98,25 @@ pub(crate) fn field(
     }
 }
 
-/// A coordinate, which must be a finite number.
+/// Largest magnitude of a coordinate of an atom, in Å: a millimetre. Squares and sums of such lengths keep their digits,
+/// and no molecule is that large or that far off.
+const LARGEST_COORDINATE: f64 = 1e7;
+
+/// What a coordinate must be, in words.
+pub(crate) const COORDINATE: &str = "a finite number of at most 1e7 in magnitude (Å)";
+
+/// A coordinate of an atom, in Å; nothing where no molecule can lie.
 pub(crate) fn coordinate(text: &str) -> Option<f64> {
+    number(text).filter(|value| value.abs() <= LARGEST_COORDINATE)
+}
+
+/// Whether an atom may lie at a position (Å).
+pub(crate) fn is_place(position: [f64; 3]) -> bool {
+    position.iter().all(|x| x.abs() <= LARGEST_COORDINATE)
+}
+
+/// A number, which must be finite.
+pub(crate) fn number(text: &str) -> Option<f64> {
     text.trim()
         .parse::<f64>()
         .ok()

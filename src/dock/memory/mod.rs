@@ -1,95 +1,140 @@
 //! Memory of a run: what it takes, how many rotations fit at once, and the finest grid that would fit.
 
+pub mod process;
+pub mod size;
+pub mod stages;
+
 use crate::dock::scene::Scene;
 use crate::error::SearchError;
-use crate::options::{DockOptions, EngineChoice, KernelOptions, Precision};
-use knotdock_scoring::engine::{CpuEngine, Plan};
-use knotdock_scoring::peaks::Peak;
-use knotdock_scoring::potential_grid::PotentialGrid;
-use knotdock_scoring::so3::{BYTES_RELAXED, MAX_RELAXED};
-
-/// Components of the compressed lifted axis that the estimate allows for.
-const EXPECTED_RANK: usize = 8;
+use crate::options::{DockOptions, EngineChoice, KernelOptions};
+use crate::pose_space::PoseSpace;
+use knotdock_scoring::engine::Plan;
+use size::named;
+use stages::{AtOnce, MemoryStage, Sizes};
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
 const GRAPHICS_BYTES: u64 = 512 << 20;
 
 /// Memory of a run, in bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct MemoryPlan {
-    /// Everything but rotations in flight.
-    pub fixed: u64,
-    /// A rotation in flight.
-    pub per_rotation: u64,
-    /// Rotations in flight at once.
-    pub in_flight: usize,
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MemoryPlan {
+    sizes: Sizes,
+    at_once: AtOnce,
+    allowed: Option<u64>,
+    /// Rotations that would be in flight if there were more than enough of them.
+    pub most_in_flight: usize,
     /// Graphics memory that rotations in flight may take; 0 on the CPU.
     pub graphics: u64,
 }
 
 impl MemoryPlan {
-    /// The memory of a run of `engine`, within the limit of the options.
+    /// The memory of a run of `engine`, within the limit of the options, of which `refined` poses are refined.
     ///
     /// # Errors
     /// [`SearchError::Memory`] where not one rotation fits, with the finest grid that would.
-    pub fn new(scene: &Scene, engine: &Plan, options: &DockOptions) -> Result<Self, SearchError> {
-        let (fixed, per_rotation) = needs(scene, engine, options);
-        let in_flight = most_in_flight(options, fixed, per_rotation).min(options.search.rotations);
-        if let (0, Some(allowed)) = (in_flight, options.machine.memory) {
-            let needed = fixed + per_rotation;
-            return Err(too_little(scene, options, (needed, allowed)));
+    pub fn new(
+        scene: &Scene,
+        engine: &Plan,
+        options: &DockOptions,
+        (space, refined): (&PoseSpace, usize),
+    ) -> Result<Self, SearchError> {
+        let sizes = Sizes::new(scene, engine, options, (space, refined));
+        let allowed = options.machine.memory;
+        let needed = sizes.peak(AtOnce::ONE);
+        if let Some(allowed) = allowed.filter(|&allowed| needed > allowed) {
+            let limits = (named(needed), allowed);
+            return Err(too_little(scene, options, (space, refined), limits));
         }
+        let fits = |at_once: &AtOnce| allowed.is_none_or(|allowed| sizes.peak(*at_once) <= allowed);
+        let most = options.machine.threads.count();
+        let flights = (1..=most).rev().map(|rotations| AtOnce {
+            rotations,
+            effects: 1,
+        });
+        let most_in_flight = flights
+            .into_iter()
+            .find(fits)
+            .unwrap_or(AtOnce::ONE)
+            .rotations;
+        let rotations = most_in_flight.min(options.search.rotations);
+        let parts = (1..=rotations)
+            .rev()
+            .map(|effects| AtOnce { rotations, effects });
+        let at_once = parts.into_iter().find(fits).unwrap_or(AtOnce {
+            rotations,
+            effects: 1,
+        });
         let graphics = match options.search.engine {
             EngineChoice::Cpu => 0,
             EngineChoice::Gpu => {
-                let taken = fixed + in_flight as u64 * per_rotation;
-                let left = options
-                    .machine
-                    .memory
-                    .map(|allowed| allowed.saturating_sub(taken));
+                let taken = sizes.peak(at_once);
+                let left = allowed.map(|allowed| allowed.saturating_sub(taken));
                 left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
             }
         };
         Ok(Self {
-            fixed,
-            per_rotation,
-            in_flight,
+            sizes,
+            at_once,
+            allowed,
+            most_in_flight,
             graphics,
         })
     }
-}
 
-/// Bytes of everything but rotations in flight, and of one of them.
-fn needs(scene: &Scene, engine: &Plan, options: &DockOptions) -> (u64, u64) {
-    let (real_bytes, workspace_estimate): (u64, fn(&Plan, usize) -> usize) =
-        match options.search.precision {
-            Precision::Single => (4, CpuEngine::<f32>::workspace_estimate),
-            Precision::Double => (8, CpuEngine::<f64>::workspace_estimate),
+    /// Bytes that everything but rotations in flight takes beside what was held before.
+    pub fn fixed(&self) -> u64 {
+        self.sizes.fixed()
+    }
+
+    /// Bytes of a rotation in flight.
+    pub fn per_rotation(&self) -> u64 {
+        self.sizes.expected_in_flight()
+    }
+
+    /// Rotations in flight at once.
+    pub fn in_flight(&self) -> usize {
+        self.at_once.rotations
+    }
+
+    /// Effects that are timed at once.
+    pub fn effects_at_once(&self) -> usize {
+        self.at_once.effects
+    }
+
+    /// Rotations in flight at the rank that the engine turned out to have, at least one.
+    pub fn in_flight_at(&self, rank: usize) -> usize {
+        let fits = |count: &usize| {
+            let needed = self.sizes.search_peak(*count, rank);
+            self.allowed.is_none_or(|allowed| needed <= allowed)
         };
-    let functions = engine.functions();
-    let rank = functions.min(EXPECTED_RANK);
-    let per_rotation = workspace_estimate(engine, rank) as u64;
-    // The functions, one in the making, and the compressed ones in either order of modes, packed.
-    let fixed =
-        2 * real_bytes * engine.modes().count as u64 * (functions + 1 + 5 * rank / 2) as u64
-            + PotentialGrid::bytes(engine) as u64
-            + 200 * (scene.receptor.len() + scene.ligand.len()) as u64
-            + 64 * options.search.rotations as u64
-            + fine_bytes(options)
-            + BYTES_RELAXED * options.search.rotations.min(MAX_RELAXED) as u64
-            + 400 * options.search.poses as u64
-            + (16 << 20);
-    (fixed, per_rotation)
+        (1..=self.in_flight()).rev().find(fits).unwrap_or(1)
+    }
+
+    /// Bytes that the run takes at its peak.
+    pub fn bytes(&self) -> u64 {
+        self.sizes.peak(self.at_once) + self.graphics
+    }
+
+    /// The stage that takes the most, with its parts.
+    pub fn largest(&self) -> Option<MemoryStage> {
+        self.sizes.largest(self.at_once)
+    }
 }
 
 /// The error of a run that does not fit, with the finest grid or resolution that would.
-fn too_little(scene: &Scene, options: &DockOptions, (needed, allowed): (u64, u64)) -> SearchError {
+fn too_little(
+    scene: &Scene,
+    options: &DockOptions,
+    refining: (&PoseSpace, usize),
+    (needed, allowed): (u64, u64),
+) -> SearchError {
     let fits = least_coarse(|step| {
         let coarser = coarser(options, step, scene.angstrom);
         let plan = scene.engine_plan(&coarser).ok()?;
         let spacing = rounded_up(plan.spacing(), scene.angstrom);
-        let (fixed, per_rotation) = needs(scene, &plan.with_spacing(spacing).ok()?, options);
-        (fixed + per_rotation <= allowed).then_some(KernelOptions {
+        let plan = plan.with_spacing(spacing).ok()?;
+        let sizes = Sizes::new(scene, &plan, &coarser, refining);
+        (named(sizes.peak(AtOnce::ONE)) <= allowed).then_some(KernelOptions {
             spacing: Some(spacing),
             ..coarser.kernel
         })
@@ -109,22 +154,6 @@ fn too_little(scene: &Scene, options: &DockOptions, (needed, allowed): (u64, u64
             .and_then(|coarser| coarser.pass_length)
             .filter(|&length| Some(length) > options.kernel.pass_length),
     }
-}
-
-/// Number of rotations in flight: as many as threads, where memory has room for them.
-pub(super) fn most_in_flight(options: &DockOptions, fixed: u64, per_rotation: u64) -> usize {
-    let threads = options.machine.threads.count();
-    let room = options.machine.memory.map_or(u64::MAX, |allowed| {
-        allowed.saturating_sub(fixed) / per_rotation.max(1)
-    });
-    threads.min(usize::try_from(room).unwrap_or(usize::MAX))
-}
-
-/// Bytes of a finer search: its rotations with their cells, and the peaks found, as found and as sorted.
-fn fine_bytes(options: &DockOptions) -> u64 {
-    let finer = options.search.fine_rotations.unwrap_or(0);
-    let searched = (options.search.fine_share * finer as f64).ceil() as u64;
-    64 * finer as u64 + 3 * size_of::<Peak>() as u64 * searched * options.search.per_rotation as u64
 }
 
 /// The first of 60 ever coarser steps that fits, found by halving.

@@ -1,0 +1,151 @@
+//! Memory of an engine's parts in bytes, from its plan: known before any of them is made.
+
+use super::cpu::{COLUMNS, PLANES};
+use super::packed::{LANES, Packing};
+use super::plan::Plan;
+use super::preparation::ligand_forward;
+use super::receptor_spectra::LigandFunctions;
+use crate::terms::effect::{ActiveTerm, Effect, Term};
+use crate::transform::Real;
+use knotdock_structures::Knots;
+use nalgebra::DMatrix;
+use std::collections::BTreeSet;
+
+/// Singular values of a class matrix below this share of the largest carry nothing.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// Bytes of an engine's parts. Spectra, engines and workspaces are linear in the functions or the rank.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineMemory {
+    /// The receptor's spectrum of one function.
+    pub spectrum: u64,
+    /// One component of an engine: the receptor's part, packed, and the ligand's weights.
+    pub component: u64,
+    /// A workspace without components.
+    pub workspace: u64,
+    /// One component of a workspace.
+    pub workspace_component: u64,
+    /// What choosing a rank takes beside engines and their workspace: places of the voxels, multiplicities of the modes.
+    pub probing: u64,
+    /// What transforming the receptor takes beside its spectra, on one thread.
+    pub transform: u64,
+    /// Functions of each effect that is on, and the most components that they can have.
+    pub effects: Vec<(Effect, EffectSize)>,
+}
+
+/// Size of an effect in the compressed functions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EffectSize {
+    /// Functions of the ligand.
+    pub functions: usize,
+    /// Most components: the rank of what couples them with the receptor.
+    pub rank: usize,
+}
+
+impl EngineMemory {
+    /// The memory of a plan's engine in a floating-point type.
+    pub fn new<T: Real>(plan: &Plan, ligand: &Knots) -> Self {
+        let real = size_of::<T>() as u64;
+        let modes = plan.modes().count as u64;
+        let voxels = plan.modes().size.iter().product::<usize>() as u64;
+        let packed = (LANES * Packing::new(plan.modes()).count()) as u64;
+        let [one, two] = [1, 2].map(|rank| workspace_bytes::<T>(plan, ligand, rank));
+        Self {
+            spectrum: 2 * real * modes,
+            component: real * (2 * packed + ligand.len() as u64),
+            workspace: one.saturating_sub(two - one),
+            workspace_component: two - one,
+            probing: size_of::<u32>() as u64 * voxels + size_of::<f64>() as u64 * modes,
+            transform: 2 * real * modes + ligand_forward::<T>(plan, 1).workspace_bytes() as u64,
+            effects: effect_sizes(plan, ligand),
+        }
+    }
+
+    /// Functions and components of all effects but one.
+    pub fn without(&self, left_out: Option<Effect>) -> EffectSize {
+        let kept = self
+            .effects
+            .iter()
+            .filter(|(effect, _)| Some(*effect) != left_out);
+        kept.fold(EffectSize::default(), |sum, (_, size)| EffectSize {
+            functions: sum.functions + size.functions,
+            rank: sum.rank + size.rank,
+        })
+    }
+
+    /// Functions and components of one effect.
+    pub fn only(&self, effect: Effect) -> EffectSize {
+        let of = |(other, _): &&(Effect, EffectSize)| *other == effect;
+        self.effects
+            .iter()
+            .find(of)
+            .map_or_else(EffectSize::default, |(_, size)| *size)
+    }
+
+    /// A workspace at a rank.
+    pub fn workspace_at(&self, rank: usize) -> u64 {
+        self.workspace + rank as u64 * self.workspace_component
+    }
+
+    /// The choice of a rank among so many components, most of which it leaves out: the whole engine, with its workspace
+    /// or with an engine of half the rank.
+    pub fn choice(&self, rank: usize) -> u64 {
+        let half = rank.div_ceil(2);
+        let probing = self.probing + self.workspace_at(rank);
+        let halving = half as u64 * self.component + self.workspace_at(half);
+        rank as u64 * self.component + probing.max(halving)
+    }
+}
+
+/// Bytes of a workspace at a rank.
+fn workspace_bytes<T: Real>(plan: &Plan, ligand: &Knots, rank: usize) -> u64 {
+    let [nx, ny, nz] = plan.modes().size;
+    let forward = ligand_forward::<T>(plan, rank);
+    let reals = 2 * COLUMNS * rank * forward.line_length()
+        + 2 * rank * LANES * Packing::new(plan.modes()).count()
+        + 2 * PLANES * nx * ny
+        + nx * ny * nz
+        + nx * ny * (nz + 1);
+    let points = size_of::<[f64; 3]>() * ligand.len();
+    (forward.workspace_bytes() + reals * size_of::<T>() + points) as u64
+}
+
+/// Size of each effect of a plan.
+fn effect_sizes(plan: &Plan, ligand: &Knots) -> Vec<(Effect, EffectSize)> {
+    let functions = LigandFunctions::of_score(plan, ligand).effects;
+    let count = |wanted: Effect| functions.iter().filter(|effect| **effect == wanted).count();
+    let size = |effect, rank: usize| {
+        let functions = count(effect);
+        let rank = rank.min(functions);
+        (effect, EffectSize { functions, rank })
+    };
+    let shape = size(Effect::Shape, usize::MAX);
+    let others = plan.effects().iter();
+    let others = others.map(|ActiveTerm { term, .. }| size(term.effect, matrix_rank(term)));
+    std::iter::once(shape).chain(others).collect()
+}
+
+/// Rank of a term's class matrix over the classes that there are.
+fn matrix_rank(term: &Term) -> usize {
+    let classes = |labels: &[crate::terms::effect::Label]| -> Vec<usize> {
+        let counting = labels.iter().filter(|label| label.value != 0.0);
+        let classes: BTreeSet<usize> = counting.map(|label| label.class).collect();
+        classes.into_iter().collect()
+    };
+    let (rows, columns) = (classes(&term.receptor), classes(&term.ligand));
+    if rows.is_empty() || columns.is_empty() {
+        return 0;
+    }
+    let value = |row: usize, column: usize| {
+        let row = term.matrix.get(rows[row]);
+        row.and_then(|row| row.get(columns[column]))
+            .copied()
+            .unwrap_or(0.0)
+    };
+    let singular = DMatrix::from_fn(rows.len(), columns.len(), value).singular_values();
+    let largest = singular.max();
+    let carried = singular
+        .iter()
+        .filter(|value| **value > NEGLIGIBLE * largest);
+    carried.count()
+}

@@ -1,0 +1,171 @@
+//! The system's limits, and what becomes of a run that meets one: a message, a JSON object where one is wanted, and
+//! exit code 1.
+//!
+//! Memory: where the system has none, Rust's standard library ends a program by SIGABRT. A failed allocation can
+//! neither unwind nor allocate, so the message is made on the stack, written past all buffers, and the process ends
+//! without further ado. What a run has staged by then, the next run clears away.
+//!
+//! Size of files (`ulimit -f`): the system ends a program that writes past it by SIGXFSZ. Where that is ignored, the
+//! write fails, and is reported like that to a full disk.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The system's allocator, which ends the process with a message where there is no memory.
+pub struct ReportingAllocator;
+
+/// Whether the object of a failure is wanted on standard output.
+static JSON: AtomicBool = AtomicBool::new(false);
+
+/// Whether a failure is being reported: by the first thread that has no memory.
+static REPORTED: AtomicBool = AtomicBool::new(false);
+
+/// What went wrong, and what to do about it.
+const MESSAGE: &str = "the system has no memory left";
+const REMEDY: &str = "allow the program more memory (`ulimit -v`, or the limit of its container), or less to its work: \
+                      by --memory or a coarser --resolution, of a sampled mesh by a coarser --grid";
+
+/// Has a lack of memory reported as a JSON object, too.
+pub fn report_as_json() {
+    JSON.store(true, Ordering::Relaxed);
+}
+
+/// Has writing past the limit on file sizes fail, not end the process.
+pub fn fail_at_file_size() {
+    #[cfg(unix)]
+    // SAFETY: no handler is installed that could be run; other signals keep their dispositions.
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+    }
+}
+
+// SAFETY: every request goes to the system's allocator as it is, and what that returns is returned, but for null.
+unsafe impl GlobalAlloc for ReportingAllocator {
+    #[inline]
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: the caller's promises are those that are needed.
+        some(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    #[inline]
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as above.
+        some(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    #[inline]
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as above; the pointer came from the system's allocator.
+        some(unsafe { System.realloc(pointer, layout, size) }, size)
+    }
+
+    #[inline]
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+/// The pointer, unless it is null.
+#[inline]
+fn some(pointer: *mut u8, bytes: usize) -> *mut u8 {
+    if pointer.is_null() {
+        out_of_memory(bytes);
+    }
+    pointer
+}
+
+/// Reports that so many bytes could not be had, and ends the process with exit code 1. Allocates nothing and waits for
+/// no lock, for either may be what the failed allocation was in the middle of.
+#[cold]
+#[inline(never)]
+fn out_of_memory(bytes: usize) -> ! {
+    if REPORTED.swap(true, Ordering::Relaxed) {
+        // Another thread is about to end the process.
+        loop {
+            std::hint::spin_loop();
+        }
+    }
+    let mut text = [0u8; 1024];
+    if JSON.load(Ordering::Relaxed) {
+        let object = filled(&mut text, |text| {
+            writeln!(
+                text,
+                r#"{{"error":{{"file":null,"line":null,"message":"{MESSAGE}: {bytes} bytes were refused","remedy":"{REMEDY}"}}}}"#
+            )
+        });
+        write_past_buffers(1, object);
+    }
+    let lines = filled(&mut text, |text| {
+        writeln!(
+            text,
+            "error: {MESSAGE}: {bytes} bytes were refused\n  help: {REMEDY}"
+        )
+    });
+    write_past_buffers(2, lines);
+    end()
+}
+
+/// What `write` writes into a buffer.
+fn filled(buffer: &mut [u8], write: impl FnOnce(&mut &mut [u8]) -> std::io::Result<()>) -> &[u8] {
+    let length = buffer.len();
+    let mut rest = &mut *buffer;
+    // The text is shorter than the buffer; were it not, what fits would stand.
+    let _ = write(&mut rest);
+    let written = length - rest.len();
+    &buffer[..written]
+}
+
+/// Writes to a file descriptor of the process.
+#[cfg(unix)]
+fn write_past_buffers(descriptor: i32, mut text: &[u8]) {
+    while !text.is_empty() {
+        // SAFETY: the text is readable over its whole length.
+        let written = unsafe { libc::write(descriptor, text.as_ptr().cast(), text.len()) };
+        match usize::try_from(written) {
+            Ok(written) if written > 0 => text = text.get(written..).unwrap_or_default(),
+            // Nobody is there to read it.
+            _ => return,
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn write_past_buffers(_: i32, _: &[u8]) {}
+
+/// Ends the process without flushing, which may need memory or a lock.
+#[cfg(unix)]
+fn end() -> ! {
+    // SAFETY: ends the process at once; nothing runs afterwards.
+    unsafe { libc::_exit(1) }
+}
+
+/// Ends the process.
+#[cfg(not(unix))]
+fn end() -> ! {
+    std::process::abort()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The object is JSON as it stands, for it is written without the crate that makes other objects.
+    #[test]
+    fn the_words_need_no_escapes() {
+        for words in [MESSAGE, REMEDY] {
+            let escaped = serde_json::to_string(words).unwrap();
+            assert_eq!(escaped, format!("\"{words}\""));
+        }
+        assert!(2 * REMEDY.len() < 1024 - 200);
+    }
+
+    #[test]
+    fn a_text_is_cut_at_the_end_of_its_buffer() {
+        let mut buffer = [0; 8];
+        assert_eq!(filled(&mut buffer, |text| write!(text, "{}", 123)), b"123");
+        let long = filled(&mut buffer, |text| write!(text, "0123456789"));
+        assert_eq!(long, b"01234567");
+    }
+}

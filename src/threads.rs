@@ -1,0 +1,104 @@
+//! The threads that work is done on.
+//!
+//! Rayon's global pool is never used: it starts on the first parallel iterator outside of a pool, takes its size from
+//! the environment (`RAYON_NUM_THREADS`), and panics where its threads cannot be started.
+
+/// Stack of a thread, in bytes: as much as the main thread commonly has, since files are read and written on it, too.
+/// It takes memory only as far as it is used.
+const STACK: usize = 8 << 20;
+
+/// Why work was not done: its threads could not be started.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the system did not start {}: {message}", counted(*count))]
+pub struct ThreadsError {
+    /// Threads that were wanted.
+    count: usize,
+    /// The system's message.
+    message: String,
+}
+
+fn counted(count: usize) -> String {
+    match count {
+        1 => "a thread".to_owned(),
+        count => format!("{count} threads"),
+    }
+}
+
+impl ThreadsError {
+    /// Remedy for the user.
+    pub fn remedy(&self) -> &'static str {
+        "use fewer --threads (-j 1 starts none), or allow more processes (`ulimit -u`) and memory (`ulimit -v`)"
+    }
+}
+
+/// Does work on `count` threads: parallel iterators in it share these, and no others. They are those of the pool that
+/// the caller's thread belongs to, if that has so many, and else new ones, which end with the work.
+///
+/// # Errors
+/// [`ThreadsError`] when they cannot be started, before any of the work is done.
+pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, ThreadsError> {
+    let count = count.max(1);
+    // Outside of every pool the second question would start the global one.
+    if rayon::current_thread_index().is_some() && rayon::current_num_threads() == count {
+        return Ok(work());
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(count)
+        .stack_size(STACK)
+        .build()
+        .map_err(|error| ThreadsError {
+            count,
+            message: error.to_string(),
+        })?;
+    Ok(pool.install(work))
+}
+
+/// Makes the caller's thread, the main one of a program, a pool by itself and the global one. Work outside of [`on`]
+/// is then done on it alone, and so is work on one thread.
+///
+/// # Errors
+/// [`ThreadsError`] where the program has used the global pool before.
+pub fn stay_on_main() -> Result<(), ThreadsError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build_global()
+        .map_err(|error| ThreadsError {
+            count: 1,
+            message: error.to_string(),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+    use std::collections::HashSet;
+    use std::thread::{ThreadId, current};
+
+    fn seen() -> HashSet<ThreadId> {
+        (0..10_000)
+            .into_par_iter()
+            .map(|_| current().id())
+            .collect()
+    }
+
+    /// Work of as many threads as the caller's pool has is done there; other work has threads of its own.
+    #[test]
+    fn work_is_done_on_as_many_threads_as_were_wanted() {
+        let outer = on(3, || {
+            assert_eq!(rayon::current_num_threads(), 3);
+            let own = rayon::broadcast(|_| current().id());
+            let within = on(3, || rayon::broadcast(|_| current().id())).unwrap();
+            assert_eq!(within, own);
+            let other = on(2, || rayon::broadcast(|_| current().id())).unwrap();
+            assert_eq!(other.len(), 2);
+            assert!(other.iter().all(|id| !own.contains(id)));
+            assert!(seen().iter().all(|id| own.contains(id)));
+            own
+        })
+        .unwrap();
+        assert!(!outer.contains(&current().id()));
+        assert_eq!(on(0, rayon::current_num_threads), Ok(1));
+    }
+}

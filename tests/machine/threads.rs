@@ -1,0 +1,236 @@
+//! `--threads` governs all that is computed: no command starts other threads, whatever the environment says, and
+//! threads that the system does not start are a failure like any other.
+
+use std::fs::{self, OpenOptions};
+use std::io::Read;
+use std::os::unix::fs::OpenOptionsExt;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+use assert_cmd::cargo::cargo_bin;
+
+use crate::place::{Place, error, not_run};
+
+/// Commands that compute, each into a place of its own.
+const COMMANDS: [&str; 8] = [
+    "sample box.obj --grid 2^12 --weights fitted --picture balls.svg --force",
+    "dock receptor.pdb ligand.pdb --rotations 16 --refine 3 --write-top 1 -o run --force",
+    "dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
+    "export parts --rank 1 -o copies --force",
+    "evaluate run --native-receptor receptor.pdb --native-ligand ligand.pdb",
+    "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --resolution 9",
+    "inspect receptor.pdb",
+    "batch pairs.csv -o many -- --rotations 16 --write-top 1 --force",
+];
+
+/// A command with its threads; `inspect` computes on one, and has no option for more.
+fn with_threads(command: &str, threads: usize) -> String {
+    if command.starts_with("inspect") {
+        return command.to_owned();
+    }
+    // Options of a batch's pairs come last.
+    format!("{command} -j {threads}")
+}
+
+/// Threads of a process that runs.
+fn threads_of(process: u32) -> usize {
+    fs::read_dir(format!("/proc/{process}/task"))
+        .unwrap()
+        .count()
+}
+
+/// Sampling took as many threads as RAYON_NUM_THREADS says, or the machine has, and there was no option.
+///
+/// The program waits in the writing of its table, which goes into a pipe: by then it has started all its threads, of
+/// which none has ended.
+#[test]
+fn a_sample_has_the_threads_that_were_wanted_and_no_more() {
+    let place = Place::new();
+    let pipe = place.pipe("knots");
+    // Opened so, a pipe without a writer is not waited for, nor is one whose writer has failed.
+    let mut opening = OpenOptions::new();
+    opening.read(true).custom_flags(libc::O_NONBLOCK);
+    let mut table = opening.open(&pipe).unwrap();
+    for (threads, expected) in [(1, 1), (3, 1 + 3)] {
+        let arguments = format!("sample box.obj --grid 2^16 --method voxels -o knots -j {threads}");
+        let mut sample = std::process::Command::new(cargo_bin!("knotdock"))
+            .current_dir(place.root())
+            .args(arguments.split(' '))
+            .env("RAYON_NUM_THREADS", "40")
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut length = 0;
+        let mut part = [0; 4096];
+        loop {
+            let has_ended = sample.try_wait().unwrap().is_some();
+            match table.read(&mut part) {
+                Ok(0) if has_ended => break,
+                Ok(read) if read > 0 => {
+                    if length == 0 {
+                        assert_eq!(threads_of(sample.id()), expected);
+                    }
+                    length += read;
+                }
+                // Nothing is there yet.
+                _ => sleep(Duration::from_millis(2)),
+            }
+        }
+        assert!(sample.wait().unwrap().success());
+        // What a pipe holds by itself the program would have written before it was looked at.
+        assert!(length > 2 * 65_536, "the table has only {length} bytes");
+    }
+}
+
+/// Every command, under `strace`, which sees each thread that is started.
+#[test]
+fn no_command_starts_other_threads() {
+    let place = Place::new();
+    let traced = |words: &str| {
+        let mut command = place.command("strace");
+        command.args(["-f", "-qq", "-e", "trace=clone,clone3", "-o", "trace"]);
+        command
+            .arg(cargo_bin!("knotdock"))
+            .args(words.split_whitespace());
+        command.env("RAYON_NUM_THREADS", "40").output()
+    };
+    match traced("--version") {
+        Ok(output) if output.status.success() => {}
+        _ => {
+            let reason = "there is no strace here, or it may trace nothing";
+            return not_run("no_command_starts_other_threads", reason);
+        }
+    }
+    for threads in [1, 3] {
+        for command in COMMANDS {
+            let words = with_threads(command, threads);
+            let output = traced(&words).unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{words}: {said}");
+            let trace = fs::read_to_string(place.path("trace")).unwrap();
+            let started = trace.lines().filter(|line| line.contains("clone")).count();
+            let is_alone = threads == 1 || command.starts_with("inspect");
+            assert_eq!(
+                started,
+                if is_alone { 0 } else { threads },
+                "{words}:\n{trace}"
+            );
+        }
+    }
+}
+
+/// A million threads were to be started, and a panic said so.
+#[test]
+fn the_environment_neither_harms_nor_changes_a_result() {
+    let place = Place::new();
+    let commands = [
+        "sample box.obj --grid 2^12 --weights fitted -o knots.csv --force",
+        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --resolution 9",
+        "dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 --write-top 1 -o parts --force",
+    ];
+    let mut results: Vec<Vec<Vec<u8>>> = Vec::new();
+    for (name, value) in [
+        ("RAYON_NUM_THREADS", "2"),
+        ("RAYON_NUM_THREADS", "0"),
+        ("RAYON_NUM_THREADS", "1000000"),
+        ("RAYON_NUM_THREADS", "many"),
+        ("RAYON_RS_NUM_CPUS", "1000000"),
+        ("RUST_MIN_STACK", "1000000000000000"),
+    ] {
+        for words in commands {
+            let mut command = place.command(cargo_bin!("knotdock").to_str().unwrap());
+            command.args(words.split(' ')).env(name, value);
+            let output = command.output().unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}={value} {words}: {said}");
+        }
+        let files = ["knots.csv", "parts/poses.csv"];
+        results.push(files.map(|file| fs::read(place.path(file)).unwrap()).into());
+    }
+    assert!(results.iter().all(|result| *result == results[0]));
+}
+
+/// Threads without a place for their stacks, on any account.
+#[test]
+fn threads_that_cannot_be_started_are_a_failure() {
+    let place = Place::new();
+    for command in COMMANDS {
+        if command.starts_with("inspect")
+            || command.starts_with("evaluate")
+            || command.starts_with("export")
+        {
+            // The first has none, and the others have nothing to read yet.
+            continue;
+        }
+        // 8 GB of stacks within 2 GB.
+        let words = with_threads(&format!("--json {command}"), 1000);
+        let output = place.limited("ulimit -v 2000000", &words);
+        let refused = if command.starts_with("batch") {
+            assert_eq!(output.status.code(), Some(1));
+            let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            object["pairs"][0]["error"].clone()
+        } else {
+            error(&output, 1)
+        };
+        let message = refused["message"].as_str().unwrap();
+        assert!(
+            message.contains("did not start 1000 threads"),
+            "{words}: {message}"
+        );
+        assert!(
+            refused["remedy"].as_str().unwrap().contains("--threads"),
+            "{refused}"
+        );
+    }
+    assert!(!place.path("run").exists() && !place.path("knots.csv").exists());
+}
+
+/// An account that may have no more processes: one thread is enough for all work, and more are refused.
+#[test]
+fn an_account_without_processes_left_can_work_on_one_thread() {
+    let place = Place::new();
+    // The superuser's processes are not limited. Another account has to reach the folder and the program.
+    let is_root = place.command("id").arg("-u").output().unwrap().stdout == b"0\n";
+    let limited = |words: &str| {
+        let mut command = place.command(if is_root { "setpriv" } else { "prlimit" });
+        if is_root {
+            command.args([
+                "--reuid=65534",
+                "--regid=65534",
+                "--clear-groups",
+                "prlimit",
+            ]);
+        }
+        // Not every shell knows `ulimit -u`.
+        command.args(["--nproc=1", "./program"]);
+        command.args(words.split_whitespace()).output()
+    };
+    fs::copy(cargo_bin!("knotdock"), place.path("program")).unwrap();
+    let opened = place
+        .command("chmod")
+        .args(["-R", "a+rwX", "."])
+        .output()
+        .unwrap();
+    assert!(opened.status.success());
+    match limited("--version") {
+        Ok(output) if output.status.success() => {}
+        _ => {
+            let reason = "no account with a limit on its processes can be taken here";
+            return not_run(
+                "an_account_without_processes_left_can_work_on_one_thread",
+                reason,
+            );
+        }
+    }
+    let sample = "sample box.obj --grid 2^12 --json";
+    let refused = error(&limited(&format!("{sample} -j 2")).unwrap(), 1);
+    let message = refused["message"].as_str().unwrap();
+    assert!(message.contains("did not start 2 threads"), "{message}");
+    let output = limited(&format!("{sample} -j 1")).unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
