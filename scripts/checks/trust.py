@@ -5,8 +5,9 @@
     scripts/checks/trust.py target/release/knotdock --only kills --trial 17 --keep FOLDER     one trial again
 
 Each trial runs the program in a folder of its own, on inputs that its seed fixes. promises/__init__.py lists the
-promises, one function each. The short form is for continuous integration; the full one takes up to 20 minutes on two
-cores with a release build. A failure is printed with the calls that led to it and the command that repeats it.
+promises, one function each. The short form is for continuous integration and takes up to 90 seconds, the full one up
+to 20 minutes: trials of all promises go in turn, and on a slow machine fewer of them are done. A failure is printed
+with the calls that led to it and the command that repeats it.
 
 --write replaces the table between two markers in a page. --json and --csv write it to files. A trial that the
 platform does not allow (a small disk needs root) is skipped and not counted.
@@ -23,7 +24,7 @@ import sys
 import tempfile
 import time
 import traceback
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -81,7 +82,7 @@ class Row:
     promise: str
     how: str
     trials: int = 0
-    skipped: int = 0
+    skipped: str = ""
     failures: int = 0
     seconds: float = 0.0
 
@@ -96,35 +97,46 @@ def print_failure(outcome, settings):
           f" --trial {outcome.number} --keep NEW_FOLDER{'' if settings.full else ' --short'}", flush=True)  # fmt: skip
 
 
-def run_trials(settings, chosen, jobs):
-    """Rows of the promises, each a place in the list and numbers of trials. Failures are printed as they come."""
-    rows = []
+def in_turn(chosen):
+    """Places and numbers of all trials, so that each promise has its share of them at any time."""
+    trials = [((order + 0.5) / len(numbers), place, number)
+              for place, numbers in chosen for order, number in enumerate(numbers)]  # fmt: skip
+    return [(place, number) for _, place, number in sorted(trials)]
+
+
+def run_trials(settings, chosen, jobs, minutes):
+    """Rows of the promises, each a place in the list and numbers of trials, and how many were left out.
+
+    Failures are printed as they come. When so many minutes have passed no further trial starts.
+    """
+    rows = {place: Row(PROMISES[place].name, *PROMISES[place].words) for place, _ in chosen}
+    end, left_out = time.monotonic() + 60 * minutes, 0
     with ProcessPoolExecutor(jobs) as pool:
-        asked = [(place, [pool.submit(one_trial, settings, place, number) for number in numbers])
-                 for place, numbers in chosen]  # fmt: skip
-        for place, trials in asked:
-            row = Row(PROMISES[place].name, *PROMISES[place].words)
-            for trial in trials:
-                outcome = trial.result()
-                row.seconds += outcome.seconds
-                if outcome.skipped:
-                    row.skipped += 1
-                    continue
-                row.trials += 1
-                if outcome.failures:
-                    row.failures += 1
-                    print_failure(outcome, settings)
-            skipped = f", {row.skipped} skipped: {outcome.skipped}" if row.skipped else ""
-            print(f"{row.name}: {row.trials} trials, {row.failures} failures, {row.seconds:.0f} s{skipped}", flush=True)
-            rows.append(row)
-    return rows
+        trials = {pool.submit(one_trial, settings, *trial): trial for trial in in_turn(chosen)}
+        for done in as_completed(trials):
+            if time.monotonic() > end:
+                for trial in trials:
+                    trial.cancel()
+            if done.cancelled():
+                left_out += 1
+                continue
+            row, outcome = rows[trials[done][0]], done.result()
+            row.seconds += outcome.seconds
+            if outcome.skipped:
+                row.skipped = outcome.skipped
+                continue
+            row.trials += 1
+            if outcome.failures:
+                row.failures += 1
+                print_failure(outcome, settings)
+    return list(rows.values()), left_out
 
 
 def markdown(rows):
     """The table; seconds are those of the trials, of which as many run at once as there are cores."""
     lines = ["| promise | how it is tested | trials | failures | seconds |", "|---|---|---|---|---|"]
     for row in rows:
-        trials = f"{row.trials:,}" if row.trials else "not possible here"
+        trials = f"{row.trials:,}" if row.trials else "none: " + (row.skipped or "no time")
         lines.append(f"| {row.promise} | {row.how} | {trials} | {row.failures} | {row.seconds:.0f} |")
     trials, failures = sum(row.trials for row in rows), sum(row.failures for row in rows)
     lines.append(f"| all | | {trials:,} | {failures} | {sum(row.seconds for row in rows):.0f} |")
@@ -149,6 +161,7 @@ def read_arguments():
     parser.add_argument("--trial", type=int, help="this trial alone")
     parser.add_argument("--keep", help="with --trial: a new folder for it, which stays")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="trials at once; default: %(default)s")
+    parser.add_argument("--minutes", type=float, help="no trial starts later; default: 17, short 1.2")
     parser.add_argument("--write", type=Path, help="page that gets the table between its markers")
     parser.add_argument("--json", type=Path, help="file for the table as JSON")
     parser.add_argument("--csv", type=Path, help="file for the table as CSV")
@@ -179,9 +192,13 @@ def main():
             numbers = range(promise.short if options.short else promise.full)
             chosen.append((place, numbers if options.trial is None else [options.trial]))
     began = time.monotonic()
-    rows = run_trials(settings, chosen, options.jobs)
+    minutes = options.minutes or (1.2 if options.short else 17)
+    rows, left_out = run_trials(settings, chosen, options.jobs, minutes)
+    for row in rows:
+        print(f"{row.name}: {row.trials} trials, {row.failures} failures, {row.seconds:.0f} s {row.skipped}")
     table = markdown(rows)
-    print(f"\n{table}\n\nseed {options.seed}, {time.monotonic() - began:.0f} s on the clock")
+    print(f"\n{table}\n\nseed {options.seed}, {time.monotonic() - began:.0f} s on the clock", end="")
+    print(f"; {left_out} trials were left out after {minutes:g} minutes" if left_out else "")
     if options.write:
         write_into_page(options.write, table)
     if options.json:
