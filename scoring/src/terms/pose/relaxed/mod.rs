@@ -2,16 +2,22 @@
 //!
 //! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy
 //! that penalises overlap says little about a pose as it stands. It says more about one half an Ångström beside it.
-//! [`Relaxation`] finds that pose by steepest descent. Rigid-body minimisation does the same before force fields rank
-//! poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
+//! [`Relaxation`] finds that pose by a few damped Gauss-Newton steps. Rigid-body minimisation does the same before
+//! force fields rank poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
+//!
+//! The score is continuous in the atoms and the pose: noise changes it in proportion. Receptor and ligand may be
+//! exchanged.
 
 mod descent;
+mod list;
 #[cfg(test)]
 mod tests;
 
-use self::descent::{FARTHEST, Slope, descend};
+use self::descent::{LONGEST, Move, Slope};
+use self::list::Interface;
+pub use self::list::Workspace;
 use super::atom_pair_potential::AtomPairPotential;
-use super::energy_table::{EnergyTable, REACH};
+use super::energy_table::{EnergyTable, SMOOTH_REACH};
 use super::{CELL_EDGE, PoseTerm, TermDefinition};
 use crate::exact::center;
 use crate::se3::Pose;
@@ -19,7 +25,7 @@ use crate::terms::weight::Weight;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use knotdock_structures::neighbours::{CellList, Member};
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -50,25 +56,24 @@ const OVERLAP: f64 = 0.1;
 const STIFFNESS: f64 = 0.8;
 /// Stiffness during the descent. It is softer still, so that single overlaps do not hold back the whole interface.
 const SOFT_CORE_STIFFNESS: f64 = 0.2;
+/// Overlap in Å from which a pair adds its whole stiffness to the curvature that a step reads.
+const FULL_STIFFNESS: f64 = 0.5;
 /// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a
 /// file keeps them.
 const HYDROGEN: f64 = 1.15;
 
-/// Distance in Å beyond the reach up to which pairs are collected: the interface moves by at most [`FARTHEST`].
-///
-/// A descent may miss pairs that a long arm brings within reach. The final energy is the whole sum.
-const SLACK: f64 = FARTHEST + 0.6;
 /// Number of collected atoms that are sorted by distance at a time.
 const CHUNK: usize = 64;
-/// Least radius in Å about which an interface rotates.
-const MIN_RADIUS: f64 = 3.0;
 
 /// Two bodies prepared for relaxing poses.
 ///
-/// The energy of a pose in RT is a sum over pairs of atoms: the atom pair potential (as [`super::AtomPairs`] reads
-/// it), and 0.8 RT/Å² times the square of their overlap. The overlap is the sum of their radii less 0.1 Å and less
-/// their distance. Atoms without a kind only repel. The pose descends by at most 2 Å on a like energy of a quarter of
-/// that stiffness. Its score is minus the weight times the energy of the relaxed pose.
+/// The energy of a pose in RT is a sum over pairs of atoms at distance d, of radii r and kinds a and b:
+///
+/// `E = sum of E_ab(d) + 0.8 RT/Å² max(0, r_a + r_b - 0.1 Å - d)²`
+///
+/// E_ab is the atom pair potential as [`super::AtomPairs`] reads it; atoms without a kind only repel. The pose
+/// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
+/// `-weight min(E(start), E(end))`.
 pub struct Relaxation {
     /// Atoms of the receptor, each with its index in `sites`.
     receptor: CellList<usize>,
@@ -87,22 +92,6 @@ struct Site {
     position: Vector3<f64>,
     radius: f64,
     kind: usize,
-}
-
-/// A ligand atom with receptor atoms in its neighbourhood.
-struct Mobile {
-    /// Position relative to the centre of the interface, Å.
-    arm: Vector3<f64>,
-    site: Site,
-    /// End of its neighbours in the list; they begin where those of the previous atom end.
-    end: usize,
-}
-
-/// Scratch space for scoring poses by any term. Buffers keep their size from one pose to the next.
-#[derive(Default)]
-pub struct Workspace {
-    mobile: Vec<Mobile>,
-    neighbours: Vec<Site>,
 }
 
 /// A relaxed pose.
@@ -145,7 +134,7 @@ impl Relaxation {
         Self {
             receptor: CellList::new(atoms.collect(), CELL_EDGE),
             receptor_center,
-            reach: REACH.max(widest(&receptor) + widest(&ligand)),
+            reach: SMOOTH_REACH.max(widest(&receptor) + widest(&ligand)),
             sites: receptor.iter().map(|(_, site)| *site).collect(),
             ligand,
             ligand_center,
@@ -170,8 +159,7 @@ impl Relaxation {
             self.receptor
                 .visit_within(near.into(), self.reach, |&atom, square| {
                     let other = &self.sites[atom];
-                    let (energy, _) = self.pair(other, site, square.sqrt(), STIFFNESS);
-                    sum += energy;
+                    sum += self.pair(other, site, square.sqrt());
                 });
             total += sum;
         }
@@ -180,142 +168,155 @@ impl Relaxation {
 
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
-        let Some((middle, radius)) = self.list(pose, workspace) else {
+        let (start, none) = (self.start(pose), Move::none());
+        self.list(&start, &Vector3::zeros(), &none, workspace);
+        let Some(Interface { middle, radius }) = self.interface(workspace) else {
             return Relaxed {
                 pose: *pose,
                 energy: 0.0,
             };
         };
-        let slope = |turn: &UnitQuaternion<f64>, shift: &Vector3<f64>, stiffness: f64| {
-            vectorized(
-                #[inline(always)]
-                || {
-                    self.slope(
-                        workspace,
-                        &turn.to_rotation_matrix(),
-                        &(middle + shift),
-                        stiffness,
-                    )
-                },
-            )
-        };
-        // Before any move the list contains every pair within reach.
-        let start = Relaxed {
-            pose: *pose,
-            energy: slope(&UnitQuaternion::identity(), &Vector3::zeros(), STIFFNESS).energy,
-        };
-        let (turn, shift) = descend(radius, |turn, shift| {
-            slope(turn, shift, SOFT_CORE_STIFFNESS)
-        });
-        // Centre of the interface in the receptor's file frame.
-        let about = middle + self.receptor_center;
-        let pose = Pose {
-            rotation: turn * pose.rotation,
-            translation: turn * (pose.translation - about) + about + shift,
-        };
-        let energy = self.energy(&pose);
-        if energy < start.energy {
-            Relaxed { pose, energy }
+        workspace.recenter(&middle);
+        let widest = self.widest(&start, &middle);
+        let before = self.listed_energy(workspace, &none);
+        let (mut at, mut listed) = (none, none);
+        for longest in LONGEST {
+            at = self.slope(workspace, &at).step(&at, radius, longest);
+            self.renew(&mut listed, &at, widest, (&start, &middle), workspace);
+        }
+        let after = self.listed_energy(workspace, &at);
+        if after < before {
+            Relaxed {
+                pose: self.moved(pose, &at, &middle),
+                energy: after,
+            }
         } else {
-            start
+            Relaxed {
+                pose: *pose,
+                energy: before,
+            }
         }
     }
 
-    /// Lists the pairs that may come within reach at a pose.
-    ///
-    /// Returns the centre of the ligand's interface, relative to the receptor's centre, and its root mean square
-    /// radius; `None` if no pair is within reach.
-    fn list(&self, pose: &Pose, workspace: &mut Workspace) -> Option<(Vector3<f64>, f64)> {
-        let Workspace { mobile, neighbours } = workspace;
-        mobile.clear();
-        neighbours.clear();
-        let matrix = pose.rotation.to_rotation_matrix();
-        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
-        let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), 0.0);
-        for &(position, site) in &self.ligand {
-            let position = matrix * position + place;
-            let mut nearest = f64::INFINITY;
-            self.receptor
-                .visit_within(position.into(), self.reach + SLACK, |&atom, square| {
-                    nearest = nearest.min(square);
-                    neighbours.push(self.sites[atom]);
-                });
-            if nearest < f64::INFINITY {
-                let end = neighbours.len();
-                let arm = position;
-                mobile.push(Mobile { arm, site, end });
-            }
-            if nearest < self.reach * self.reach {
-                count += 1.0;
-                sum += position;
-                squares += position.norm_squared();
-            }
-        }
-        if count == 0.0 {
-            return None;
-        }
-        let middle = sum / count;
-        for atom in mobile.iter_mut() {
-            atom.arm -= middle;
-        }
-        let spread = (squares / count - middle.norm_squared()).max(0.0);
-        Some((middle, spread.sqrt().max(MIN_RADIUS)))
-    }
-
-    /// Energy and gradient over the collected pairs, with the arms rotated by `turn` about `place`.
-    #[inline(always)]
-    fn slope(
-        &self,
-        workspace: &Workspace,
-        turn: &Rotation3<f64>,
-        place: &Vector3<f64>,
-        stiffness: f64,
-    ) -> Slope {
-        let turn: &Matrix3<f64> = turn.matrix();
-        let mut slope = Slope {
-            energy: 0.0,
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
-        };
-        let limit = self.reach * self.reach;
-        let mut from = 0;
-        for atom in &workspace.mobile {
-            let arm = turn * atom.arm;
-            let position = arm + place;
-            let (mut energy, mut force) = (0.0, Vector3::zeros());
-            for near in workspace.neighbours[from..atom.end].chunks(CHUNK) {
-                // Without a branch: a third of the pairs is within reach, in an unpredictable order.
-                let mut within = [(0, 0.0); CHUNK];
-                let mut count = 0;
-                for (index, other) in near.iter().enumerate() {
-                    let square = (position - other.position).norm_squared();
-                    within[count] = (index, square);
-                    count += usize::from(square < limit);
+    /// Energy of a move in RT over the listed pairs.
+    fn listed_energy(&self, workspace: &Workspace, at: &Move) -> f64 {
+        let matrix = at.turn.to_rotation_matrix();
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut total = 0.0;
+                for (atom, near) in workspace.atoms() {
+                    let position = matrix * atom.arm + at.shift;
+                    let mut sum = 0.0;
+                    visit_near(&position, near, self.reach, |other, square| {
+                        sum += self.pair(other, &atom.site, square.sqrt());
+                    });
+                    total += sum;
                 }
-                for &(index, square) in &within[..count] {
-                    let (other, distance) = (&near[index], square.sqrt());
-                    let (value, rise) = self.pair(other, &atom.site, distance, stiffness);
-                    energy += value;
-                    force += rise / distance.max(1e-6) * (position - other.position);
-                }
-            }
-            from = atom.end;
-            slope.energy += energy;
-            slope.force += force;
-            slope.torque += arm.cross(&force);
-        }
-        slope
-    }
-
-    /// Energy of two atoms in RT and its derivative by their distance in RT/Å, at a stiffness.
-    #[inline(always)]
-    fn pair(&self, receptor: &Site, ligand: &Site, distance: f64, stiffness: f64) -> (f64, f64) {
-        let (energy, rise) = self.energies.at(receptor.kind, ligand.kind, distance);
-        let lack = (receptor.radius + ligand.radius - OVERLAP - distance).max(0.0);
-        (
-            energy + stiffness * lack * lack,
-            rise - 2.0 * stiffness * lack,
+                total
+            },
         )
+    }
+
+    /// Slope of the energy of the descent at a move over the listed pairs.
+    fn slope(&self, workspace: &Workspace, at: &Move) -> Slope {
+        let matrix = at.turn.to_rotation_matrix();
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut slope = Slope::zero();
+                for (atom, near) in workspace.atoms() {
+                    let arm = matrix * atom.arm;
+                    let position = arm + at.shift;
+                    let (mut gradient, mut curvature) = (Vector3::zeros(), Matrix3::zeros());
+                    let mut contacts = 0.0;
+                    visit_near(&position, near, self.reach, |other, square| {
+                        let Soft {
+                            rise, stiffness, ..
+                        } = self.soft(other, &atom.site, square);
+                        let apart = position - other.position;
+                        gradient += rise * apart;
+                        if stiffness > 0.0 {
+                            curvature += (stiffness * apart) * apart.transpose();
+                        }
+                        contacts += self.contact(square);
+                    });
+                    slope.contacts += contacts;
+                    // Each body makes half of a rotation about the middle between their places.
+                    slope.add(&(arm + 0.5 * at.shift), &gradient, &curvature);
+                }
+                slope
+            },
+        )
+    }
+
+    /// Energy of two atoms in RT at a distance.
+    #[inline(always)]
+    fn pair(&self, receptor: &Site, ligand: &Site, distance: f64) -> f64 {
+        let (energy, _) = self.energies.at(receptor.kind, ligand.kind, distance);
+        let lack = (receptor.radius + ligand.radius - OVERLAP - distance).max(0.0);
+        energy + STIFFNESS * lack * lack
+    }
+
+    /// Energy of two atoms in the descent, by the square of their distance.
+    ///
+    /// The overlap costs `k s²/4 (1 - d²/s²)²` at a sum of radii s: near contact it is k times the square of the
+    /// overlap, and no direction is preferred where two atoms coincide.
+    #[inline(always)]
+    fn soft(&self, receptor: &Site, ligand: &Site, square: f64) -> Soft {
+        let distance = square.sqrt();
+        let (mut energy, rise) = self.energies.smooth(receptor.kind, ligand.kind, distance);
+        let mut rise = rise / distance.max(1e-6);
+        let sum = receptor.radius + ligand.radius - OVERLAP;
+        let lack = (1.0 - square / (sum * sum)).max(0.0);
+        let overlap = 0.5 * sum * lack;
+        energy += SOFT_CORE_STIFFNESS * overlap * overlap;
+        rise -= SOFT_CORE_STIFFNESS * lack;
+        let stiffness =
+            2.0 * SOFT_CORE_STIFFNESS / (sum * sum) * (overlap / FULL_STIFFNESS).min(1.0);
+        Soft {
+            energy,
+            rise,
+            stiffness,
+        }
+    }
+}
+
+/// Energy of two atoms in the descent with its derivatives.
+struct Soft {
+    /// Energy, RT.
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "its derivatives are tested against it")
+    )]
+    energy: f64,
+    /// Derivative by the distance over the distance, RT/Å²: times the vector between the atoms the gradient.
+    rise: f64,
+    /// Stiffness of their overlap over the square of the distance, RT/Å⁴.
+    stiffness: f64,
+}
+
+/// Visits the atoms within `reach` (Å) of a position, with the squares of their distances.
+#[inline(always)]
+fn visit_near(
+    position: &Vector3<f64>,
+    atoms: &[Site],
+    reach: f64,
+    mut visit: impl FnMut(&Site, f64),
+) {
+    let limit = reach * reach;
+    for near in atoms.chunks(CHUNK) {
+        // Without a branch: a third of the pairs is within reach, in an unpredictable order.
+        let mut within = [(0, 0.0); CHUNK];
+        let mut count = 0;
+        for (index, other) in near.iter().enumerate() {
+            let square = (position - other.position).norm_squared();
+            within[count] = (index, square);
+            count += usize::from(square < limit);
+        }
+        for &(index, square) in &within[..count] {
+            visit(&near[index], square);
+        }
     }
 }
 
