@@ -21,7 +21,7 @@ const NODE_SAMPLED: u64 = 40;
 pub fn room_to_read(specs: &[InputSpec], allowed: Option<u64>) -> Result<(), Failure> {
     let size = |spec: &InputSpec| {
         let metadata = fs::metadata(&spec.path).ok()?;
-        metadata.is_file().then(|| metadata.len())
+        metadata.is_file().then_some(metadata.len())
     };
     let needed = |spec: &InputSpec| BYTE_READ.saturating_mul(size(spec).unwrap_or(0));
     let all = specs.iter().map(needed).fold(0, u64::saturating_add);
