@@ -22,7 +22,7 @@ def atom_line(serial, atom, residue, position, name="ALA", chain="A"):
 
 
 def random_molecule(trial, name):
-    """Writes some residues as a random walk of atoms 1.5 Å apart: radii like a molecule's, else at random."""
+    """Writes some residues as a random walk of atoms in steps of 1.5 Å: radii like a molecule's, else at random."""
     place, text = [trial.random.uniform(-20, 20) for _ in range(3)], ""
     for number in range(trial.random.randint(1, 4) * 5):
         step = [trial.random.gauss(0, 1) for _ in range(3)]

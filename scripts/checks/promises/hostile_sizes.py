@@ -84,7 +84,7 @@ def comb(trial):
     return ["sample", "--json", "a.obj", "--grid", "2^9"]
 
 
-def far_apart(trial):
+def distant_atoms(trial):
     x = f"{trial.random.choice([900.0, 9000.0]):8.3f}"
     line = atom_line(1, "CA", 1, (0.0, 0.0, 0.0))
     trial.make("a.pdb", line + line[:24] + " 2" + line[26:30] + x * 3 + line[54:])
@@ -139,7 +139,7 @@ def endless(trial):
 GIB = 2**30
 CASES = {  # and the peak of resident memory that they may take
     coincident: 4 * GIB, crowded: 4 * GIB, many_chains: 4 * GIB, gzip_of_atoms: 8 * GIB, gzip_of_nothing: 4 * GIB,
-    many_corners: 4 * GIB, comb: 4 * GIB, far_apart: GIB, nested: GIB, lying_counts: GIB, endless: GIB,
+    many_corners: 4 * GIB, comb: 4 * GIB, distant_atoms: GIB, nested: GIB, lying_counts: GIB, endless: GIB,
 }  # fmt: skip
 
 

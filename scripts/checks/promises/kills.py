@@ -38,7 +38,7 @@ def killer(trial, common):
 
 
 def check_units(trial, scene, common, found):
-    """Checks that each unit is old or new as a whole. Of an entry that is in neither nothing is asked here."""
+    """Checks that each unit is old or new as a whole. Other entries are not looked at."""
     old = comparable(common.old, trial.folder)
     new = comparable(common.new, trial.folder)
     for unit in scene.units:

@@ -6,7 +6,7 @@ Distances in Å, frequencies in cycles per Å; lambda = 9, offset r0 = 2.2, reso
     shape       = -lambda^2 slice(0) + 2 lambda slice(r0) - slice(2 r0)
     unfiltered  = the same with kappa(d, sigma) = psi(d / sigma): Behandish and Ilies' own sum
 
-Written apart from the program and from scripts/reference/pair_sum.py, which needs NumPy and has the other effects.
+It shares no code with the program, nor with scripts/reference/pair_sum.py, which needs NumPy and has the other effects.
 """
 
 import functools

@@ -2,6 +2,7 @@
 
 import subprocess
 
+from promises.folders import tree
 from promises.scenes import write_inputs
 from promises.same_bytes import random_dock, random_sample
 from promises.trial import Skipped, limited, unprivileged
@@ -44,9 +45,10 @@ def memory_refused(trial):
         done = subprocess.run([trial.knotdock, "--version"], capture_output=True, preexec_fn=limited(AS=least))
         if done.returncode == 0:
             break
+    before = set(tree(trial.folder))
     limit = least + int(2 ** trial.random.uniform(10, 28.6))
     call = trial.run(*words, before=limited(AS=limit))
     trial.commands[-1] += f"   # ulimit -v: {limit} bytes"
     if call.code:
-        left = [entry.name for entry in trial.folder.iterdir() if "partial" in entry.name or entry.name == "run"]
-        trial.check(not left, f"left over: {left}")
+        left = sorted(set(tree(trial.folder)) - before)
+        trial.check(not left, f"left over: {left[:5]}")
