@@ -1,8 +1,8 @@
 //! Damped Gauss-Newton steps over small rigid moves.
 //!
 //! A descent makes a fixed number of steps, each a continuous function of where it starts, and accepts all of them.
-//! So where it ends depends continuously on the atoms and the pose, which a search along lines would not give: a trial
-//! that is accepted here and refused a hair beside parts two descents for good.
+//! So where it ends depends continuously on the atoms and the pose. Trials would not do: one that is accepted here and
+//! refused a hair beside parts two descents for good.
 
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3, Vector6};
 

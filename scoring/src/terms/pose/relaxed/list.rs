@@ -5,7 +5,7 @@ use super::{Relaxation, Site};
 use crate::se3::Pose;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// Distance in Å beyond the reach up to which pairs are listed. Once an atom may have moved farther they are listed
+/// Distance in Å beyond the reach up to which pairs are collected. Once an atom may have moved farther they are collected
 /// anew, so that a list holds every pair within reach.
 const SLACK: f64 = 2.0;
 /// Radius in Å that is added to that of an interface, by squares: a single contact may rotate, too.
@@ -53,7 +53,7 @@ impl Workspace {
         }
     }
 
-    /// Each listed ligand atom with its neighbours.
+    /// Each collected ligand atom with its neighbours.
     pub(super) fn atoms(&self) -> impl Iterator<Item = (&Mobile, &[Site])> {
         let mut from = 0;
         self.mobile.iter().map(move |atom| {
@@ -103,19 +103,19 @@ impl Relaxation {
         }
     }
 
-    /// Lists pairs anew where an atom may have moved by more than [`SLACK`] since they were listed at the move
-    /// `listed`. `widest` is the distance in Å of any ligand atom from `middle`.
+    /// Lists pairs anew where an atom may have moved by more than [`SLACK`] since they were collected at the move
+    /// `collected`. `widest` is the distance in Å of any ligand atom from `middle`.
     pub(super) fn renew(
         &self,
-        listed: &mut Move,
+        collected: &mut Move,
         at: &Move,
         widest: f64,
         (start, middle): (&Start, &Vector3<f64>),
         workspace: &mut Workspace,
     ) {
-        let turned = widest * at.turn.angle_to(&listed.turn);
-        if (at.shift - listed.shift).norm() + turned > SLACK {
-            *listed = *at;
+        let turned = widest * at.turn.angle_to(&collected.turn);
+        if (at.shift - collected.shift).norm() + turned > SLACK {
+            *collected = *at;
             self.list(start, middle, at, workspace);
         }
     }

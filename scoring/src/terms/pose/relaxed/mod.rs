@@ -178,13 +178,13 @@ impl Relaxation {
         };
         workspace.recenter(&middle);
         let widest = self.widest(&start, &middle);
-        let before = self.listed_energy(workspace, &none);
-        let (mut at, mut listed) = (none, none);
+        let before = self.collected_energy(workspace, &none);
+        let (mut at, mut collected) = (none, none);
         for longest in LONGEST {
             at = self.slope(workspace, &at).step(&at, radius, longest);
-            self.renew(&mut listed, &at, widest, (&start, &middle), workspace);
+            self.renew(&mut collected, &at, widest, (&start, &middle), workspace);
         }
-        let after = self.listed_energy(workspace, &at);
+        let after = self.collected_energy(workspace, &at);
         if after < before {
             Relaxed {
                 pose: self.moved(pose, &at, &middle),
@@ -198,8 +198,8 @@ impl Relaxation {
         }
     }
 
-    /// Energy of a move in RT over the listed pairs.
-    fn listed_energy(&self, workspace: &Workspace, at: &Move) -> f64 {
+    /// Energy of a move in RT over the collected pairs.
+    fn collected_energy(&self, workspace: &Workspace, at: &Move) -> f64 {
         let matrix = at.turn.to_rotation_matrix();
         vectorized(
             #[inline(always)]
@@ -218,7 +218,7 @@ impl Relaxation {
         )
     }
 
-    /// Slope of the energy of the descent at a move over the listed pairs.
+    /// Slope of the energy of the descent at a move over the collected pairs.
     fn slope(&self, workspace: &Workspace, at: &Move) -> Slope {
         let matrix = at.turn.to_rotation_matrix();
         vectorized(
@@ -234,10 +234,10 @@ impl Relaxation {
                         let Soft {
                             rise, stiffness, ..
                         } = self.soft(other, &atom.site, square);
-                        let apart = position - other.position;
-                        gradient += rise * apart;
+                        let between = position - other.position;
+                        gradient += rise * between;
                         if stiffness > 0.0 {
-                            curvature += (stiffness * apart) * apart.transpose();
+                            curvature += (stiffness * between) * between.transpose();
                         }
                         contacts += self.contact(square);
                     });
