@@ -51,7 +51,7 @@ fn many_chains_residues_and_names() {
 
 #[test]
 fn many_alternate_locations_of_one_residue() {
-    let row = |i: usize| format!("C{} {} LIG A 1", i / 2, if i % 2 == 0 { 'A' } else { '.' });
+    let row = |i: usize| format!("C{} {} LIG A 1", i / 2, ['A', '.'][i % 2]);
     let molecule = read_text(&atoms(MANY, row), &ReadOptions::default()).unwrap();
     let choices = &molecule.report.altered.alternate_locations;
     assert_eq!(choices.len(), 1);
