@@ -5,7 +5,7 @@ shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=${CARGO_TARGET_DIR:-target}
-# Prints the Python that has what scripts/checks/requirements_NAME.txt names.
+# Prints the Python that has what scripts/checks/requirements_NAME.txt names, each file of it by its hash.
 python() {
     local venv=$target/python/$1 requirements=scripts/checks/requirements_$1.txt
     if ! cmp --silent "$requirements" "$venv/installed.txt"; then

@@ -123,14 +123,17 @@ fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
         .map_err(suggestions::explained)
 }
 
-/// Whether a terminal may show an argument as it stands.
-fn is_plain(argument: &OsString) -> bool {
-    matches!(shown(&argument.to_string_lossy()), Cow::Borrowed(_))
+/// Whether a terminal may show arguments as they stand.
+fn are_plain(arguments: &[OsString]) -> bool {
+    let is_plain = |text: Cow<'_, str>| matches!(shown(&text), Cow::Borrowed(_));
+    arguments
+        .iter()
+        .all(|argument| is_plain(argument.to_string_lossy()))
 }
 
 /// The error with the control characters of arguments escaped: clap repeats them as they stand, or drops them.
 fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
-    if arguments.iter().all(is_plain) {
+    if are_plain(arguments) {
         return error;
     }
     let escaped = arguments.iter().map(|argument| {
@@ -167,7 +170,7 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> ExitCode {
             .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
         let failure = Failure::input(first_paragraph(error)).remedy(remedy);
         console.fail(&failure);
-    } else if arguments.iter().all(is_plain) {
+    } else if are_plain(arguments) {
         // A terminal that is gone needs no message.
         let _ = error.print();
     } else {

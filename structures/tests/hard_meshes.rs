@@ -340,3 +340,23 @@ fn a_million_triangles() {
         println!("peak memory {}", peak.unwrap_or_default());
     }
 }
+
+/// Which of n shells like an onion's bound the solid took a look at every two of them: 25,000 took hours. More than some
+/// 2,000 are refused at once.
+#[test]
+fn shells_within_shells_are_read_or_refused() {
+    let onion = |shells: u32| {
+        let shell = |number: u32| {
+            let edge = 1.0 + f64::from(number);
+            cuboid([-edge; 3], [edge; 3])
+        };
+        (1..shells).fold(shell(0), |all, number| all.and(&shell(number)))
+    };
+    let (_, report) = onion(200).mesh();
+    assert_eq!(report.nested_parts, 199);
+    let error = parse(onion(2500).obj().as_bytes(), MeshFormat::Obj).unwrap_err();
+    assert!(
+        error.to_string().contains("2500 closed surfaces"),
+        "{error}"
+    );
+}

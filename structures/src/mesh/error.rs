@@ -83,6 +83,14 @@ pub enum MeshErrorKind {
     /// All vertices lie in one plane.
     #[error("the mesh is flat: all its vertices lie in one plane, so it bounds no solid")]
     Flat,
+    /// Too many closed surfaces lie within one another.
+    #[error(
+        "too many of its {surfaces} closed surfaces lie within one another to find which of them bound the solid"
+    )]
+    Nested {
+        /// Number of surfaces.
+        surfaces: usize,
+    },
     /// The mesh is smaller than numbers can distinguish.
     #[error("the mesh is {extent:e} across; lengths below 1e-60 are not distinguished from zero")]
     Tiny {
@@ -144,6 +152,9 @@ impl MeshError {
                 "check the unit of the export: too few digits may have merged the vertices"
             }
             MeshErrorKind::Flat => "give the surface of a solid, with a thickness",
+            MeshErrorKind::Nested { .. } => {
+                "leave out the inner surfaces, or sample the parts one by one"
+            }
             MeshErrorKind::Tiny { .. } => "export the mesh in a smaller unit of length",
         }
     }

@@ -60,9 +60,9 @@ impl CoveringBalls {
     fn covers_below(&self, at: usize, point: [f64; 3], own: usize) -> bool {
         let node = &self.nodes[at];
         let [mut nearest, mut farthest] = [0.0; 2];
-        for axis in 0..3 {
-            let below = node.low[axis] - point[axis];
-            let above = point[axis] - node.high[axis];
+        for (axis, x) in point.into_iter().enumerate() {
+            let below = node.low[axis] - x;
+            let above = x - node.high[axis];
             let (near, far) = (below.max(above).max(0.0), below.min(above));
             nearest += near * near;
             farthest += far * far;

@@ -210,7 +210,7 @@ fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport)
     if mesh.is_flat() {
         return Err(MeshErrorKind::Flat);
     }
-    let topology = topology::orient(&mut mesh);
+    let topology = topology::orient(&mut mesh)?;
     mesh.closed = topology.unbalanced_edges == 0;
     let report = MeshReport::new(
         &mesh,

@@ -11,6 +11,7 @@
 
 use std::collections::HashMap;
 
+use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::bounded_surface::{Part, Surface};
 use crate::mesh::repair::edges::Sets;
 use crate::mesh::repair::nesting::containers;
@@ -37,12 +38,19 @@ pub(in crate::mesh) struct Facing {
 
 /// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an
 /// edge of it is open or unbalanced.
-pub(in crate::mesh) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: &[bool]) -> Facing {
+///
+/// # Errors
+/// Those of [`containers`].
+pub(in crate::mesh) fn turn_outward(
+    mesh: &mut Mesh,
+    parts: &[Part],
+    at_border: &[bool],
+) -> Result<Facing, MeshErrorKind> {
     let surfaces: Vec<Surface> = surfaces(mesh, parts, at_border)
         .into_iter()
         .map(|parts_of| Surface::new(mesh, parts, &parts_of))
         .collect();
-    let containers = containers(mesh, &surfaces);
+    let containers = containers(mesh, &surfaces)?;
     let mut order: Vec<usize> = (0..surfaces.len()).collect();
     order.sort_by_key(|&index| containers[index].len());
     let mut facing = Facing::default();
@@ -98,7 +106,7 @@ pub(in crate::mesh) fn turn_outward(mesh: &mut Mesh, parts: &[Part], at_border: 
     if facing.idle.len() + facing.repeated.len() == mesh.triangles.len() {
         facing.idle.clear();
     }
-    facing
+    Ok(facing)
 }
 
 /// The parts of each surface.

@@ -11,6 +11,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 
+use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::bounded_surface::Surface;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::mesh::triangle_tree::{TriangleTree, centroid};
@@ -19,29 +20,52 @@ use crate::mesh::winding::encloses;
 /// Middles of triangles that are looked at, about, beside the outermost vertices.
 const MIDDLES: usize = 8;
 
+/// Most pairs of surfaces of which one may lie within the other, by their boxes: 2,000 shells like an onion's, or any
+/// number of parts side by side in one.
+pub(in crate::mesh) const MAX_PAIRS: usize = 2_000_000;
+
 /// The surfaces about each one, in rising order.
-pub(in crate::mesh) fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Vec<Vec<usize>> {
+///
+/// # Errors
+/// [`MeshErrorKind::Nested`] for more than [`MAX_PAIRS`]: each takes a look at two surfaces.
+pub(in crate::mesh) fn containers(
+    mesh: &Mesh,
+    surfaces: &[Surface],
+) -> Result<Vec<Vec<usize>>, MeshErrorKind> {
     if surfaces.len() < 2 {
-        return vec![Vec::new(); surfaces.len()];
+        return Ok(vec![Vec::new(); surfaces.len()]);
     }
     let boxes: Vec<Aabb> = surfaces
         .iter()
         .map(|one| Aabb::new(Vector::from_array(one.low), Vector::from_array(one.high)))
         .collect();
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+    let (mut pairs, mut looked) = (0, 0);
+    let mut by_box = Vec::with_capacity(surfaces.len());
+    for (index, own) in surfaces.iter().enumerate() {
+        let corner = Vector::from_array(own.low);
+        let corner = Aabb::new(corner, corner);
+        let mut about: Vec<usize> = tree
+            .intersect_aabb(&corner)
+            .map(|other| other as usize)
+            .inspect(|_| looked += 1)
+            .filter(|&other| other != index && surfaces[other].can_hold(own))
+            .collect();
+        about.sort_unstable();
+        pairs += about.len();
+        if pairs > MAX_PAIRS || looked > 100 * MAX_PAIRS {
+            return Err(MeshErrorKind::Nested {
+                surfaces: surfaces.len(),
+            });
+        }
+        by_box.push(about);
+    }
     let trees: Vec<OnceLock<TriangleTree>> = surfaces.iter().map(|_| OnceLock::new()).collect();
-    (0..surfaces.len())
+    let containers = by_box
         .into_par_iter()
-        .map(|index| {
+        .enumerate()
+        .map(|(index, mut about)| {
             let own = &surfaces[index];
-            let corner = Vector::from_array(own.low);
-            let corner = Aabb::new(corner, corner);
-            let mut about: Vec<usize> = tree
-                .intersect_aabb(&corner)
-                .map(|other| other as usize)
-                .filter(|&other| other != index && surfaces[other].can_hold(own))
-                .collect();
-            about.sort_unstable();
             about.retain(|&other| {
                 let outer = trees[other].get_or_init(|| {
                     let triangles = surfaces[other].triangles.iter();
@@ -63,7 +87,8 @@ pub(in crate::mesh) fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Vec<Vec<
             });
             about
         })
-        .collect()
+        .collect();
+    Ok(containers)
 }
 
 /// Whether a surface lies within another; none where it lies on it all over.

@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(triangles.len(), count - 2);
     }
 
-    /// With a tree and without, a polygon is covered once: jagged, with a bridge to a hole, and one that crosses itself,
+    /// With a tree and without, a polygon is covered once: jagged, with a bridge to a hole, and crossing itself,
     /// whose triangles sum up to its area with their signs.
     #[test]
     fn few_corners_and_many_are_clipped_to_one_area() {

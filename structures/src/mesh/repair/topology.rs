@@ -4,6 +4,7 @@
 //! walls of one body: [`shells`](super::shells). A mesh is **closed** when every edge is run through as often one
 //! way as the other; then its winding number is a whole number off the surface, whatever else is wrong with it.
 
+use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::bounded_surface::Part;
 use crate::mesh::repair::edges::{HalfEdge, by_place, half_edges, patches};
 use crate::mesh::repair::facing::turn_outward;
@@ -45,7 +46,10 @@ pub struct Topology {
 /// what is amiss.
 ///
 /// In each part the majority decides. Then whole surfaces are turned that face inward: [`turn_outward`].
-pub fn orient(mesh: &mut Mesh) -> Topology {
+///
+/// # Errors
+/// [`MeshErrorKind::Nested`] for too many parts within one another.
+pub fn orient(mesh: &mut Mesh) -> Result<Topology, MeshErrorKind> {
     let mut edges = half_edges(&mesh.triangles);
     let mut shells = Shells::default();
     let count = mesh.triangles.len();
@@ -69,7 +73,7 @@ pub fn orient(mesh: &mut Mesh) -> Topology {
         edges = half_edges(&mesh.triangles);
     }
     let at_border = borders(&edges, &mut parts, &part_of);
-    let facing = turn_outward(mesh, &parts, &at_border);
+    let facing = turn_outward(mesh, &parts, &at_border)?;
     topology.inverted_parts = facing.turned;
     topology.nested_parts += facing.nested;
     topology.overlap += facing.overlap;
@@ -88,7 +92,7 @@ pub fn orient(mesh: &mut Mesh) -> Topology {
         edges = half_edges(&mesh.triangles);
     }
     count_edges(mesh, &edges, &mut topology);
-    topology
+    Ok(topology)
 }
 
 /// Whether more than two triangles share an edge, or a triangle is there several times.

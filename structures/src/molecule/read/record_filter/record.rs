@@ -98,12 +98,12 @@ pub(crate) fn field(
     }
 }
 
-/// Largest magnitude of a coordinate of an atom, in Å: a millimetre. Squares and sums of such lengths keep their digits,
-/// and no molecule is that large or that far off.
-const LARGEST_COORDINATE: f64 = 1e7;
+/// Largest magnitude of a coordinate of an atom, in Å: a metre. Sums and squares of such lengths stay finite, and no
+/// molecule is that large or that far off.
+const LARGEST_COORDINATE: f64 = 1e10;
 
 /// What a coordinate must be, in words.
-pub(crate) const COORDINATE: &str = "a finite number of at most 1e7 in magnitude (Å)";
+pub(crate) const COORDINATE: &str = "a finite number of at most 1e10 in magnitude (Å)";
 
 /// A coordinate of an atom, in Å; nothing where no molecule can lie.
 pub(crate) fn coordinate(text: &str) -> Option<f64> {
