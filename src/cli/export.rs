@@ -80,7 +80,7 @@ impl Export {
             check_not_read(&folder.join(name), read)?;
         }
         let export = ExportFolder::open(&folder, &self.run)?;
-        let written = bodies.write(&rows, arrangement, export.folder())?;
+        let written = bodies.write(&rows, arrangement, export.staged())?;
         export.place(self.force)?;
         let paths: Vec<String> = written
             .names

@@ -261,10 +261,10 @@ impl Moves {
 
     /// Takes the moves back; whether all could be.
     fn undo(self) -> bool {
-        let back = |(from, to): &(PathBuf, PathBuf)| disk::rename_new(to, from).is_ok();
-        // No short cut: each that can be taken back is.
-        let all = self.done.iter().rev().map(back);
-        let all = all.fold(true, |all, one| all && one);
+        let mut all = true;
+        for (from, to) in self.done.iter().rev() {
+            all &= disk::rename_new(to, from).is_ok();
+        }
         for folder in self.made.iter().rev() {
             let _ = disk::remove_dir(folder);
         }

@@ -100,7 +100,7 @@ impl ExportFolder {
     }
 
     /// The folder to write into.
-    pub fn folder(&self) -> &Path {
+    pub fn staged(&self) -> &Path {
         &self.new
     }
 
@@ -215,8 +215,8 @@ mod tests {
 
     fn export(folder: &Path, text: &str, force: bool) -> Result<(), ExportError> {
         let export = ExportFolder::open(folder, Path::new("no run")).unwrap();
-        fs::write(export.folder().join("rank_0001.pdb"), text).unwrap();
-        fs::write(export.folder().join("rank_0002.pdb"), "second").unwrap();
+        fs::write(export.staged().join("rank_0001.pdb"), text).unwrap();
+        fs::write(export.staged().join("rank_0002.pdb"), "second").unwrap();
         export.place(force)
     }
 
