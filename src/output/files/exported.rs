@@ -146,8 +146,8 @@ impl ExportFolder {
         Ok(())
     }
 
-    /// Adds files to the list of a run's exported complexes. It comes before them: a file that is listed and not there
-    /// does no harm.
+    /// Adds files to the list of a run's exported complexes. It comes before them: a file that is
+    /// recorded and not there does no harm.
     fn record(&self, exported: BTreeMap<String, String>) -> Result<(), FileError> {
         let path = self.folder.join(EXPORTED);
         let earlier = std::fs::read(&path).unwrap_or_default();

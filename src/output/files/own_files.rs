@@ -1,7 +1,7 @@
 //! Which files of a directory a run wrote, and which are its user's.
 //!
-//! A run's record lists the run's files with their checksums. A listed file is the run's own as long as it has its
-//! checksum; one that has changed is the user's, and so is all that is not listed. A file without content, as a power
+//! A run's record lists the run's files with their checksums. A recorded file is the run's own as long as it has its
+//! checksum; one that has changed is the user's, and so is all that is not recorded. A file without content, as a power
 //! cut leaves it, is nobody's loss and counts as the run's own.
 
 use std::collections::BTreeMap;
@@ -11,12 +11,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::bounded_read::MAX_RECORD;
+
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::product::{EXPORTED, Product};
-
-/// Bytes of a record at most.
-const MAX_RECORD: u64 = 64 << 20;
 
 /// What a directory holds of a product.
 #[derive(Debug)]
@@ -71,13 +70,13 @@ pub(super) fn survey(product: &Product, directory: &Path) -> io::Result<Found> {
         return Ok(Found::Foreign(name));
     }
     let record = read_record(&directory.join(product.record))?;
-    let listed = match &record {
-        Record::Whole(record) => listed(product, directory, record)?,
+    let recorded = match &record {
+        Record::Whole(record) => recorded_files(product, directory, record)?,
         Record::None | Record::Broken => None,
         Record::Foreign => return Ok(Found::Foreign(first)),
     };
-    let own = match listed {
-        Some(listed) => unchanged(directory, listed)?,
+    let own = match recorded {
+        Some(recorded) => unchanged(directory, recorded)?,
         None => {
             if let Some(name) = foreign(product, directory)? {
                 return Ok(Found::Foreign(name));
@@ -118,7 +117,7 @@ fn read_record(path: &Path) -> io::Result<Record> {
 }
 
 /// The files that a record lists, with their checksums, and those exported later; `None` where it lists none.
-fn listed(
+fn recorded_files(
     product: &Product,
     directory: &Path,
     record: &Value,
@@ -126,10 +125,10 @@ fn listed(
     let Some(files) = record["files"].as_object() else {
         return Ok(None);
     };
-    let mut listed = BTreeMap::new();
+    let mut recorded = BTreeMap::new();
     let mut add = |path: PathBuf, checksum: &Value| {
         if let (true, Some(checksum)) = (product.may_hold(&path), checksum.as_str()) {
-            listed.insert(path, checksum.to_owned());
+            recorded.insert(path, checksum.to_owned());
         }
     };
     for (name, checksum) in files {
@@ -151,15 +150,15 @@ fn listed(
     // A list has no checksum of itself.
     for list in lists {
         let checksum = sha256_of_file(&directory.join(&list))?;
-        listed.insert(list, checksum);
+        recorded.insert(list, checksum);
     }
-    Ok(Some(listed))
+    Ok(Some(recorded))
 }
 
-/// Those of the listed files that are there and unchanged, or without content.
-fn unchanged(directory: &Path, listed: BTreeMap<PathBuf, String>) -> io::Result<OwnFiles> {
+/// Those of the recorded files that are there and unchanged, or without content.
+fn unchanged(directory: &Path, recorded: BTreeMap<PathBuf, String>) -> io::Result<OwnFiles> {
     let mut own = OwnFiles::default();
-    for (path, expected) in listed {
+    for (path, expected) in recorded {
         let file = directory.join(&path);
         if !file.symlink_metadata().is_ok_and(|found| found.is_file()) {
             continue;

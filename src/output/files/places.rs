@@ -45,7 +45,7 @@ impl Places<'_> {
             (self.resolved, OsStr::new("")),
         ] {
             let found = match StagingFolder::others(folder, target, own) {
-                // A folder above that is not there or may not be listed has none.
+                // A folder above that is not there or may not be read has none.
                 Err(error) if is_closed(&error) => continue,
                 found => found.map_err(unreadable)?,
             };
@@ -114,7 +114,7 @@ impl Places<'_> {
     }
 }
 
-/// Whether an error says that a folder is not there or may not be listed.
+/// Whether an error says that a folder is not there or may not be read.
 fn is_closed(error: &io::Error) -> bool {
     matches!(
         error.kind(),

@@ -94,7 +94,7 @@ impl Staging {
         let own = made.map_err(unwritable)?;
         staging.folder = own.path().join(NEW);
         let own = staging.staging.insert(own);
-        // Another run may have begun, or come to its end, between the first look and the lock.
+        // Another run may have started or ended between the first look and the lock.
         if let Some(folder) = places.others(Some(own))?.in_use {
             let directory = directory.to_owned();
             return Err(StagingError::Busy { directory, folder });
@@ -212,7 +212,7 @@ pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
         directory,
         resolved: &resolved,
     };
-    // Where the folder above may not be listed, no run has been staged.
+    // Where the folder above may not be read, no run has been staged.
     let Ok(others) = places.others(None) else {
         return Ok(());
     };

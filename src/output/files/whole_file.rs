@@ -116,7 +116,7 @@ impl StagedFile {
             Err(_) => path.to_owned(),
         };
         let (parent, name) = (parent(&place), place.file_name().unwrap_or_default());
-        // A folder that cannot be listed can still be written to.
+        // A folder that cannot be read can still be written to.
         if let Ok(others) = StagingFolder::others(parent, name, None) {
             for left in others.left {
                 left.remove().map_err(unwritable)?;
