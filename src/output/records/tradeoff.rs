@@ -12,7 +12,6 @@ use crate::options::check::name_of;
 use crate::output::files::whole_file::to_json;
 use crate::output::records::manifest::{Inputs, Machine};
 use crate::output::records::program::Program;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
@@ -135,15 +134,16 @@ fn field(value: &Value) -> String {
 /// # Errors
 /// Those of the stream.
 pub fn write_table(tradeoff: &Tradeoff, stream: &mut dyn io::Write) -> io::Result<()> {
-    let mut table = TableWriter::new(stream);
+    // Its cells are this program's own words: `--rotations 96` is to be typed as it stands.
+    let mut writer = csv::Writer::from_writer(stream);
     for (index, run) in tradeoff.measured.iter().enumerate() {
         let columns = columns(run);
         if index == 0 {
-            table.row(columns.iter().map(|(name, _)| name))?;
+            writer.write_record(columns.iter().map(|(name, _)| name))?;
         }
-        table.row(columns.iter().map(|(_, value)| field(value)))?;
+        writer.write_record(columns.iter().map(|(_, value)| field(value)))?;
     }
-    table.flush()
+    writer.flush()
 }
 
 /// `tradeoff.json`.

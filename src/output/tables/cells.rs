@@ -1,8 +1,8 @@
 //! Cells of tables that no spreadsheet takes for formulas.
 //!
 //! A cell that begins with `=`, `+`, `-`, `@`, a tab or a carriage return is run by spreadsheets, and the names in
-//! structure files may be anyone's. All tables are written here: such a cell gets a single quote in front unless it is a
-//! number (OWASP, "CSV Injection"). Readers of tables take it off again.
+//! structure files may be anyone's. All tables with names of files are written here: such a cell gets a single quote in
+//! front unless it is a number (OWASP, "CSV Injection"). Readers of tables take it off again.
 
 use std::borrow::Cow;
 use std::io;
