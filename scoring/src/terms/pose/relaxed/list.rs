@@ -1,8 +1,8 @@
 //! Lists of the pairs of atoms near an interface, and the interface's centre and radius.
 
 use super::descent::Move;
-use super::{Relaxation, Site};
 use crate::se3::Pose;
+use knotdock_structures::neighbours::CellList;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// Distance in Å beyond the reach up to which pairs are collected. Once an atom may have moved farther they are collected
@@ -10,6 +10,26 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 const SLACK: f64 = 2.0;
 /// Radius in Å that is added to that of an interface, by squares: a single contact may rotate, too.
 const MIN_RADIUS: f64 = 3.0;
+
+/// Position relative to the receptor's centre (unused for ligand atoms), radius and kind of an atom.
+#[derive(Clone, Copy)]
+pub(super) struct Site {
+    pub position: Vector3<f64>,
+    pub radius: f64,
+    pub kind: usize,
+}
+
+/// The atoms of two bodies.
+pub(super) struct Atoms {
+    /// Atoms of the receptor, each with its index in `sites`.
+    pub receptor: CellList<usize>,
+    pub receptor_center: Vector3<f64>,
+    pub sites: Vec<Site>,
+    pub ligand: Vec<(Vector3<f64>, Site)>,
+    pub ligand_center: Vector3<f64>,
+    /// Distance in Å from which no pair has an energy.
+    pub reach: f64,
+}
 
 /// A ligand atom with receptor atoms in its neighbourhood.
 pub(super) struct Mobile {
@@ -64,7 +84,7 @@ impl Workspace {
     }
 }
 
-impl Relaxation {
+impl Atoms {
     /// Where the ligand stands at a pose.
     pub(super) fn start(&self, pose: &Pose) -> Start {
         Start {

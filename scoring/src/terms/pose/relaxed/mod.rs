@@ -14,8 +14,8 @@ mod list;
 mod tests;
 
 use self::descent::{LONGEST, Move, Slope};
-use self::list::Interface;
 pub use self::list::Workspace;
+use self::list::{Atoms, Interface, Site};
 use super::atom_pair_potential::AtomPairPotential;
 use super::energy_table::{EnergyTable, SMOOTH_REACH};
 use super::{CELL_EDGE, PoseTerm, TermDefinition};
@@ -75,23 +75,9 @@ const CHUNK: usize = 64;
 /// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
 /// `-weight min(E(start), E(end))`.
 pub struct Relaxation {
-    /// Atoms of the receptor, each with its index in `sites`.
-    receptor: CellList<usize>,
-    receptor_center: Vector3<f64>,
-    sites: Vec<Site>,
-    ligand: Vec<(Vector3<f64>, Site)>,
-    ligand_center: Vector3<f64>,
+    atoms: Atoms,
     energies: EnergyTable,
-    reach: f64,
     weight: f64,
-}
-
-/// Position relative to the receptor's centre (unused for ligand atoms), radius and kind of an atom.
-#[derive(Clone, Copy)]
-struct Site {
-    position: Vector3<f64>,
-    radius: f64,
-    kind: usize,
 }
 
 /// A relaxed pose.
@@ -131,13 +117,16 @@ impl Relaxation {
             position: position.into(),
             item,
         });
-        Self {
+        let atoms = Atoms {
             receptor: CellList::new(atoms.collect(), CELL_EDGE),
             receptor_center,
             reach: SMOOTH_REACH.max(widest(&receptor) + widest(&ligand)),
             sites: receptor.iter().map(|(_, site)| *site).collect(),
             ligand,
             ligand_center,
+        };
+        Self {
+            atoms,
             energies,
             weight,
         }
@@ -151,14 +140,16 @@ impl Relaxation {
     /// Energy of a pose as it stands in RT: the double sum over atoms.
     pub fn energy(&self, pose: &Pose) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
-        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let place = pose.rotation * self.atoms.ligand_center + pose.translation
+            - self.atoms.receptor_center;
         let mut total = 0.0;
-        for (position, site) in &self.ligand {
+        for (position, site) in &self.atoms.ligand {
             let mut sum = 0.0;
             let near = matrix * position + place;
-            self.receptor
-                .visit_within(near.into(), self.reach, |&atom, square| {
-                    let other = &self.sites[atom];
+            self.atoms
+                .receptor
+                .visit_within(near.into(), self.atoms.reach, |&atom, square| {
+                    let other = &self.atoms.sites[atom];
                     sum += self.pair(other, site, square.sqrt());
                 });
             total += sum;
@@ -168,26 +159,27 @@ impl Relaxation {
 
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
-        let (start, none) = (self.start(pose), Move::none());
-        self.list(&start, &Vector3::zeros(), &none, workspace);
-        let Some(Interface { middle, radius }) = self.interface(workspace) else {
+        let (start, none) = (self.atoms.start(pose), Move::none());
+        self.atoms.list(&start, &Vector3::zeros(), &none, workspace);
+        let Some(Interface { middle, radius }) = self.atoms.interface(workspace) else {
             return Relaxed {
                 pose: *pose,
                 energy: 0.0,
             };
         };
         workspace.recenter(&middle);
-        let widest = self.widest(&start, &middle);
+        let widest = self.atoms.widest(&start, &middle);
         let before = self.collected_energy(workspace, &none);
         let (mut at, mut collected) = (none, none);
         for longest in LONGEST {
             at = self.slope(workspace, &at).step(&at, radius, longest);
-            self.renew(&mut collected, &at, widest, (&start, &middle), workspace);
+            self.atoms
+                .renew(&mut collected, &at, widest, (&start, &middle), workspace);
         }
         let after = self.collected_energy(workspace, &at);
         if after < before {
             Relaxed {
-                pose: self.moved(pose, &at, &middle),
+                pose: self.atoms.moved(pose, &at, &middle),
                 energy: after,
             }
         } else {
@@ -208,7 +200,7 @@ impl Relaxation {
                 for (atom, near) in workspace.atoms() {
                     let position = matrix * atom.arm + at.shift;
                     let mut sum = 0.0;
-                    visit_near(&position, near, self.reach, |other, square| {
+                    visit_near(&position, near, self.atoms.reach, |other, square| {
                         sum += self.pair(other, &atom.site, square.sqrt());
                     });
                     total += sum;
@@ -230,7 +222,7 @@ impl Relaxation {
                     let position = arm + at.shift;
                     let (mut gradient, mut curvature) = (Vector3::zeros(), Matrix3::zeros());
                     let mut contacts = 0.0;
-                    visit_near(&position, near, self.reach, |other, square| {
+                    visit_near(&position, near, self.atoms.reach, |other, square| {
                         let Soft {
                             rise, stiffness, ..
                         } = self.soft(other, &atom.site, square);
@@ -239,7 +231,7 @@ impl Relaxation {
                         if stiffness > 0.0 {
                             curvature += (stiffness * between) * between.transpose();
                         }
-                        contacts += self.contact(square);
+                        contacts += self.atoms.contact(square);
                     });
                     slope.contacts += contacts;
                     // Each body makes half of a rotation about the middle between their places.

@@ -86,9 +86,11 @@ fn soft_energy(relaxation: &Relaxation, workspace: &Workspace, at: &Move) -> f64
 /// The list of a pose about its interface, with the interface.
 fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interface)> {
     let mut workspace = Workspace::default();
-    let start = relaxation.start(pose);
-    relaxation.list(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
-    let interface = relaxation.interface(&workspace)?;
+    let start = relaxation.atoms.start(pose);
+    relaxation
+        .atoms
+        .list(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
+    let interface = relaxation.atoms.interface(&workspace)?;
     workspace.recenter(&interface.middle);
     Some((workspace, interface))
 }
@@ -134,14 +136,16 @@ fn collected_pairs_add_up_to_the_energy() {
             continue;
         };
         let mut was = Move::none();
-        let start = relaxation.start(&pose);
-        let widest = relaxation.widest(&start, &middle);
+        let start = relaxation.atoms.start(&pose);
+        let widest = relaxation.atoms.widest(&start, &middle);
         let steps = [0.0, 0.1, 0.3, 1.2].map(|by| Vector3::new(by, 0.4 * by, -by));
         let mut at = was;
         for step in steps {
             at = at.then(step, 0.1 * step);
-            relaxation.renew(&mut was, &at, widest, (&start, &middle), &mut workspace);
-            let energy = relaxation.energy(&relaxation.moved(&pose, &at, &middle));
+            relaxation
+                .atoms
+                .renew(&mut was, &at, widest, (&start, &middle), &mut workspace);
+            let energy = relaxation.energy(&relaxation.atoms.moved(&pose, &at, &middle));
             let collected = relaxation.collected_energy(&workspace, &at);
             assert!((collected - energy).abs() < 1e-9 * energy.abs().max(1.0));
         }
