@@ -91,8 +91,9 @@ def mutated_json(random, seed):
         return seed[:at] if random.random() < 0.5 else seed[:at] + random.choice(BYTES) + seed[at + 1 :]
     record = json.loads(seed)
     for _ in range(random.randint(1, 3)):
-        inner = random.choice([record, record["options"], record["inputs"]])
-        while inner:
+        # An earlier change may have replaced or removed one.
+        inner = random.choice([record, record.get("options"), record.get("inputs")])
+        while isinstance(inner, (dict, list)) and inner:
             key = random.choice(list(inner) if isinstance(inner, dict) else range(len(inner)))
             if isinstance(inner[key], (dict, list)) and inner[key] and random.random() < 0.9:
                 inner = inner[key]
