@@ -1,7 +1,7 @@
 //! A run's directory: all of a new run or all of the older one.
 //!
 //! A run is written in a staging folder beside its directory, `.NAME.knotdock-…`, and takes its place when all of it is
-//! on the device (see [`super::commit`]). Where nothing may be written beside the directory, or the directory is a
+//! on the device (`commit.rs`). Where nothing may be written beside the directory, or the directory is a
 //! mount point or the current one, the staging folder lies in it. A process that is killed leaves only staging
 //! folders, which the next run into the same directory clears. Nothing in the directory that a run did not write is
 //! ever removed.
