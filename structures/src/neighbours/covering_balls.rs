@@ -1,7 +1,6 @@
 //! Balls that cover a point: whether one of many holds it, however they crowd.
 
-/// Balls in a leaf.
-const LEAF: usize = 8;
+use crate::neighbours::box_tree::{BoxNode, box_tree};
 
 /// A ball as the tree holds it: its centre, its radius, and its place in the list given.
 #[derive(Clone, Copy, Debug)]
@@ -11,28 +10,31 @@ struct Member {
     place: usize,
 }
 
-/// A binary tree over balls, halved at the median of the longest range of their centres.
+/// Balls in a tree of the boxes of their centres, each with the range of their radii.
 ///
 /// A half whose balls all hold a point, or none of which does, is decided by its box. A query therefore takes about
 /// logarithmic time also where each of n balls meets all others.
 #[derive(Debug)]
 pub struct CoveringBalls {
     members: Vec<Member>,
-    /// Nodes in depth-first order.
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode<Radii>>,
 }
 
-/// Some balls, the box of their centres, and the range of their radii.
+/// The least and the largest radius of some balls.
 #[derive(Debug)]
-struct Node {
-    low: [f64; 3],
-    high: [f64; 3],
+struct Radii {
     least: f64,
     largest: f64,
-    first: usize,
-    count: usize,
-    /// The second half; the first follows this node. Zero in a leaf.
-    second: usize,
+}
+
+impl Radii {
+    fn of(members: &[Member]) -> Self {
+        let radii = || members.iter().map(|member| member.radius);
+        Self {
+            least: radii().fold(f64::INFINITY, f64::min),
+            largest: radii().fold(0.0, f64::max),
+        }
+    }
 }
 
 impl CoveringBalls {
@@ -45,10 +47,8 @@ impl CoveringBalls {
             place,
         };
         let mut members: Vec<Member> = balls.map(member).collect();
-        let mut nodes = Vec::new();
-        if !members.is_empty() {
-            build(&mut members, 0, &mut nodes);
-        }
+        let place = |member: &Member| (member.center, member.place);
+        let nodes = box_tree(&mut members, place, Radii::of);
         Self { members, nodes }
     }
 
@@ -67,11 +67,11 @@ impl CoveringBalls {
             nearest += near * near;
             farthest += far * far;
         }
-        if nearest >= node.largest * node.largest {
+        if nearest >= node.known.largest * node.known.largest {
             return false;
         }
         // Of several balls one at least is not the point's own.
-        if node.count > 1 && farthest < node.least * node.least {
+        if node.count > 1 && farthest < node.known.least * node.known.least {
             return true;
         }
         if node.second == 0 {
@@ -86,49 +86,6 @@ impl CoveringBalls {
 
 fn squared(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum()
-}
-
-/// Appends the node of balls that begin at `first` of the whole list, and the nodes below it.
-fn build(members: &mut [Member], first: usize, nodes: &mut Vec<Node>) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
-    for member in members.iter() {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(member.center[axis]);
-            high[axis] = high[axis].max(member.center[axis]);
-        }
-        least = least.min(member.radius);
-        largest = largest.max(member.radius);
-    }
-    let at = nodes.len();
-    nodes.push(Node {
-        low,
-        high,
-        least,
-        largest,
-        first,
-        count: members.len(),
-        second: 0,
-    });
-    if members.len() <= LEAF {
-        return;
-    }
-    let range = |axis: usize| high[axis] - low[axis];
-    let axis = (1..3).fold(0, |best, axis| {
-        if range(axis) > range(best) {
-            axis
-        } else {
-            best
-        }
-    });
-    let middle = members.len() / 2;
-    members.select_nth_unstable_by(middle, |a, b| {
-        (a.center[axis].total_cmp(&b.center[axis])).then(a.place.cmp(&b.place))
-    });
-    let (before, after) = members.split_at_mut(middle);
-    build(before, first, nodes);
-    nodes[at].second = nodes.len();
-    build(after, first + middle, nodes);
 }
 
 #[cfg(test)]

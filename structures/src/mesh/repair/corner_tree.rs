@@ -1,38 +1,23 @@
 //! The corners of a polygon in a tree of boxes, from which they are taken one by one.
 
-/// Corners in a leaf.
-const LEAF: usize = 8;
+use crate::neighbours::box_tree::{BoxNode, box_tree};
 
-/// A binary tree over places, halved at the median of the longest side of their box.
+/// Corners in a tree of boxes, each with the number of corners below that are left.
 pub struct CornerTree {
     /// Corners, leaf after leaf.
     corners: Vec<usize>,
     /// Of each corner, its place in `corners`.
     place_of: Vec<usize>,
     is_left: Vec<bool>,
-    /// Nodes in depth-first order.
-    nodes: Vec<Node>,
-}
-
-struct Node {
-    low: [f64; 3],
-    high: [f64; 3],
-    /// Corners below that are left.
-    left: usize,
-    first: usize,
-    count: usize,
-    /// The second half; the first follows this node. Zero in a leaf.
-    second: usize,
+    nodes: Vec<BoxNode<usize>>,
 }
 
 impl CornerTree {
     /// The tree of corners 0, 1, 2 ... at their places.
     pub fn new(places: &[[f64; 3]]) -> Self {
         let mut corners: Vec<usize> = (0..places.len()).collect();
-        let mut nodes = Vec::new();
-        if !corners.is_empty() {
-            build(places, &mut corners, 0, &mut nodes);
-        }
+        let place = |&corner: &usize| (places[corner], corner);
+        let nodes = box_tree(&mut corners, place, |corners| corners.len());
         let mut place_of = vec![0; corners.len()];
         for (place, &corner) in corners.iter().enumerate() {
             place_of[corner] = place;
@@ -54,7 +39,7 @@ impl CornerTree {
         let mut waiting = vec![0];
         while let Some(at) = waiting.pop() {
             let node = self.nodes.get(at)?;
-            if node.left == 0 || misses(node.low, node.high) {
+            if node.known == 0 || misses(node.low, node.high) {
                 continue;
             }
             if node.second > 0 {
@@ -80,7 +65,7 @@ impl CornerTree {
         let mut at = 0;
         loop {
             let node = &mut self.nodes[at];
-            node.left -= 1;
+            node.known -= 1;
             if node.second == 0 {
                 return;
             }
@@ -92,42 +77,4 @@ impl CornerTree {
             };
         }
     }
-}
-
-/// Appends the node of corners that begin at `first` of the whole list, and the nodes below it.
-fn build(places: &[[f64; 3]], corners: &mut [usize], first: usize, nodes: &mut Vec<Node>) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for &corner in corners.iter() {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(places[corner][axis]);
-            high[axis] = high[axis].max(places[corner][axis]);
-        }
-    }
-    let at = nodes.len();
-    nodes.push(Node {
-        low,
-        high,
-        left: corners.len(),
-        first,
-        count: corners.len(),
-        second: 0,
-    });
-    if corners.len() <= LEAF {
-        return;
-    }
-    let side = |axis: usize| high[axis] - low[axis];
-    let axis = (1..3).fold(
-        0,
-        |best, axis| {
-            if side(axis) > side(best) { axis } else { best }
-        },
-    );
-    let middle = corners.len() / 2;
-    corners.select_nth_unstable_by(middle, |&a, &b| {
-        (places[a][axis].total_cmp(&places[b][axis])).then(a.cmp(&b))
-    });
-    let (before, after) = corners.split_at_mut(middle);
-    build(places, before, first, nodes);
-    nodes[at].second = nodes.len();
-    build(places, after, first + middle, nodes);
 }

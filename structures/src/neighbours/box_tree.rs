@@ -1,0 +1,116 @@
+//! Binary trees of boxes over things at places, halved at the median of the longest side.
+
+/// Things in a leaf at most.
+const LEAF: usize = 8;
+
+/// Some of the things: the box of their places, and what is known of all of them.
+#[derive(Debug)]
+pub(crate) struct BoxNode<K> {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+    /// Where they begin in the list of all.
+    pub first: usize,
+    pub count: usize,
+    /// The second half; the first follows this node. Zero in a leaf.
+    pub second: usize,
+    pub known: K,
+}
+
+/// Sorts things into a tree, whose nodes come in depth-first order; none of nothing.
+///
+/// `place` is where a thing is and its number, which decides between things in one place. `known` is computed of the
+/// things of each node.
+pub(crate) fn box_tree<T, K>(
+    things: &mut [T],
+    place: impl Fn(&T) -> ([f64; 3], usize),
+    known: impl Fn(&[T]) -> K,
+) -> Vec<BoxNode<K>> {
+    let mut nodes = Vec::new();
+    if !things.is_empty() {
+        build(things, 0, &place, &known, &mut nodes);
+    }
+    nodes
+}
+
+/// Appends the node of things that begin at `first` of the whole list, and the nodes below it.
+fn build<T, K>(
+    things: &mut [T],
+    first: usize,
+    place: &impl Fn(&T) -> ([f64; 3], usize),
+    known: &impl Fn(&[T]) -> K,
+    nodes: &mut Vec<BoxNode<K>>,
+) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for thing in things.iter() {
+        let (position, _) = place(thing);
+        for axis in 0..3 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    let at = nodes.len();
+    nodes.push(BoxNode {
+        low,
+        high,
+        first,
+        count: things.len(),
+        second: 0,
+        known: known(things),
+    });
+    if things.len() <= LEAF {
+        return;
+    }
+    let side = |axis: usize| high[axis] - low[axis];
+    let longer = |best, axis| if side(axis) > side(best) { axis } else { best };
+    let axis = (1..3).fold(0, longer);
+    let middle = things.len() / 2;
+    things.select_nth_unstable_by(middle, |a, b| {
+        let ((a, one), (b, other)) = (place(a), place(b));
+        a[axis].total_cmp(&b[axis]).then(one.cmp(&other))
+    });
+    let (before, after) = things.split_at_mut(middle);
+    build(before, first, place, known, nodes);
+    nodes[at].second = nodes.len();
+    build(after, first + middle, place, known, nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every node holds its things in its box, and its halves hold each of them once; also where all are in one place.
+    #[test]
+    fn halves_share_the_things_and_boxes_hold_them() {
+        for spread in [5.0, 0.0] {
+            let position = |i: usize| [0.7, 1.9, 3.1].map(|step| spread * (step * i as f64).sin());
+            for count in [0, 1, 8, 9, 300] {
+                let mut things: Vec<usize> = (0..count).collect();
+                let nodes = box_tree(&mut things, |&i| (position(i), i), |things| things.len());
+                let mut sorted = things.clone();
+                sorted.sort_unstable();
+                assert!(sorted.into_iter().eq(0..count));
+                assert_eq!(nodes.is_empty(), count == 0);
+                for (at, node) in nodes.iter().enumerate() {
+                    assert_eq!(node.known, node.count);
+                    for &thing in &things[node.first..node.first + node.count] {
+                        let held = |axis: usize| {
+                            let x = position(thing)[axis];
+                            node.low[axis] <= x && x <= node.high[axis]
+                        };
+                        assert!((0..3).all(held));
+                    }
+                    if node.second == 0 {
+                        assert!(node.count <= LEAF);
+                        continue;
+                    }
+                    let (one, other) = (&nodes[at + 1], &nodes[node.second]);
+                    assert_eq!(node.count, one.count + other.count);
+                    assert_eq!(
+                        (one.first, other.first),
+                        (node.first, one.first + one.count)
+                    );
+                }
+            }
+        }
+    }
+}
