@@ -161,7 +161,7 @@ fn dock_row(
         "best": null,
         "first_acceptable_rank": null,
     });
-    let outcome = dock_pair(dock).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
+    let outcome = dock_pair(dock, console).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
     let outcome = match outcome {
         Ok((summary, anew)) => {
             console.say(format!("{head}: {}", words(&summary, anew, clock)));
@@ -180,14 +180,14 @@ fn dock_row(
 }
 
 /// Docks a pair into its directory; whether it had to be done.
-fn dock_pair(dock: Dock) -> Result<bool, Failure> {
+fn dock_pair(dock: Dock, console: Console) -> Result<bool, Failure> {
     // A pair's own words would hide the batch's; its run.json has them.
     let silent = Console {
         quiet: true,
         ..Console::default()
     };
     dock.prepared(silent, |docking| {
-        if docking.is_done() {
+        if docking.is_done(console) {
             return Ok(false);
         }
         if let Some(directory) = docking.in_the_way() {
@@ -197,7 +197,7 @@ fn dock_pair(dock: Dock) -> Result<bool, Failure> {
             .at(directory)
             .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
         }
-        docking.run(silent)?;
+        docking.run(silent, console)?;
         Ok(true)
     })
 }

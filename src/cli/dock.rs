@@ -150,7 +150,7 @@ impl Dock {
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let done = self.prepared(console, |docking| docking.run(console))?;
+        let done = self.prepared(console, |docking| docking.run(console, console))?;
         console.result(&done)?;
         Ok(())
     }

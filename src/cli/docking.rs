@@ -9,7 +9,7 @@ use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::Precision;
-use knotdock::output::files::staging::{SetAside, Staging, finish_interrupted};
+use knotdock::output::files::staging::Staging;
 use knotdock::output::records::manifest::{
     EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
 };
@@ -32,6 +32,7 @@ use crate::cli::messages::dock::{
     assumed, error_warning, few_rotations_warning, outcome_text, regions_text,
 };
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::{finish_before_reading, warn_set_aside};
 use crate::cli::messages::timings::timings_text;
 
 /// A run that is ready to go.
@@ -117,8 +118,8 @@ impl Docking {
 
     /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
     /// same options.
-    pub fn is_done(&self) -> bool {
-        if finish_interrupted(&self.directory).is_err() {
+    pub fn is_done(&self, console: Console) -> bool {
+        if finish_before_reading(&self.directory, console).is_err() {
             return false;
         }
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
@@ -136,8 +137,9 @@ impl Docking {
             && run.is_same_request(inputs, native.as_ref(), &options)
     }
 
-    /// Docks, and writes the run; its JSON object.
-    pub fn run(mut self, console: Console) -> Result<Value, Failure> {
+    /// Docks, and writes the run; its JSON object. What became of files of the user's is said on `notices`, for a batch
+    /// says that and nothing else of its pairs.
+    pub fn run(mut self, console: Console, notices: Console) -> Result<Value, Failure> {
         let staging = Staging::open(&self.directory, self.force)?;
         let progress = console.progress();
         let PreparedPair { plan, points, .. } = &self.prepared;
@@ -147,7 +149,7 @@ impl Docking {
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
         let written = self.write(&outcome, &staging)?;
-        warn_set_aside(&staging.commit()?, console);
+        warn_set_aside(&staging.commit()?, notices);
         self.report(&outcome, &written.quality, console);
         let Self { directory, .. } = &self;
         let top = directory.join("top");
@@ -242,17 +244,6 @@ impl Docking {
             "\n{} in {}",
             counted(outcome.poses.len(), "row"),
             self.directory.join("poses.csv").display()
-        ));
-    }
-}
-
-/// Warns of files of the user's that were in the way of a run and have another name now.
-pub fn warn_set_aside(files: &[SetAside], console: Console) {
-    for SetAside { from, to } in files {
-        console.warn(format!(
-            "{} is not as a run wrote it, so it is kept as {}",
-            from.display(),
-            to.display()
         ));
     }
 }

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use knotdock::evaluate::{Capri, Criterion, PoseQuality};
 use knotdock::options::{InputOptions, Threads, definitions};
-use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};
@@ -17,6 +16,7 @@ use crate::cli::arguments::output_file::check_output;
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::finish_before_reading;
 
 /// Measure the poses of a run against a known complex.
 ///
@@ -62,7 +62,7 @@ impl Evaluate {
         };
         let run_path = table_path.with_file_name("run.json");
         if let Some(directory) = run_path.parent() {
-            finish_interrupted(directory)?;
+            finish_before_reading(directory, console)?;
         }
         let mut table = PoseTable::read(&table_path)?;
         let (receptor, ligand, native) = self.inputs(&run_path)?;

@@ -7,7 +7,6 @@ use clap::Args;
 use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
-use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
@@ -19,6 +18,7 @@ use crate::cli::arguments::ranks::Ranks;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::finish_before_reading;
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
@@ -47,7 +47,7 @@ impl Export {
 
     /// Writes them on the threads of the caller.
     fn export(self, console: Console) -> Result<(), Failure> {
-        finish_interrupted(&self.run)?;
+        finish_before_reading(&self.run, console)?;
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         let table_path = self.run.join("poses.csv");

@@ -20,10 +20,10 @@ use serde_json::json;
 use crate::cli::arguments::machine::{machine, settled};
 use crate::cli::arguments::native::{NativeArguments, announce};
 use crate::cli::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
-use crate::cli::docking::warn_set_aside;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::warn_set_aside;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
 /// and with combinations.

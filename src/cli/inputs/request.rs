@@ -6,7 +6,6 @@ use knotdock::dock::pair::{PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::mesh::GivenLengths;
 use knotdock::options::{DockOptions, MachineOptions};
-use knotdock::output::files::staging::finish_interrupted;
 use knotdock::output::records::manifest::Inputs;
 use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::records::recorded_run::RecordedRun;
@@ -17,6 +16,7 @@ use crate::cli::arguments::options::GivenOptions;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::finish_before_reading;
 
 /// A requested run, by options or by a run.json.
 pub struct Request {
@@ -58,7 +58,7 @@ impl Request {
         console: Console,
     ) -> Result<Self, Failure> {
         if let Some(directory) = path.parent() {
-            finish_interrupted(directory)?;
+            finish_before_reading(directory, console)?;
         }
         let mut run = RecordedRun::read(path)?;
         run.options.machine = machine;

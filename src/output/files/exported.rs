@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
+
 use super::checksum::sha256_of_file;
 use super::commit::NEW;
 use super::disk;
@@ -150,7 +152,7 @@ impl ExportFolder {
     /// recorded and not there does no harm.
     fn record(&self, exported: BTreeMap<String, String>) -> Result<(), FileError> {
         let path = self.folder.join(EXPORTED);
-        let earlier = std::fs::read(&path).unwrap_or_default();
+        let earlier = read_bounded_file(&path, MAX_RECORD).unwrap_or_default();
         let earlier: Value = serde_json::from_slice(&earlier).unwrap_or_default();
         let mut files: BTreeMap<String, Value> = BTreeMap::new();
         for (name, checksum) in earlier["files"].as_object().into_iter().flatten() {

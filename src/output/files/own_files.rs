@@ -16,6 +16,7 @@ use crate::bounded_read::MAX_RECORD;
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::product::{EXPORTED, Product};
+use super::whole_file::is_blank;
 
 /// What a directory holds of a product.
 #[derive(Debug)]
@@ -214,11 +215,6 @@ fn is_alike(start: &[u8], beginning: &str) -> bool {
     is_blank(start)
         || (!beginning.is_empty() && start.starts_with(beginning.as_bytes()))
         || names_us(start)
-}
-
-/// Whether bytes are none, or zeros as a power cut leaves them.
-fn is_blank(bytes: &[u8]) -> bool {
-    bytes.iter().all(|&byte| byte == 0)
 }
 
 /// Whether a file is without content to its end.

@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::commit;
+use super::commit::{self, SetAside};
 use super::own_files::{Found, OwnFiles, survey};
 use super::product::Product;
 use super::staging_error::StagingError;
@@ -55,14 +55,15 @@ impl Places<'_> {
         Ok(others)
     }
 
-    /// Finishes or removes what killed runs left.
-    pub fn clear(&self, product: &Product) -> Result<(), StagingError> {
+    /// Finishes or removes what killed runs left; the files of the user's that were in the way.
+    pub fn clear(&self, product: &Product) -> Result<Vec<SetAside>, StagingError> {
         let others = self.others(None)?;
+        let mut set_aside = Vec::new();
         for staging in others.left {
-            self.finish(product, staging)?;
+            set_aside.extend(self.finish(product, staging)?);
         }
         match others.in_use {
-            None => Ok(()),
+            None => Ok(set_aside),
             Some(folder) => Err(StagingError::Busy {
                 directory: self.directory.to_owned(),
                 folder,
@@ -70,15 +71,20 @@ impl Places<'_> {
         }
     }
 
-    pub fn finish(&self, product: &Product, staging: StagingFolder) -> Result<(), StagingError> {
+    /// Finishes or undoes what a killed run left in a staging folder.
+    pub fn finish(
+        &self,
+        product: &Product,
+        staging: StagingFolder,
+    ) -> Result<Vec<SetAside>, StagingError> {
         let folder = staging.path().to_owned();
-        commit::finish(product, staging, self.resolved)
-            .map(drop)
-            .map_err(|source| StagingError::Interrupted {
+        commit::finish(product, staging, self.resolved).map_err(|source| {
+            StagingError::Interrupted {
                 directory: self.directory.to_owned(),
                 folder,
                 source,
-            })
+            }
+        })
     }
 
     /// Refuses a directory that holds a run, unless `force` is true, or what only looks like one.

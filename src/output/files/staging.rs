@@ -38,6 +38,8 @@ pub struct Staging {
     beside: bool,
     /// Folders above the directory that were made for it.
     made: Vec<PathBuf>,
+    /// Files of the user's that a commit which was cut and finished at the start found in its way.
+    set_aside: Vec<SetAside>,
 }
 
 impl Staging {
@@ -66,7 +68,7 @@ impl Staging {
             directory,
             resolved: &resolved,
         };
-        places.clear(product)?;
+        let set_aside = places.clear(product)?;
         places.refuse_existing(product, force)?;
         let above = parent(&resolved);
         let mut staging = Self {
@@ -76,6 +78,7 @@ impl Staging {
             beside: places.may_be_beside(),
             made: disk::create_dir_all(above).map_err(unwritable)?,
             staging: None,
+            set_aside,
             resolved: resolved.clone(),
         };
         let name = resolved.file_name().unwrap_or_default();
@@ -165,7 +168,9 @@ impl Staging {
                 if !done.is_left {
                     let _ = staging.remove();
                 }
-                Ok(done.set_aside)
+                let mut set_aside = std::mem::take(&mut self.set_aside);
+                set_aside.extend(done.set_aside);
+                Ok(set_aside)
             }
             Err(error) if error.undone => {
                 self.staging = Some(staging);
@@ -196,17 +201,17 @@ impl Drop for Staging {
 }
 
 /// Finishes a commit that an interrupted run left in a directory, so that the directory can be read, and clears what
-/// else such runs left.
+/// else such runs left. Returns the files of the user's that were in the way.
 ///
 /// # Errors
 /// [`StagingError::Interrupted`] when it cannot be finished.
-pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
+pub fn finish_interrupted(directory: &Path) -> Result<Vec<SetAside>, StagingError> {
     let directory = match directory.as_os_str().is_empty() {
         true => Path::new("."),
         false => directory,
     };
     let Ok(resolved) = directory.canonicalize() else {
-        return Ok(());
+        return Ok(Vec::new());
     };
     let places = Places {
         directory,
@@ -214,17 +219,18 @@ pub fn finish_interrupted(directory: &Path) -> Result<(), StagingError> {
     };
     // Where the folder above may not be read, no run has been staged.
     let Ok(others) = places.others(None) else {
-        return Ok(());
+        return Ok(Vec::new());
     };
+    let mut set_aside = Vec::new();
     for staging in others.left {
         if commit::is_committing(&staging) {
-            places.finish(&RUN, staging)?;
+            set_aside.extend(places.finish(&RUN, staging)?);
         } else {
             // In a place that may not be written to it is in nobody's way.
             let _ = staging.remove();
         }
     }
-    Ok(())
+    Ok(set_aside)
 }
 
 #[cfg(test)]

@@ -80,6 +80,11 @@ pub fn is_stream(path: &Path) -> bool {
     is_own || fs::metadata(path).is_ok_and(|found| !found.is_file())
 }
 
+/// Whether a file's bytes are none, or zeros as a power cut leaves them.
+pub fn is_blank(bytes: &[u8]) -> bool {
+    bytes.iter().all(|&byte| byte == 0)
+}
+
 /// A file that is written and not yet in its place. Dropped, it goes, and what is in its place stays.
 #[derive(Debug)]
 pub struct StagedFile {

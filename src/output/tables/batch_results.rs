@@ -10,7 +10,7 @@ use crate::bounded_read::{MAX_RECORD, MAX_TABLE, read_bounded_file};
 use crate::output::tables::cells::{TableWriter, unquoted_row};
 use crate::output::tables::fields::number;
 
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::{FileError, is_blank, write_whole};
 use crate::output::tables::poses::PoseTable;
 use crate::output::tables::poses_reader::PoseTableError;
 
@@ -109,11 +109,6 @@ pub fn is_ours(path: &Path) -> bool {
     let line = bytes.split(|&byte| byte == b'\n').next();
     let line = line.unwrap_or_default().trim_ascii_end();
     is_blank(&bytes) || line == header().join(",").as_bytes()
-}
-
-/// Whether bytes are none, or zeros as a power cut leaves them.
-fn is_blank(bytes: &[u8]) -> bool {
-    bytes.iter().all(|&byte| byte == 0)
 }
 
 /// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they
