@@ -103,24 +103,21 @@ fn what_is_read_whole_is_read_within_bounds() {
         "export large --rank 1 --json",
         "dock --rerun large/run.json --json",
     ] {
-        let refused = error(&place.call(call), 2);
-        let message = refused["message"].as_str().unwrap();
-        assert!(
-            message.contains("the most that are read"),
-            "{call}: {message}"
-        );
+        is_refused(&place, call, "the most that are read");
     }
     for call in [
         "export endless --rank 1 --json",
         "dock --rerun endless/run.json --json",
     ] {
-        let refused = error(&place.call(call), 2);
-        let message = refused["message"].as_str().unwrap();
-        assert!(
-            message.contains("where a file is needed"),
-            "{call}: {message}"
-        );
+        is_refused(&place, call, "where a file is needed");
     }
+}
+
+/// Calls the program, which refuses for a reason.
+fn is_refused(place: &Place, call: &str, reason: &str) {
+    let refused = error(&place.call(call), 2);
+    let message = refused["message"].as_str().unwrap();
+    assert!(message.contains(reason), "{call}: {message}");
 }
 
 /// A record is looked for in the folder of a run: a pipe there must not be waited for.
@@ -135,12 +132,7 @@ fn a_pipe_in_the_place_of_a_record_is_not_opened() {
         "evaluate piped --json",
         "dock --rerun piped/run.json --json",
     ] {
-        let refused = error(&place.call(call), 2);
-        let message = refused["message"].as_str().unwrap();
-        assert!(
-            message.contains("where a file is needed"),
-            "{call}: {message}"
-        );
+        is_refused(&place, call, "where a file is needed");
     }
 }
 
