@@ -140,7 +140,7 @@ fn a_sweep_of_settings() {
         let record = r#"{"program": "knotdock", "files": {}}"#;
         fs::write(folder.join("sweep/tradeoff.json"), record).unwrap();
     };
-    let options = "--rotations 4 --poses 6 --resolution 8 --effects shape --parameters tolerance";
+    let options = "--rotations 4 --poses 6 --resolution 8 --effects shape --parameters refine";
     let tradeoff = format!("tradeoff receptor.pdb ligand.pdb -o sweep --force --quiet {options}");
     Scenario::new(sweep, &tradeoff).measured().check();
 }
