@@ -6,6 +6,7 @@
 //! its faces lies along the grid.
 
 use crate::docking_parts::peg_and_hole;
+use crate::minkowski::Node;
 use crate::spectrum::Body;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
@@ -25,8 +26,8 @@ pub struct Scene {
     pub bunny: Body,
     /// The peg's, turned.
     pub peg: Body,
-    /// Nodes of the sampling grids inside the solids: the balls that uniform sampling would need.
-    pub inside: [usize; 2],
+    /// Nodes of the sampling grids inside bunny and peg, where the balls are: what uniform sampling takes.
+    pub nodes: [Vec<Node>; 2],
     /// Edge of the periodic cube in which the two are correlated: their extents together, so that nothing wraps around.
     pub edge: f64,
 }
@@ -39,24 +40,33 @@ impl Scene {
         let part = peg_and_hole(0.05).ligand;
         let (peg, _) = from_triangles(&part.positions, &part.triangles)?;
         let along_peg = 1 + (PEG * (per_axis - 1) as f64).round() as usize;
-        let (mut peg, peg_nodes) = sampled(&peg, PEG, along_peg)?;
+        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, along_peg)?;
         let turn = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
-        for center in &mut peg.centers {
-            *center = (turn * Vector3::from(*center)).into();
+        for place in peg.centers.iter_mut().chain(&mut peg_nodes) {
+            *place = (turn * Vector3::from(*place)).into();
         }
         let edge = edge(&bunny, &peg);
         Ok(Self {
             per_axis,
             bunny,
             peg,
-            inside: [nodes, peg_nodes],
+            nodes: [nodes, peg_nodes],
             edge,
         })
     }
+
+    /// The bound eps of the bunny's sampling; the peg's is this but for what rounding its nodes to whole ones changes.
+    pub fn epsilon(&self) -> f64 {
+        0.5 * 3f64.sqrt() / (self.per_axis - 1) as f64
+    }
 }
 
-/// The set A3 of a mesh scaled to a longest edge, with the number of nodes inside.
-fn sampled(mesh: &Mesh, edge: f64, per_axis: usize) -> Result<(Body, usize), Box<dyn Error>> {
+/// The set A3 of a mesh scaled to a longest edge, and the nodes inside.
+pub fn sampled(
+    mesh: &Mesh,
+    edge: f64,
+    per_axis: usize,
+) -> Result<(Body, Vec<Node>), Box<dyn Error>> {
     let solid = Solid::new(mesh)?;
     let method = Method::BehandishIlies(DecompositionOptions::default());
     let sampling = sample(&solid, per_axis, method)?;
@@ -69,11 +79,14 @@ fn sampled(mesh: &Mesh, edge: f64, per_axis: usize) -> Result<(Body, usize), Box
         .centers
         .iter()
         .map(|center| [0, 1, 2].map(|axis| scale * (center[axis] - frame.origin[axis])));
+    let field = &sampling.field;
+    let inside = field.inside().into_iter();
+    let nodes = inside.map(|node| field.grid.node(node).map(|x| scale * frame.unit * x));
     let body = Body {
         centers: centers.collect(),
         radii: knots.radii.iter().map(|radius| scale * radius).collect(),
     };
-    Ok((body, sampling.inside_nodes))
+    Ok((body, nodes.collect()))
 }
 
 /// Edge of the smallest cube in which the correlation of two bodies does not wrap around.
