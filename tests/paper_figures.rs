@@ -381,7 +381,7 @@ fn cuboid(half: [f64; 3]) -> Mesh {
 fn sums_of_balls_cover_those_of_nodes() {
     let scene = Scene::new(16).unwrap();
     let [bunny, peg] = [&scene.bunny, &scene.peg].map(|body| body.knots());
-    let [bunny_nodes, peg_nodes] = &scene.nodes;
+    let [bunny_nodes, peg_nodes, _] = &scene.nodes;
     let nodes = sum(bunny_nodes, peg_nodes);
     assert_eq!(nodes.len(), bunny_nodes.len() * peg_nodes.len());
     let ratio = nodes.len() as f64 / (bunny.len() * peg.len()) as f64;

@@ -18,6 +18,13 @@ const PAPER_RATIOS: [(u32, f64); 4] = [(12, 23.0), (15, 309.1), (18, 555.1), (21
 /// The paper's times at 2^18, in milliseconds: 28 and 48 s of nodes, 104 and 47 ms of balls.
 const PAPER_TIMES: [[f64; 2]; 4] = [[18.0, 28e3], [18.0, 48e3], [18.0, 104.0], [18.0, 47.0]];
 
+/// The pairs, each with its colour.
+const PAIRS: [(&str, Colour); 3] = [
+    ("bunny and peg", [0x00, 0x72, 0xb2]),
+    ("bunny and small bunny", [0x00, 0x9e, 0x73]),
+    ("bunny and bunny", [0xe6, 0x9f, 0x00]),
+];
+
 /// One way's time.
 #[derive(Clone, Copy)]
 struct Measured {
@@ -92,17 +99,11 @@ fn share<const N: usize>(
 }
 
 impl Row {
-    fn new(
-        pair: &'static str,
-        scene: &Scene,
-        balls: [&[Knot]; 2],
-        nodes: [&[Node]; 2],
-        epsilon: f64,
-    ) -> Self {
+    fn new(pair: &'static str, scene: &Scene, balls: [&[Knot]; 2], nodes: [&[Node]; 2]) -> Self {
         Self {
             pair,
             per_axis: scene.per_axis,
-            epsilon,
+            epsilon: scene.epsilon(),
             nodes: Sums::of(nodes[0], nodes[1], gap_of_nodes),
             balls: Sums::of(balls[0], balls[1], gap_of_balls),
         }
@@ -120,26 +121,20 @@ impl Row {
 /// The tables and the picture.
 pub fn figure(scenes: &[Scene]) -> Figure {
     let mut rows = Vec::new();
-    for scene in scenes {
-        let [bunny, peg] = [&scene.bunny, &scene.peg].map(|body| body.knots());
-        let [bunny_nodes, peg_nodes] = [0, 1].map(|solid| &scene.nodes[solid][..]);
-        let epsilon = scene.epsilon();
-        rows.push(Row::new(
-            "bunny and peg",
-            scene,
-            [&bunny, &peg],
-            [bunny_nodes, peg_nodes],
-            epsilon,
-        ));
-        rows.push(Row::new(
-            "bunny and bunny",
-            scene,
-            [&bunny, &bunny],
-            [bunny_nodes, bunny_nodes],
-            epsilon,
-        ));
+    // By pair, then by grid.
+    for (pair, name) in PAIRS.map(|(name, _)| name).into_iter().enumerate() {
+        for scene in scenes {
+            let [bunny, peg, small] =
+                [&scene.bunny, &scene.peg, &scene.small].map(|body| body.knots());
+            let (second, nodes) = match pair {
+                0 => (&peg, 1),
+                1 => (&small, 2),
+                _ => (&bunny, 0),
+            };
+            let nodes = [&scene.nodes[0][..], &scene.nodes[nodes]];
+            rows.push(Row::new(name, scene, [&bunny, second], nodes));
+        }
     }
-    rows.sort_by_key(|row| row.pair == "bunny and bunny");
     Figure {
         name: "fig6",
         tables: vec![("counts", counts(&rows)), ("costs", costs(&rows))],
@@ -226,10 +221,6 @@ fn costs(rows: &[Row]) -> Table {
 }
 
 fn panels(rows: &[Row]) -> Vec<Panel> {
-    const PAIRS: [(&str, Colour); 2] = [
-        ("bunny and peg", [0x00, 0x72, 0xb2]),
-        ("bunny and bunny", [0xe6, 0x9f, 0x00]),
-    ];
     let curve = |(pair, colour): (&str, Colour), kind: &str, style, value: &dyn Fn(&Row) -> f64| {
         let rows = rows.iter().filter(|row| row.pair == pair);
         Series {

@@ -17,6 +17,8 @@ use std::path::Path;
 
 /// Longest edge of the peg.
 const PEG: f64 = 0.42;
+/// Longest edge of a small bunny, which has the paper's share of the bunny's nodes without flat faces.
+const SMALL: f64 = 0.45;
 
 /// Both solids at one grid size.
 pub struct Scene {
@@ -26,8 +28,10 @@ pub struct Scene {
     pub bunny: Body,
     /// The peg's, turned.
     pub peg: Body,
-    /// Nodes of the sampling grids inside bunny and peg, where the balls are: what uniform sampling takes.
-    pub nodes: [Vec<Node>; 2],
+    /// The small bunny's, as it stands.
+    pub small: Body,
+    /// Nodes of the sampling grids inside bunny, peg and small bunny, where the balls are: what uniform sampling takes.
+    pub nodes: [Vec<Node>; 3],
     /// Edge of the periodic cube in which the two are correlated: their extents together, so that nothing wraps around.
     pub edge: f64,
 }
@@ -36,11 +40,13 @@ impl Scene {
     /// Samples both with the spacing of `per_axis` nodes along the bunny's longest edge.
     pub fn new(per_axis: usize) -> Result<Self, Box<dyn Error>> {
         let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
-        let (bunny, nodes) = sampled(&read(&bunny)?.0, 1.0, per_axis)?;
+        let (mesh, _) = read(&bunny)?;
+        let (bunny, nodes) = sampled(&mesh, 1.0, per_axis)?;
+        let nodes_along = |edge: f64| 1 + (edge * (per_axis - 1) as f64).round() as usize;
+        let (small, small_nodes) = sampled(&mesh, SMALL, nodes_along(SMALL))?;
         let part = peg_and_hole(0.05).ligand;
         let (peg, _) = from_triangles(&part.positions, &part.triangles)?;
-        let along_peg = 1 + (PEG * (per_axis - 1) as f64).round() as usize;
-        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, along_peg)?;
+        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, nodes_along(PEG))?;
         let turn = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
         for place in peg.centers.iter_mut().chain(&mut peg_nodes) {
             *place = (turn * Vector3::from(*place)).into();
@@ -50,12 +56,13 @@ impl Scene {
             per_axis,
             bunny,
             peg,
-            nodes: [nodes, peg_nodes],
+            small,
+            nodes: [nodes, peg_nodes, small_nodes],
             edge,
         })
     }
 
-    /// The bound eps of the bunny's sampling; the peg's is this but for what rounding its nodes to whole ones changes.
+    /// The bound eps of the bunny's sampling; the others' are this but for what rounding their nodes to whole ones changes.
     pub fn epsilon(&self) -> f64 {
         0.5 * 3f64.sqrt() / (self.per_axis - 1) as f64
     }
