@@ -7,6 +7,7 @@ pub(super) mod csv_lines;
 pub mod fields;
 pub mod pair_table;
 pub(super) mod pose_columns;
+pub mod pose_list;
 pub mod poses;
 pub mod poses_reader;
 pub mod quality;

@@ -1,0 +1,170 @@
+//! Energy, force and torque summed pair by pair.
+
+use super::pair::{PairOverlap, meet};
+use super::pair_table::Place;
+use crate::vectorized::vectorized;
+use nalgebra::Vector3;
+use std::ops::AddAssign;
+
+/// Balls of a leaf that are handled together.
+const LANES: usize = 8;
+
+/// A ball with the weight of its bump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeightedBall {
+    /// Its centre.
+    pub center: [f64; 3],
+    /// Its radius, above zero, in the unit of `center`.
+    pub radius: f64,
+    /// The factor of its bump.
+    pub weight: f64,
+}
+
+/// Overlap energy of two bodies with its force and torque. Sums add.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Overlap {
+    /// E = sum over pairs of w_i v_j <psi_ri, psi_sj>, a volume.
+    pub energy: f64,
+    /// -dE/dt: the force on body B. That on A is its negative.
+    pub force: Vector3<f64>,
+    /// Minus the slope of E by a turn of B about the chosen point, in the receptor's frame.
+    pub torque: Vector3<f64>,
+    /// Pairs of balls that meet, d < r + s. Above 0 the balls meet, whatever the energy.
+    pub pairs: u64,
+}
+
+impl AddAssign for Overlap {
+    fn add_assign(&mut self, other: Self) {
+        self.energy += other.energy;
+        self.force += other.force;
+        self.torque += other.torque;
+        self.pairs += other.pairs;
+    }
+}
+
+/// A running sum over pairs of balls, all in the receptor's frame. It allocates nothing.
+///
+/// The same pairs in the same order give the same bits, one by one or by leaves of the same size.
+#[derive(Clone, Debug)]
+pub struct Accumulator<'a> {
+    kernel: &'a PairOverlap,
+    about: Vector3<f64>,
+    sum: Overlap,
+}
+
+impl<'a> Accumulator<'a> {
+    /// An empty sum, with the torque about a point.
+    pub fn new(kernel: &'a PairOverlap, about: [f64; 3]) -> Self {
+        Self {
+            kernel,
+            about: Vector3::from(about),
+            sum: Overlap::default(),
+        }
+    }
+
+    /// Adds ball `a` of body A and ball `b` of body B, moved to its pose; whether they meet.
+    #[inline]
+    pub fn add(&mut self, a: &WeightedBall, b: &WeightedBall) -> bool {
+        let arm = Vector3::from(b.center) - Vector3::from(a.center);
+        let square = arm.norm_squared();
+        if !meet(a.radius, b.radius, square) {
+            return false;
+        }
+        let kernel = self.kernel;
+        let [value, slope] = vectorized(
+            #[inline(always)]
+            || kernel.by_square(a.radius, b.radius, square),
+        );
+        let weight = a.weight * b.weight;
+        let force = arm * (-2.0 * weight * slope);
+        self.sum.energy += weight * value;
+        self.sum.force += force;
+        self.sum.torque += (Vector3::from(b.center) - self.about).cross(&force);
+        self.sum.pairs += 1;
+        true
+    }
+
+    /// Adds ball `a` of body A with every ball of a leaf of body B, moved to its pose; how many of them it meets.
+    pub fn add_leaf(&mut self, a: &WeightedBall, leaf: &[WeightedBall]) -> u64 {
+        let (kernel, about) = (self.kernel, self.about);
+        let sum = vectorized(
+            #[inline(always)]
+            || leaf_sum(kernel, a, leaf, &about),
+        );
+        self.sum += sum;
+        sum.pairs
+    }
+
+    /// Adds ball `b` of body B, moved to its pose, with every ball of a leaf of body A; how many of them it meets.
+    pub fn add_to_leaf(&mut self, leaf: &[WeightedBall], b: &WeightedBall) -> u64 {
+        let (kernel, about) = (self.kernel, self.about);
+        let sum = vectorized(
+            #[inline(always)]
+            || {
+                let mut sum = leaf_sum(kernel, b, leaf, &about);
+                // The roles are exchanged: the force on the other body, along the same line.
+                sum.force = -sum.force;
+                sum.torque = -sum.torque;
+                sum
+            },
+        );
+        self.sum += sum;
+        sum.pairs
+    }
+
+    /// The sum so far.
+    pub fn sum(&self) -> Overlap {
+        self.sum
+    }
+
+    /// Adds a sum made elsewhere about the same point.
+    pub fn merge(&mut self, other: Overlap) {
+        self.sum += other;
+    }
+}
+
+/// Overlap of one ball with those of a leaf: force on the leaf. Distances and places in the table come for all lanes at
+/// once, values for the balls that meet.
+#[inline(always)]
+fn leaf_sum(
+    kernel: &PairOverlap,
+    ball: &WeightedBall,
+    leaf: &[WeightedBall],
+    about: &Vector3<f64>,
+) -> Overlap {
+    let mut sum = Overlap::default();
+    for chunk in leaf.chunks(LANES) {
+        let mut arms = [[0.0; LANES]; 3];
+        let mut radii = [1.0; LANES];
+        for (lane, other) in chunk.iter().enumerate() {
+            for axis in 0..3 {
+                arms[axis][lane] = other.center[axis] - ball.center[axis];
+            }
+            radii[lane] = other.radius;
+        }
+        let mut squares = [0.0; LANES];
+        let mut places = [Place::default(); LANES];
+        for lane in 0..LANES {
+            let [x, y, z] = [arms[0][lane], arms[1][lane], arms[2][lane]];
+            squares[lane] = x * x + y * y + z * z;
+            let (small, large) = (radii[lane].min(ball.radius), radii[lane].max(ball.radius));
+            places[lane] = Place::new(small, large, squares[lane]);
+        }
+        for (lane, other) in chunk.iter().enumerate() {
+            let square = squares[lane];
+            if !meet(ball.radius, other.radius, square) {
+                continue;
+            }
+            let (small, large) = (other.radius.min(ball.radius), other.radius.max(ball.radius));
+            let [value, slope] = kernel.placed(small, large, square, &places[lane]);
+            let weight = ball.weight * other.weight;
+            let arm = Vector3::new(arms[0][lane], arms[1][lane], arms[2][lane]);
+            let force = arm * (-2.0 * weight * slope);
+            sum.energy += weight * value;
+            sum.force += force;
+            sum.torque += (Vector3::from(other.center) - about).cross(&force);
+            sum.pairs += 1;
+        }
+    }
+    sum
+}
