@@ -128,63 +128,93 @@ struct Leaf<'a> {
 impl WithSimd for Leaf<'_> {
     type Output = Overlap;
 
-    /// Overlap of the ball with those of the leaf: force on the leaf. Distances and places in the table come for all
-    /// lanes at once, values for the balls that meet.
+    /// Overlap of the ball with those of the leaf: force on the leaf. Those that meet it are collected, without a
+    /// branch that would be a coin toss, and handled by eights.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Overlap {
-        let Self {
-            kernel,
-            about,
-            ball,
-            leaf,
-        } = self;
         let mut sum = Overlap::default();
-        for chunk in leaf.chunks(LANES) {
-            let mut arms = [[0.0; LANES]; 3];
-            let mut radii = [1.0; LANES];
-            for (lane, other) in chunk.iter().enumerate() {
-                for axis in 0..3 {
-                    arms[axis][lane] = other.center[axis] - ball.center[axis];
-                }
-                radii[lane] = other.radius;
-            }
-            let mut squares = [0.0; LANES];
-            let mut ratios = [0.0; LANES];
-            let mut scaled = [0.0; LANES];
-            let mut roots = [0.0; LANES];
-            let mut rests = [0.0; LANES];
-            for lane in 0..LANES {
-                let [x, y, z] = [arms[0][lane], arms[1][lane], arms[2][lane]];
-                squares[lane] = x * x + y * y + z * z;
-                let (small, large) = (radii[lane].min(ball.radius), radii[lane].max(ball.radius));
-                let place = Place::new(small, large, squares[lane]);
-                ratios[lane] = place.ratio;
-                scaled[lane] = place.square;
-                roots[lane] = place.root;
-                rests[lane] = place.rest;
-            }
-            for (lane, other) in chunk.iter().enumerate() {
-                let square = squares[lane];
-                if !meet(ball.radius, other.radius, square) {
-                    continue;
-                }
-                let place = Place {
-                    ratio: ratios[lane],
-                    square: scaled[lane],
-                    root: roots[lane],
-                    rest: rests[lane],
-                };
-                let (small, large) = (other.radius.min(ball.radius), other.radius.max(ball.radius));
-                let [value, slope] = kernel.placed(simd, [small, large], square, &place);
-                let weight = ball.weight * other.weight;
-                let arm = Vector3::new(arms[0][lane], arms[1][lane], arms[2][lane]);
-                let force = arm * (-2.0 * weight * slope);
-                sum.energy += weight * value;
-                sum.force += force;
-                sum.torque += (Vector3::from(other.center) - about).cross(&force);
-                sum.pairs += 1;
+        let mut met = Met::new();
+        for (index, other) in self.leaf.iter().enumerate() {
+            met.push(self.ball, other, index);
+            if met.count == LANES {
+                self.flush(simd, &mut met, &mut sum);
             }
         }
+        self.flush(simd, &mut met, &mut sum);
         sum
+    }
+}
+
+impl Leaf<'_> {
+    /// Adds the pairs collected and forgets them.
+    #[inline(always)]
+    fn flush<S: Simd>(&self, simd: S, met: &mut Met, sum: &mut Overlap) {
+        let mut ratios = [0.0; LANES];
+        let mut scaled = [0.0; LANES];
+        let mut roots = [0.0; LANES];
+        let mut rests = [0.0; LANES];
+        for lane in 0..LANES {
+            let radius = met.radii[lane];
+            let (small, large) = (radius.min(self.ball.radius), radius.max(self.ball.radius));
+            let place = Place::new(small, large, met.squares[lane]);
+            ratios[lane] = place.ratio;
+            scaled[lane] = place.square;
+            roots[lane] = place.root;
+            rests[lane] = place.rest;
+        }
+        for lane in 0..met.count.min(LANES) {
+            let Some(other) = self.leaf.get(met.indices[lane]) else {
+                continue;
+            };
+            let place = Place {
+                ratio: ratios[lane],
+                square: scaled[lane],
+                root: roots[lane],
+                rest: rests[lane],
+            };
+            let radii = [
+                other.radius.min(self.ball.radius),
+                other.radius.max(self.ball.radius),
+            ];
+            let [value, slope] = self.kernel.placed(simd, radii, met.squares[lane], &place);
+            let weight = self.ball.weight * other.weight;
+            let arm = Vector3::from(other.center) - Vector3::from(self.ball.center);
+            let force = arm * (-2.0 * weight * slope);
+            sum.energy += weight * value;
+            sum.force += force;
+            sum.torque += (Vector3::from(other.center) - self.about).cross(&force);
+        }
+        sum.pairs += met.count as u64;
+        met.count = 0;
+    }
+}
+
+/// Balls of a leaf that meet the one.
+struct Met {
+    squares: [f64; LANES],
+    radii: [f64; LANES],
+    indices: [usize; LANES],
+    count: usize,
+}
+
+impl Met {
+    fn new() -> Self {
+        Self {
+            squares: [0.0; LANES],
+            radii: [1.0; LANES],
+            indices: [0; LANES],
+            count: 0,
+        }
+    }
+
+    /// Writes a ball to the next place, which counts only if it meets the one. There must be room.
+    #[inline(always)]
+    fn push(&mut self, ball: &WeightedBall, other: &WeightedBall, index: usize) {
+        let square = (Vector3::from(other.center) - Vector3::from(ball.center)).norm_squared();
+        let next = self.count % LANES;
+        self.squares[next] = square;
+        self.radii[next] = other.radius;
+        self.indices[next] = index;
+        self.count += usize::from(meet(ball.radius, other.radius, square));
     }
 }

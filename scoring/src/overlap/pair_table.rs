@@ -133,7 +133,7 @@ impl PairTable {
     /// K falls along z: noise of the polynomials near the end makes neither a negative energy nor a pull.
     #[inline(always)]
     pub fn value<S: Simd>(&self, simd: S, place: &Place) -> [f64; 2] {
-        if !(place.rest > self.end) {
+        if place.rest <= self.end {
             return [0.0; 2];
         }
         let a = (place.root * ALONG_DISTANCE as f64) as usize;
