@@ -2,8 +2,8 @@
 
 use super::pair::{PairOverlap, meet};
 use super::pair_table::Place;
-use crate::vectorized::vectorized;
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::AddAssign;
 
 /// Balls of a leaf that are handled together.
@@ -70,11 +70,7 @@ impl<'a> Accumulator<'a> {
         if !meet(a.radius, b.radius, square) {
             return false;
         }
-        let kernel = self.kernel;
-        let [value, slope] = vectorized(
-            #[inline(always)]
-            || kernel.by_square(a.radius, b.radius, square),
-        );
+        let [value, slope] = self.kernel.by_square(a.radius, b.radius, square);
         let weight = a.weight * b.weight;
         let force = arm * (-2.0 * weight * slope);
         self.sum.energy += weight * value;
@@ -86,30 +82,28 @@ impl<'a> Accumulator<'a> {
 
     /// Adds ball `a` of body A with every ball of a leaf of body B, moved to its pose; how many of them it meets.
     pub fn add_leaf(&mut self, a: &WeightedBall, leaf: &[WeightedBall]) -> u64 {
-        let (kernel, about) = (self.kernel, self.about);
-        let sum = vectorized(
-            #[inline(always)]
-            || leaf_sum(kernel, a, leaf, &about),
-        );
+        let sum = self.leaf(a, leaf);
         self.sum += sum;
         sum.pairs
     }
 
     /// Adds ball `b` of body B, moved to its pose, with every ball of a leaf of body A; how many of them it meets.
     pub fn add_to_leaf(&mut self, leaf: &[WeightedBall], b: &WeightedBall) -> u64 {
-        let (kernel, about) = (self.kernel, self.about);
-        let sum = vectorized(
-            #[inline(always)]
-            || {
-                let mut sum = leaf_sum(kernel, b, leaf, &about);
-                // The roles are exchanged: the force on the other body, along the same line.
-                sum.force = -sum.force;
-                sum.torque = -sum.torque;
-                sum
-            },
-        );
+        let mut sum = self.leaf(b, leaf);
+        // The roles are exchanged: the force on the other body, along the same line.
+        sum.force = -sum.force;
+        sum.torque = -sum.torque;
         self.sum += sum;
         sum.pairs
+    }
+
+    fn leaf(&self, ball: &WeightedBall, leaf: &[WeightedBall]) -> Overlap {
+        Arch::new().dispatch(Leaf {
+            kernel: self.kernel,
+            about: self.about,
+            ball,
+            leaf,
+        })
     }
 
     /// The sum so far.
@@ -123,48 +117,104 @@ impl<'a> Accumulator<'a> {
     }
 }
 
-/// Overlap of one ball with those of a leaf: force on the leaf. Distances and places in the table come for all lanes at
-/// once, values for the balls that meet.
-#[inline(always)]
-fn leaf_sum(
-    kernel: &PairOverlap,
-    ball: &WeightedBall,
-    leaf: &[WeightedBall],
-    about: &Vector3<f64>,
-) -> Overlap {
-    let mut sum = Overlap::default();
-    for chunk in leaf.chunks(LANES) {
-        let mut arms = [[0.0; LANES]; 3];
-        let mut radii = [1.0; LANES];
-        for (lane, other) in chunk.iter().enumerate() {
-            for axis in 0..3 {
-                arms[axis][lane] = other.center[axis] - ball.center[axis];
+/// One ball and those of a leaf.
+struct Leaf<'a> {
+    kernel: &'a PairOverlap,
+    about: Vector3<f64>,
+    ball: &'a WeightedBall,
+    leaf: &'a [WeightedBall],
+}
+
+impl WithSimd for Leaf<'_> {
+    type Output = Overlap;
+
+    /// Overlap of the ball with those of the leaf: force on the leaf. Those that meet it are collected, without a
+    /// branch that would be a coin toss, and handled by eights.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Overlap {
+        let mut sum = Overlap::default();
+        let mut met = Met::new();
+        for (index, other) in self.leaf.iter().enumerate() {
+            met.push(self.ball, other, index);
+            if met.count == LANES {
+                self.flush(simd, &mut met, &mut sum);
             }
-            radii[lane] = other.radius;
         }
-        let mut squares = [0.0; LANES];
-        let mut places = [Place::default(); LANES];
+        self.flush(simd, &mut met, &mut sum);
+        sum
+    }
+}
+
+impl Leaf<'_> {
+    /// Adds the pairs collected and forgets them.
+    #[inline(always)]
+    fn flush<S: Simd>(&self, simd: S, met: &mut Met, sum: &mut Overlap) {
+        let mut ratios = [0.0; LANES];
+        let mut scaled = [0.0; LANES];
+        let mut roots = [0.0; LANES];
+        let mut rests = [0.0; LANES];
         for lane in 0..LANES {
-            let [x, y, z] = [arms[0][lane], arms[1][lane], arms[2][lane]];
-            squares[lane] = x * x + y * y + z * z;
-            let (small, large) = (radii[lane].min(ball.radius), radii[lane].max(ball.radius));
-            places[lane] = Place::new(small, large, squares[lane]);
+            let radius = met.radii[lane];
+            let (small, large) = (radius.min(self.ball.radius), radius.max(self.ball.radius));
+            let place = Place::new(small, large, met.squares[lane]);
+            ratios[lane] = place.ratio;
+            scaled[lane] = place.square;
+            roots[lane] = place.root;
+            rests[lane] = place.rest;
         }
-        for (lane, other) in chunk.iter().enumerate() {
-            let square = squares[lane];
-            if !meet(ball.radius, other.radius, square) {
+        for lane in 0..met.count.min(LANES) {
+            let Some(other) = self.leaf.get(met.indices[lane]) else {
                 continue;
-            }
-            let (small, large) = (other.radius.min(ball.radius), other.radius.max(ball.radius));
-            let [value, slope] = kernel.placed(small, large, square, &places[lane]);
-            let weight = ball.weight * other.weight;
-            let arm = Vector3::new(arms[0][lane], arms[1][lane], arms[2][lane]);
+            };
+            let place = Place {
+                ratio: ratios[lane],
+                square: scaled[lane],
+                root: roots[lane],
+                rest: rests[lane],
+            };
+            let radii = [
+                other.radius.min(self.ball.radius),
+                other.radius.max(self.ball.radius),
+            ];
+            let [value, slope] = self.kernel.placed(simd, radii, met.squares[lane], &place);
+            let weight = self.ball.weight * other.weight;
+            let arm = Vector3::from(other.center) - Vector3::from(self.ball.center);
             let force = arm * (-2.0 * weight * slope);
             sum.energy += weight * value;
             sum.force += force;
-            sum.torque += (Vector3::from(other.center) - about).cross(&force);
-            sum.pairs += 1;
+            sum.torque += (Vector3::from(other.center) - self.about).cross(&force);
+        }
+        sum.pairs += met.count as u64;
+        met.count = 0;
+    }
+}
+
+/// Balls of a leaf that meet the one.
+struct Met {
+    squares: [f64; LANES],
+    radii: [f64; LANES],
+    indices: [usize; LANES],
+    count: usize,
+}
+
+impl Met {
+    fn new() -> Self {
+        Self {
+            squares: [0.0; LANES],
+            radii: [1.0; LANES],
+            indices: [0; LANES],
+            count: 0,
         }
     }
-    sum
+
+    /// Writes a ball to the next place, which counts only if it meets the one. There must be room.
+    #[inline(always)]
+    fn push(&mut self, ball: &WeightedBall, other: &WeightedBall, index: usize) {
+        let square = (Vector3::from(other.center) - Vector3::from(ball.center)).norm_squared();
+        let next = self.count % LANES;
+        self.squares[next] = square;
+        self.radii[next] = other.radius;
+        self.indices[next] = index;
+        self.count += usize::from(meet(ball.radius, other.radius, square));
+    }
 }

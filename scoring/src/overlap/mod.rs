@@ -6,6 +6,11 @@
 //!
 //! - Pairs: [`PairOverlap`] is the kernel, [`Accumulator`] the sum that a tree traversal feeds, [`overlap_of_pairs`] the
 //!   sum over a list.
+//! - Modes: [`OverlapModes`] sums the lowest Fourier modes of both bodies, with a bound on the rest that can certify a
+//!   hit; [`OverlapModes::start`] does so block by block, until a deadline or a certified hit.
+//!
+//! [`pairs_nanoseconds`] and [`OverlapModes::nanoseconds`] say which is expected to cost less. Pairs are exact and cost
+//! what meets; modes cost the same at every pose, and a hit of deep bodies shows after a hundred of them.
 //!
 //! # Conventions
 //!
@@ -19,6 +24,7 @@
 //! [`Overlap::pairs`]). An energy above its error shows a hit; an energy of 0 shows nothing.
 
 mod accumulator;
+mod modes;
 mod pair;
 mod pair_table;
 mod pairs;
@@ -28,5 +34,6 @@ mod sharp;
 mod tests;
 
 pub use accumulator::{Accumulator, Overlap, WeightedBall};
+pub use modes::{ModesOverlap, ModesSum, ModesWorkspace, OverlapModes, OverlapModesError};
 pub use pair::{PairOverlap, meet};
-pub use pairs::{overlap_of_all, overlap_of_pairs};
+pub use pairs::{overlap_of_all, overlap_of_pairs, pairs_nanoseconds};

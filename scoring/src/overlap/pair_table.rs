@@ -2,15 +2,17 @@
 
 use super::quadrature::Quadrature;
 use crate::kernel::table::{PanelFit, TERMS};
-use crate::vectorized::vectorized;
 use knotdock_structures::numeric::Bump;
+use pulp::{Scalar, Simd};
 
 /// Panels along the distance.
 const ALONG_DISTANCE: usize = 48;
 /// Panels along the ratio.
 const ALONG_RATIO: usize = 16;
 /// Largest error of a table that is used, as a share of the value at distance 0.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 5e-7;
+/// Exponents for which a table is tried: of those beyond none holds the tolerance.
+const EXPONENTS: std::ops::RangeInclusive<f64> = 2.0..=4.0;
 /// z at the largest distance of a pair that meets, that of equal balls.
 const LAST: f64 = 2.0;
 
@@ -68,6 +70,9 @@ impl Place {
 impl PairTable {
     /// The table of a bump; `None` where it would miss the tolerance.
     pub fn new(bump: Bump, quadrature: &Quadrature) -> Option<Self> {
+        if !EXPONENTS.contains(&bump.alpha()) {
+            return None;
+        }
         let table = Self::fit(bump, quadrature);
         (table.error <= TOLERANCE).then_some(table)
     }
@@ -80,15 +85,13 @@ impl PairTable {
             let (low, high) = (edge(a), edge(a + 1));
             for b in 0..ALONG_RATIO {
                 let ratio = half_ratio * (2 * b + 1) as f64;
-                cells.push(Cell(vectorized(
-                    #[inline(always)]
-                    || {
-                        fit.coefficients(0.5 * (low + high), 0.5 * (high - low), |z| {
-                            let along = fit.coefficients(ratio, half_ratio, |ratio| {
-                                [exact(quadrature, ratio, z)]
-                            });
-                            along.map(|[coefficient]| coefficient)
-                        })
+                cells.push(Cell(fit.coefficients(
+                    0.5 * (low + high),
+                    0.5 * (high - low),
+                    |z| {
+                        let along = fit
+                            .coefficients(ratio, half_ratio, |ratio| [exact(quadrature, ratio, z)]);
+                        along.map(|[coefficient]| coefficient)
                     },
                 )));
             }
@@ -113,10 +116,7 @@ impl PairTable {
                 let (low, high) = (edge(a / 2), edge(a / 2 + 1));
                 let z = low + 0.5 * (a % 2) as f64 * (high - low);
                 let place = Place::new(ratio, 1.0, z * (1.0 + ratio * ratio));
-                let ours = vectorized(
-                    #[inline(always)]
-                    || self.value(&place)[0],
-                );
+                let [ours, _] = self.value(Scalar::new(), &place);
                 worst = worst.max((ours - exact(quadrature, ratio, z)).abs() / scale);
             }
         }
@@ -132,8 +132,8 @@ impl PairTable {
     ///
     /// K falls along z: noise of the polynomials near the end makes neither a negative energy nor a pull.
     #[inline(always)]
-    pub fn value(&self, place: &Place) -> [f64; 2] {
-        if !(place.rest > self.end) {
+    pub fn value<S: Simd>(&self, simd: S, place: &Place) -> [f64; 2] {
+        if place.rest <= self.end {
             return [0.0; 2];
         }
         let a = (place.root * ALONG_DISTANCE as f64) as usize;
@@ -148,15 +148,9 @@ impl PairTable {
         let inverse_half = 2.0 / (2.0 * panel + 1.0);
         let u = (place.square * per_unit - panel * panel) * inverse_half - 1.0;
         let v = 2.0 * (scaled - b as f64) - 1.0;
-        let (mut sum, mut slope) = (cell[TERMS - 1], [0.0f64; TERMS]);
-        for power in (0..TERMS - 1).rev() {
-            for lane in 0..TERMS {
-                slope[lane] = slope[lane].mul_add(u, sum[lane]);
-                sum[lane] = sum[lane].mul_add(u, cell[power][lane]);
-            }
-        }
-        let value = along(&sum, v).max(0.0);
-        let slope = (per_unit * inverse_half * along(&slope, v)).min(0.0);
+        let [sum, slope] = cell_at(simd, cell, u, v);
+        let value = sum.max(0.0);
+        let slope = (per_unit * inverse_half * slope).min(0.0);
         // What is left of the noise where the kernel itself has underflowed ends without a step.
         let share = (0.25 / self.end * place.rest).min(1.0);
         let fade = if share < 1.0 { share * share } else { 1.0 };
@@ -164,14 +158,36 @@ impl PairTable {
     }
 }
 
-/// A polynomial of degree 7 by halves, so that few products wait for another.
+/// A cell's polynomial and its slope along the first variable: Horner's rule along it, all powers of the second side by
+/// side.
 #[inline(always)]
-fn along(c: &[f64; TERMS], v: f64) -> f64 {
+fn cell_at<S: Simd>(simd: S, cell: &[[f64; TERMS]; TERMS], u: f64, v: f64) -> [f64; 2] {
     let square = v * v;
-    let pair = |i: usize| c[i + 1].mul_add(v, c[i]);
-    let low = pair(2).mul_add(square, pair(0));
-    let high = pair(6).mul_add(square, pair(4));
-    high.mul_add(square * square, low)
+    let (third, fourth) = (square * v, square * square);
+    let powers = [
+        1.0,
+        v,
+        square,
+        third,
+        fourth,
+        fourth * v,
+        fourth * square,
+        fourth * third,
+    ];
+    let u = simd.splat_f64s(u);
+    let mut totals = [simd.splat_f64s(0.0); 2];
+    for (index, &power) in S::as_simd_f64s(&powers).0.iter().enumerate() {
+        let row = |power: usize| S::as_simd_f64s(&cell[power]).0[index];
+        let mut slope = row(TERMS - 1);
+        let mut sum = simd.mul_add_e_f64s(slope, u, row(TERMS - 2));
+        for power in (0..TERMS - 2).rev() {
+            slope = simd.mul_add_e_f64s(slope, u, sum);
+            sum = simd.mul_add_e_f64s(sum, u, row(power));
+        }
+        totals[0] = simd.mul_add_e_f64s(sum, power, totals[0]);
+        totals[1] = simd.mul_add_e_f64s(slope, power, totals[1]);
+    }
+    totals.map(|total| simd.reduce_sum_f64s(total))
 }
 
 /// z where a panel along the distance begins.

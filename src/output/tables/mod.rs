@@ -3,6 +3,7 @@
 pub mod atom_table;
 pub mod batch_results;
 pub mod cells;
+pub mod collisions;
 pub(super) mod csv_lines;
 pub mod fields;
 pub mod pair_table;
