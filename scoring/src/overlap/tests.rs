@@ -285,6 +285,9 @@ fn refuses_what_is_no_exponent() {
     }
 }
 
+/// A way to sum the pairs of two sets; a list of those that meet is given.
+type Way = fn(&mut Accumulator, &[WeightedBall], &[WeightedBall], &[(usize, usize)]);
+
 /// Nanoseconds a pair and the time to build the table: `cargo test -p knotdock-scoring --lib --release overlap_costs --
 /// --ignored --nocapture`.
 #[test]
@@ -308,8 +311,7 @@ fn overlap_costs_of_pairs() {
             }
         }
         for _ in 0..15 {
-            let sums: [fn(&mut Accumulator, &[WeightedBall], &[WeightedBall], &[(usize, usize)]);
-                3] = [
+            let sums: [Way; 3] = [
                 |sum, a, b, pairs| {
                     pairs.iter().for_each(|&(i, j)| {
                         sum.add(&a[i], &b[j]);
