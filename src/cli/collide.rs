@@ -142,10 +142,10 @@ impl Collide {
         if let Some(file) = &self.output {
             collisions::write(file, &poses, &answers)?.place()?;
         }
-        console.say(format!("\n{}", summary(&answers, &questions, seconds)));
-        if let [answer] = &answers[..] {
-            console.say(one_pose(answer));
-        }
+        console.say(match &answers[..] {
+            [answer] => format!("\n{}", one_pose(answer)),
+            answers => format!("\n{}", summary(answers, &questions, seconds)),
+        });
         if let Some(impact) = &impact {
             console.say(impact_text(impact));
         }
@@ -300,6 +300,12 @@ fn one_pose(answer: &Answer) -> String {
             point(contact.torque)
         ));
     }
+    lines.push(format!(
+        "Took {:.1} microseconds, {} pairs of balls and {} modes",
+        1e6 * answer.seconds,
+        answer.ball_pairs,
+        answer.modes
+    ));
     lines.join("\n")
 }
 

@@ -268,17 +268,14 @@ fn modes_agree_with_pairs_and_certify_hits_only() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 16);
     let other = solid(&[([0.7, 0.3, 0.9], false)], 16);
     let scene = CollisionScene::new([block, other], 0.0);
-    let by = |method| Densities::new(&scene, 2.0, method, 2000).unwrap();
+    let by = |method| Densities::new(&scene, 2.0, method, 6000).unwrap();
     let [pairs, modes] = [by(Method::Tree), by(Method::Modes)];
     let mut work = Workspace::new();
     let mut hits = 0;
-    for step in 0..200 {
+    for step in 0..100 {
         let part = |by: f64| 2.0 * (f64::from(step) * by).fract() - 1.0;
         let rotation = [part(0.8191), part(0.671), part(0.5497), part(0.4503)];
-        let pose = Pose::from_parts(
-            rotation,
-            [1.8 * part(0.31), 1.5 * part(0.77), 1.5 * part(0.19)],
-        );
+        let pose = Pose::from_parts(rotation, [part(0.31), 0.7 * part(0.77), 0.7 * part(0.19)]);
         let motion = scene.motion(&pose);
         let exact = pairs.contact(&scene, &motion, &mut work);
         let summed = modes.contact(&scene, &motion, &mut work);
