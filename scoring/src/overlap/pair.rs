@@ -66,6 +66,7 @@ impl PairOverlap {
         match &self.way {
             Way::Sharp => 1e-15,
             Way::Table(table) => table.error(),
+            Way::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
             Way::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
             Way::Quadrature(_) => 1e-9,
         }
