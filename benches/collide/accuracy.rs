@@ -1,13 +1,11 @@
 //! What accuracy costs: the path with bunnies of 2^9 to 2^21 nodes.
 
-use crate::Setting;
 use crate::measured::Times;
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use knotdock::geometry::collide::contact::Densities;
+use crate::{Setting, densities};
 use knotdock::geometry::collide::{Deadline, Verdict, Workspace};
 use knotdock::plot::chart::{Axis, Panel, Series, Style};
-use knotdock_structures::ball_solid::MeetingPairs;
 use std::error::Error;
 use std::time::Instant;
 
@@ -52,8 +50,8 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let questions = setting.questions(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
     let making = start.elapsed().as_secs_f64();
     let scene = questions.scene();
-    let densities = Densities::new(scene, 2.0)?;
-    let (mut work, mut pairs) = (Workspace::new(), MeetingPairs::default());
+    let densities = densities(scene)?;
+    let mut work = Workspace::new();
     let path = &setting.path;
     let motion = |pose: usize| scene.motion(&path[pose]);
     let asked = (0..path.len()).step_by(STRIDE);
@@ -80,7 +78,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
         scene.distance(&motion(pose), Deadline::NEVER, &mut work)
     });
     let force = Times::of(path.len(), STRIDE, RUNS, |pose| {
-        densities.contact(scene, &motion(pose), &mut pairs)
+        densities.contact(scene, &motion(pose), &mut work)
     });
     let spreads = [&verdict, &distance, &force].map(|times| times.spread(|_| true));
     let solid = &scene.solids()[0];

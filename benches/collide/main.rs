@@ -25,7 +25,8 @@ mod table;
 mod versus;
 
 use clap::Parser;
-use knotdock::geometry::collide::{CollisionScene, Quantities, Questions};
+use knotdock::geometry::collide::contact::{Densities, DensityError};
+use knotdock::geometry::collide::{CollisionScene, Quantities, Questions, Ways};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{Mesh, Solid, read};
@@ -99,8 +100,14 @@ impl Setting {
             volume: false,
             force: true,
         };
-        Ok(Questions::new(scene, quantities, None)?)
+        Ok(Questions::new(scene, quantities, Ways::default())?)
     }
+}
+
+/// The densities that the default ways take.
+fn densities(scene: &CollisionScene) -> Result<Densities, DensityError> {
+    let ways = Ways::default();
+    Densities::new(scene, 2.0, ways.method, ways.modes)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

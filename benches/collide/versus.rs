@@ -4,13 +4,11 @@ use crate::measured::{Spread, Times};
 use crate::peers::{CoalRow, Parry, coal, python};
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use crate::{Options, Setting, path};
-use knotdock::geometry::collide::contact::Densities;
+use crate::{Options, Setting, densities, path};
 use knotdock::geometry::collide::{
-    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Workspace,
+    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Ways, Workspace,
 };
 use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
-use knotdock_structures::ball_solid::MeetingPairs;
 use std::error::Error;
 use std::fs;
 use std::time::Instant;
@@ -71,8 +69,8 @@ fn answers(
     scene: &CollisionScene,
 ) -> Result<Answers, Box<dyn Error>> {
     let path = &setting.path;
-    let densities = Densities::new(scene, 2.0)?;
-    let (mut work, mut pairs) = (Workspace::new(), MeetingPairs::default());
+    let densities = densities(scene)?;
+    let mut work = Workspace::new();
     let verdict = |pose: usize, work: &mut Workspace| {
         scene.verdict(&scene.motion(&path[pose]), Deadline::NEVER, work)
     };
@@ -87,7 +85,7 @@ fn answers(
         Times::of(path.len(), 1, RUNS, |pose| verdict(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| distance(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| {
-            densities.contact(scene, &scene.motion(&path[pose]), &mut pairs)
+            densities.contact(scene, &scene.motion(&path[pose]), &mut work)
         }),
     ];
     let parry = Parry::new([&setting.mesh, &setting.mesh])?;
@@ -225,7 +223,7 @@ fn batch(
         volume: false,
         force: false,
     };
-    let verdicts = Questions::new(scene, quantities, None)?;
+    let verdicts = Questions::new(scene, quantities, Ways::default())?;
     let poses: Vec<_> = setting.path.iter().cycle().take(CHUNK).copied().collect();
     let mut rows = Vec::new();
     for (asked, questions) in [
