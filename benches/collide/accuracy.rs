@@ -9,7 +9,7 @@ use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;
 use std::time::Instant;
 
-/// Poses of the path to one that is asked about.
+/// Every how manieth pose of the path is taken.
 const STRIDE: usize = 5;
 /// Runs of each question; the fastest counts.
 const RUNS: usize = 3;
@@ -54,8 +54,8 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let mut work = Workspace::new();
     let path = &setting.path;
     let motion = |pose: usize| scene.motion(&path[pose]);
-    let asked = (0..path.len()).step_by(STRIDE);
-    let verdicts = asked.clone().map(|pose| {
+    let taken = (0..path.len()).step_by(STRIDE);
+    let verdicts = taken.clone().map(|pose| {
         scene
             .verdict(&motion(pose), Deadline::NEVER, &mut work)
             .verdict
@@ -63,7 +63,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let undecided = verdicts
         .filter(|verdict| *verdict == Verdict::Undecided)
         .count();
-    let mut bands: Vec<f64> = asked
+    let mut bands: Vec<f64> = taken
         .clone()
         .map(|pose| {
             let bounds = scene.distance(&motion(pose), Deadline::NEVER, &mut work);
@@ -87,7 +87,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
         epsilon: solid.epsilon() / setting.mesh.extent(),
         balls: solid.inner().len(),
         making,
-        undecided: undecided as f64 / asked.len() as f64,
+        undecided: undecided as f64 / taken.len() as f64,
         band: bands[bands.len() / 2] / setting.mesh.extent(),
         micros: spreads.map(|spread| spread.map_or(f64::NAN, |spread| spread.median)),
         most: spreads[0].map_or(f64::NAN, |spread| spread.most),

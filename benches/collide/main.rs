@@ -53,7 +53,7 @@ pub struct Options {
     /// Poses of the path.
     #[arg(long, default_value_t = path::POSES)]
     poses: usize,
-    /// Poses of the path to one that the other libraries are asked about.
+    /// Every how manieth pose the other libraries get.
     #[arg(long, default_value_t = 20)]
     stride: usize,
     /// Poses of the batch.
