@@ -33,4 +33,4 @@ done
 "$(python gemmi)" scripts/checks/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
 "$(python gemmi)" scripts/checks/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few
 # The 1,000 poses a pair that docs/collision.md reports go without --poses.
-"$(python solids)" scripts/checks/check_solids.py "$target/debug/knotdock" structures/examples/bunny.obj --poses 200
+"$(python solids)" scripts/checks/check_solids.py "$target/debug/knotdock" structures/examples/bunny.obj --poses 100

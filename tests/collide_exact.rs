@@ -50,8 +50,12 @@ fn poses(parry: &Parry, size: f64, count: usize) -> Vec<Pose> {
         }
         // Toward the other until the surfaces are close.
         let mut reach = 2.5 * size;
-        for _ in 0..50 {
-            reach -= parry.distance(&at(reach)).unwrap();
+        for _ in 0..12 {
+            let gap = parry.distance(&at(reach)).unwrap();
+            reach -= gap;
+            if gap < 0.01 * size {
+                break;
+            }
         }
         at(reach + 0.03 * size * number(index, 2))
     };
@@ -147,10 +151,10 @@ fn parts_that_fit() {
         let meshes = [mesh(&pair.receptor), mesh(&pair.ligand)];
         let meshes = meshes.each_ref();
         let parry = Parry::new(meshes).unwrap();
-        let poses = poses(&parry, meshes[0].extent(), 100);
+        let poses = poses(&parry, meshes[0].extent(), 24);
         let [meet, _, undecided] = compare(meshes, &poses, 24);
-        assert!((15..85).contains(&meet), "{}: {meet}", pair.name);
-        assert!(undecided < 60, "{}: {undecided}", pair.name);
+        assert!((3..22).contains(&meet), "{}: {meet}", pair.name);
+        assert!(undecided < 18, "{}: {undecided}", pair.name);
     }
 }
 
