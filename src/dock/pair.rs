@@ -11,6 +11,7 @@ use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
 use crate::error::SearchError;
+use crate::mesh::samplers::SamplerName;
 use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
 
@@ -122,12 +123,13 @@ pub struct Preparer<'a> {
 }
 
 /// What a sampling depends on, of one pair and one offset.
-type SamplingKey = (usize, SampleWeights);
+type SamplingKey = (usize, SampleWeights, SamplerName);
 
 fn key(options: &DockOptions) -> SamplingKey {
     (
         options.sampling.sample_grid.unwrap_or_default().per_axis,
         options.sampling.sample_weights.unwrap_or_default(),
+        options.sampling.sampler.unwrap_or_default(),
     )
 }
 
@@ -167,11 +169,12 @@ impl<'a> Preparer<'a> {
         if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
             return Ok(Arc::clone(known));
         }
-        let (per_axis, weights) = wanted;
+        let (per_axis, weights, sampler) = wanted;
         let sampling = Arc::new(Sampling::of(
             solids,
             &MeshOptions {
                 per_axis,
+                sampler,
                 offset: Some(options.kernel.offset),
                 weights,
                 alpha: options.kernel.alpha,

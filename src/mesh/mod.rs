@@ -6,25 +6,14 @@
 //! sqrt(3) h / 2 is the bound within which the sampler knows its surface ([`knotdock_structures::sampling::grid`]). A
 //! is the receptor, B the ligand.
 //!
-//! # Why balls of one radius
+//! # Two samplers
 //!
-//! A sum over pairs of balls counts pairs. Over balls of very different size that is no volume. A large ball that
-//! overlaps another by its whole volume counts as much as two tiny ones that touch. The many balls of an edge
-//! outweigh the one that fills the middle.
-//!
-//! So parts that dock are sampled by balls of one radius on a lattice ([`lattice()`]). Weights are fitted so that
-//! their bumps add up to one inside and zero outside. The sum over pairs is then an integral over both volumes,
-//! however the lattices lie. The kernel is that of molecules, B&I's cone, whose balls are all of about one size.
-//!
-//! For balls of mixed radii touching means too little at large radii. A skin of fixed width would fix that but not
-//! the counting. docs/mesh_docking.md has the figures.
-//!
-//! # Which lengths
-//!
-//! Two flat faces with a gap g between them score, per area, E(g) = pi times the integral from g on of K(d) d (d -
-//! g)^2. K is the ranking kernel. The radii are [`RADIUS`], the resolution is [`RESOLUTION`] (both in units of r0)
-//! and lambda is 9. Then E is greatest at g = r0, above half of that from 0.65 to 1.55 r0, and below zero under 0.3
-//! r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
+//! [`samplers`] has a file for each. `lattice` makes balls of one radius and correlates them by B&I's cone; `bi` makes
+//! those of Algorithm 1 and correlates them by the product kernel. Both score two flat faces most at a gap of one
+//! offset: **the offset r0 is the gap that is looked for**, of a peg in its hole the clearance. docs/mesh_docking.md
+//! compares them.
+
+pub mod samplers;
 
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
@@ -33,22 +22,15 @@ use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
-use knotdock_structures::sampling::hausdorff::HausdorffMeter;
-use knotdock_structures::sampling::lattice::lattice;
-use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{SampleError, knots};
 use serde::Serialize;
 
+use crate::mesh::samplers::{PartToSample, Sampler, SamplerName};
 use crate::options::{DockOptions, SampleWeights};
 
-/// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
-pub const RADIUS: f64 = 2.5 / 2.2;
-/// Default resolution in offsets: that of molecules.
-pub const RESOLUTION: f64 = 4.5 / 2.2;
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
-/// Widest cell of the lattice in offsets: half the default resolution.
-const CELL: f64 = 0.5 * RESOLUTION;
 /// Length that stands for one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Longest edges of a bounding box that single precision carries through the search.
@@ -59,6 +41,8 @@ const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 pub struct MeshOptions {
     /// Nodes along each edge of each part's grid, n = m^(1/3).
     pub per_axis: usize,
+    /// The sampler.
+    pub sampler: SamplerName,
     /// Skin offset r0, the gap looked for; `None`: [`default_offset`].
     pub offset: Option<f64>,
     /// Weights of the balls.
@@ -165,24 +149,28 @@ pub struct SampledPart {
     /// The balls.
     #[serde(skip)]
     pub knots: Knots,
+    /// The sampler.
+    pub sampler: SamplerName,
     /// Number of balls.
     pub balls: usize,
-    /// Their radius.
-    pub radius: f64,
+    /// Their smallest and largest radius.
+    pub radii: [f64; 2],
     /// Nodes along each edge of the grid.
     pub per_axis: usize,
     /// Spacing h of the grid.
     pub spacing: f64,
     /// eps = sqrt(3) h / 2.
     pub epsilon: f64,
-    /// Nodes along each edge of a cell of the lattice.
-    pub per_cell: usize,
+    /// Nodes along each edge of a cell of the lattice; `null` without a lattice.
+    pub per_cell: Option<usize>,
     /// Nodes strictly inside.
     pub inside_nodes: usize,
     /// Median local feature size, as a radius.
     pub feature_size: f64,
     /// How the weights were fitted; `null` where they are one.
     pub weights: Option<FittedWeights>,
+    /// How those of the grown balls were fitted; `null` where there are none.
+    pub skin_weights: Option<FittedWeights>,
 }
 
 /// Two parts that are to be docked.
@@ -192,6 +180,8 @@ pub struct MeshPair {
     pub parts: [SampledPart; 2],
     /// Skin offset r0 in use.
     pub offset: f64,
+    /// The sampler.
+    pub sampler: &'static Sampler,
 }
 
 /// The default offset: 2 (`eps_A` + `eps_B`), but no more than twice the smaller feature size.
@@ -257,52 +247,52 @@ pub fn sample_pair(
     }
     Ok(MeshPair {
         parts: [
-            sampled(solids[0], &fields[0], (features[0], offset), options)?,
-            sampled(solids[1], &fields[1], (features[1], offset), options)?,
+            sampled((0, solids[0]), &fields[0], (features[0], offset), options)?,
+            sampled((1, solids[1]), &fields[1], (features[1], offset), options)?,
         ],
         offset,
+        sampler: options.sampler.sampler(),
     })
 }
 
 /// Samples one solid for a gap of `offset`, in its frame's unit as `feature_size`.
 fn sampled(
-    solid: &Solid,
+    (index, solid): (usize, &Solid),
     field: &DepthField,
     (feature_size, offset): (f64, f64),
     options: &MeshOptions,
 ) -> Result<SampledPart, MeshSceneError> {
     let frame = solid.frame();
-    let spacing = field.grid.spacing() * frame.unit;
-    let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
-    let radius = RADIUS * offset;
-    let balls = lattice(field, per_cell, radius / frame.unit);
-    // Exact where the surface is closed; an open one has as much as its grid says.
-    let volume = || match solid.mesh().is_closed() {
-        true => solid.mesh().volume(),
-        false => HausdorffMeter::new(solid, field).volume(),
+    let bump = Bump::new(options.alpha)?;
+    let part = PartToSample {
+        solid,
+        field,
+        offset: offset / frame.unit,
+        fitted: (options.weights == SampleWeights::Fitted).then_some(bump),
     };
-    let fitted = (options.weights == SampleWeights::Fitted)
-        .then(|| Bump::new(options.alpha))
-        .transpose()?
-        .map(|bump| weights::fit(field, &balls, bump, volume()));
-    // A ball without weight would only cost time.
-    let (balls, weights): (Vec<_>, Vec<f64>) = balls
-        .into_iter()
-        .enumerate()
-        .map(|(place, ball)| (ball, fitted.as_ref().map_or(1.0, |fit| fit.weights[place])))
-        .filter(|(_, weight)| *weight > 0.0)
-        .unzip();
+    let found =
+        (options.sampler.sampler().sample)(&part).map_err(|source| MeshSceneError::Sample {
+            part: index,
+            source,
+        })?;
+    let radii = found.balls.iter().map(|ball| ball.radius * frame.unit);
+    let radii = radii.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], radius| {
+        [low.min(radius), high.max(radius)]
+    });
+    let knots = knots(frame, &found.balls, Some(&found.weights))?;
     Ok(SampledPart {
-        knots: knots(frame, &balls, Some(&weights))?,
-        balls: balls.len(),
-        radius,
+        knots: knots.with_skin_weights(found.skin_weights)?,
+        sampler: options.sampler,
+        balls: found.balls.len(),
+        radii,
         per_axis: field.grid.per_axis(),
-        spacing,
+        spacing: field.grid.spacing() * frame.unit,
         epsilon: field.grid.epsilon() * frame.unit,
-        per_cell,
+        per_cell: found.per_cell,
         inside_nodes: field.inside().len(),
         feature_size,
-        weights: fitted,
+        weights: found.fit,
+        skin_weights: found.skin_fit,
     })
 }
 
@@ -312,11 +302,19 @@ impl MeshPair {
         ANGSTROM * self.offset
     }
 
-    /// The defaults of options that are lengths, for what was not given.
+    /// Depth of the skin where the kernel is the product kernel; `None`: it is the cone.
+    pub fn skin(&self) -> Option<f64> {
+        Some(self.sampler.skin? * self.offset)
+    }
+
+    /// The defaults of options that follow from the sampling, for what was not given.
     pub fn defaults(&self, options: &mut DockOptions, given: GivenLengths) {
         options.kernel.offset = self.offset;
+        if !given.alpha {
+            options.kernel.alpha = self.sampler.alpha;
+        }
         if !given.resolution {
-            options.kernel.resolution = RESOLUTION * self.offset;
+            options.kernel.resolution = self.sampler.resolution * self.offset;
         }
         if !given.cluster_radius {
             options.ranking.cluster_radius = CLUSTER_RADIUS * self.offset;
@@ -324,11 +322,13 @@ impl MeshPair {
     }
 }
 
-/// Which lengths were given, beside the offset.
+/// Which options that follow from the sampling were given, beside the offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GivenLengths {
     /// The resolution.
     pub resolution: bool,
     /// The radius of clusters.
     pub cluster_radius: bool,
+    /// The exponent of the bump function.
+    pub alpha: bool,
 }

@@ -14,6 +14,7 @@ use knotdock::output::records::manifest::InputEntry;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec};
+use knotdock_structures::sampling::weights::FittedWeights;
 
 use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::{Input, folders_of, label};
@@ -150,24 +151,22 @@ impl Bodies {
             )
             .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                let sampling = MeshOptions {
-                    per_axis: options
-                        .sampling
-                        .sample_grid
-                        .get_or_insert_default()
-                        .per_axis,
-                    weights: *options.sampling.sample_weights.get_or_insert_default(),
-                    offset,
-                    alpha: options.kernel.alpha,
-                };
-                room_to_sample(sampling.per_axis, options.machine.memory)?;
-                let solids = inputs.each_ref().map(|input| &input.solid);
-                let sampling = Sampling::of(solids, &sampling)
-                    .map_err(|error| mesh_failure(&error, inputs))?;
-                sampling.pair.defaults(options, given);
-                console.say(sampling_text(&sampling.pair));
+                let sampling = sampled(inputs, options, (offset, given), console)?;
                 PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
             }
+        }
+    }
+
+    /// Samples meshes, as [`Self::plan`] does; `None` of molecules.
+    pub fn sampling(
+        &self,
+        options: &mut DockOptions,
+        (offset, given): (Option<f64>, GivenLengths),
+        console: Console,
+    ) -> Result<Option<Sampling>, Failure> {
+        match self {
+            Self::Molecules(_) => Ok(None),
+            Self::Meshes(inputs) => sampled(inputs, options, (offset, given), console).map(Some),
         }
     }
 
@@ -253,6 +252,36 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
     Err(Failure::input(format!("--{long} is of {of}, and these are {these}")).remedy(remedy))
 }
 
+/// Meshes as balls. Options that follow from them are filled in, and what was made is said.
+fn sampled(
+    inputs: &[MeshInput; 2],
+    options: &mut DockOptions,
+    (offset, given): (Option<f64>, GivenLengths),
+    console: Console,
+) -> Result<Sampling, Failure> {
+    let sampler = *options.sampling.sampler.get_or_insert_default();
+    if !given.alpha {
+        options.kernel.alpha = sampler.sampler().alpha;
+    }
+    let sampling = MeshOptions {
+        sampler,
+        per_axis: options
+            .sampling
+            .sample_grid
+            .get_or_insert_default()
+            .per_axis,
+        weights: *options.sampling.sample_weights.get_or_insert_default(),
+        offset,
+        alpha: options.kernel.alpha,
+    };
+    room_to_sample(sampling.per_axis, options.machine.memory)?;
+    let solids = inputs.each_ref().map(|input| &input.solid);
+    let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
+    sampling.pair.defaults(options, given);
+    console.say(sampling_text(&sampling.pair));
+    Ok(sampling)
+}
+
 /// A failure that names the mesh at fault.
 fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
     let failure = Failure::input(error).remedy(error.remedy());
@@ -265,25 +294,33 @@ fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
 /// Report on the sampling of the meshes.
 fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
-        let weights = match &part.weights {
-            Some(fit) => format!(
-                "weights fitted (off one inside by {:.2} rms, integral {:.3} of the volume)",
+        let fitted = |fit: &FittedWeights| {
+            format!(
+                "off one inside by {:.2} rms, integral {:.3} of the volume",
                 fit.rms_fitted, fit.volume_fitted
+            )
+        };
+        let weights = match (&part.weights, &part.skin_weights) {
+            (Some(fit), None) => format!("weights fitted ({})", fitted(fit)),
+            (Some(fit), Some(skin)) => format!(
+                "weights fitted ({}; grown balls {})",
+                fitted(fit),
+                fitted(skin)
             ),
-            None => "weights of one".to_owned(),
+            (None, _) => "weights of one".to_owned(),
+        };
+        let [low, high] = part.radii;
+        let radii = match part.per_cell {
+            Some(k) => format!("radius {high:.4e}, one for {k} x {k} x {k} nodes"),
+            None => format!("radius {low:.4e} to {high:.4e}"),
         };
         format!(
-            "{} balls of radius {:.4e}, one for {k} x {k} x {k} nodes; eps {:.4e}, feature size {:.4e}; {weights}",
-            part.balls,
-            part.radius,
-            part.epsilon,
-            part.feature_size,
-            k = part.per_cell,
+            "{} balls of {radii}; eps {:.4e}, feature size {:.4e}; {weights}",
+            part.balls, part.epsilon, part.feature_size,
         )
     });
     format!(
-        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one \
-         radius, so the kernel is the cone",
-        pair.offset
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; {}",
+        pair.offset, pair.sampler.makes
     )
 }

@@ -29,6 +29,16 @@ impl Grid {
         }
     }
 
+    /// The same nodes and more about them: at least `margin` on every side, in the solid's unit.
+    #[must_use]
+    pub fn padded(&self, margin: f64) -> Self {
+        let more = (margin / self.spacing()).ceil().max(0.0);
+        Self {
+            per_axis: self.per_axis + 2 * more as usize,
+            half: self.half + more * self.spacing(),
+        }
+    }
+
     /// Nodes along each edge, n.
     pub fn per_axis(&self) -> usize {
         self.per_axis
