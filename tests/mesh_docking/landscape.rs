@@ -133,7 +133,7 @@ fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
 /// The same of the product kernel, from the profiles of its double skin: below zero under half an offset.
 #[test]
 fn double_skins_are_drawn_to_a_gap_of_one_offset() {
-    let (lambda, depth) = (9.0, 6.0);
+    let (lambda, depth) = (9.0, 4.0);
     // A body's profile in offsets: 1 - lambda up to CORE beyond its face, then 1 as deep as the skin.
     let profile = |x: f64| match x {
         _ if x < -depth || x >= bi::CORE + bi::SKIN => 0.0,
@@ -151,7 +151,8 @@ fn double_skins_are_drawn_to_a_gap_of_one_offset() {
             .map(|x| profile(x) * profile(gap - x) * step)
             .sum::<f64>()
     };
-    let (low, high) = (-4.0, 8.0);
+    // All gaps at which the two overlap or touch: the low-pass reaches far.
+    let (low, high) = (-2.0 * depth, 2.0);
     let sharp: Vec<(f64, f64)> = cells(low, high).map(|gap| (gap, sharp(gap))).collect();
     // The low-pass across a face is that along one axis.
     let filter = |x: f64| -> f64 {

@@ -8,6 +8,7 @@ use super::product::ProductKernel;
 use super::table::Table;
 use crate::exact::{PoseGradient, center};
 use crate::se3::Pose;
+use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::{Rotation3, Vector3};
@@ -30,6 +31,8 @@ struct PairTables {
     /// `None`: sharp balls, whose kernel is cheap as it is.
     tables: Option<Vec<Vec<Table<4>>>>,
     kernel: ProductKernel,
+    /// Distance from which a pair's kernel is 0, [ligand class][receptor class].
+    reaches: Vec<Vec<f64>>,
     /// Distinct radii of ligand and receptor.
     radii: [Vec<f64>; 2],
 }
@@ -60,6 +63,10 @@ impl PairTables {
                 .is_smooth()
                 .then(|| kernel.layer_tables(ligand, receptor)),
             kernel: kernel.clone(),
+            reaches: ligand
+                .iter()
+                .map(|&s| receptor.iter().map(|&r| kernel.reach(r, s)).collect())
+                .collect(),
             radii: [ligand.to_vec(), receptor.to_vec()],
         }
     }
@@ -189,13 +196,25 @@ impl ProductScorer {
 
     /// g_0, g_1, g_2.
     fn slices(&self, tables: &PairTables, pose: &Pose) -> [f64; 3] {
+        vectorized(
+            #[inline(always)]
+            || self.slices_inline(tables, pose),
+        )
+    }
+
+    #[inline(always)]
+    fn slices_inline(&self, tables: &PairTables, pose: &Pose) -> [f64; 3] {
         let (rotation, shift) = self.placed(pose);
         let mut sums = [0.0; 4];
         for knot in &self.ligand {
             let at = rotation * knot.position + shift;
             let mut of_knot = [0.0; 4];
+            let reaches = &tables.reaches[knot.class];
             for other in &self.receptor {
                 let distance = (at - other.position).norm();
+                if distance >= reaches[other.class] {
+                    continue;
+                }
                 let values = tables.value(knot.class, other.class, distance);
                 let weights = layer_weights(knot, other);
                 for lane in 0..4 {
