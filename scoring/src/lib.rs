@@ -30,6 +30,7 @@
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
 //! | [`engine`] | the correlation over all translations at a rotation: plan, rank, CPU, graphics processor |
 //! | [`truncated`] | the correlation at one pose from chosen modes |
+//! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
@@ -42,6 +43,7 @@ pub mod exact;
 pub mod exact_sum;
 pub mod kernel;
 pub mod lifted_axis;
+pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;

@@ -1,0 +1,4 @@
+//! Questions of geometry that ball sets answer: collision.
+
+pub mod collide;
+pub mod motion;
