@@ -153,8 +153,10 @@ pub struct SampledPart {
     pub sampler: SamplerName,
     /// Number of balls.
     pub balls: usize,
-    /// Their smallest and largest radius.
-    pub radii: [f64; 2],
+    /// Their radius, of balls of every size the largest.
+    pub radius: f64,
+    /// The smallest.
+    pub smallest_radius: f64,
     /// Nodes along each edge of the grid.
     pub per_axis: usize,
     /// Spacing h of the grid.
@@ -276,15 +278,16 @@ fn sampled(
             source,
         })?;
     let radii = found.balls.iter().map(|ball| ball.radius * frame.unit);
-    let radii = radii.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], radius| {
-        [low.min(radius), high.max(radius)]
+    let (smallest_radius, radius) = radii.fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
+        (low.min(radius), high.max(radius))
     });
     let knots = knots(frame, &found.balls, Some(&found.weights))?;
     Ok(SampledPart {
         knots: knots.with_skin_weights(found.skin_weights)?,
         sampler: options.sampler,
         balls: found.balls.len(),
-        radii,
+        radius,
+        smallest_radius,
         per_axis: field.grid.per_axis(),
         spacing: field.grid.spacing() * frame.unit,
         epsilon: field.grid.epsilon() * frame.unit,

@@ -3,7 +3,7 @@
 
 use super::parts::Pair;
 use super::run::{Place, dock, rank_one, scored_poses};
-use super::scenes::{broken, error, knobs, peg, saddle, torus};
+use super::scenes::{broken, error, peg, saddle, studs, torus};
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
@@ -97,7 +97,7 @@ fn samplers() {
     println!(
         "| pair | sampler | balls | rank of the right pose | off by, grid steps | degrees | best wrong cluster's share | CPU s |"
     );
-    for (pair, clearance) in [peg(), torus(), broken(), saddle(), knobs()] {
+    for (pair, clearance) in [peg(), torus(), broken(), saddle(), studs()] {
         let place = Place::of(&pair);
         for sampler in ["lattice", "bi"] {
             let before = seconds_of_children();

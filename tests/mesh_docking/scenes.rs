@@ -1,8 +1,8 @@
 //! The pairs of parts as solids and as files, and how far a pose is from the right one.
 
 use super::parts::{
-    HalfTurnAxis, Pair, Part, broken_block, knobbed_plates, linked_torus, peg_and_hole,
-    saddle_block,
+    HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole, saddle_block,
+    studded_plates,
 };
 use knotdock::options::SampleGrid;
 use knotdock_scoring::se3::Pose;
@@ -56,9 +56,9 @@ pub fn saddle() -> (Pair, f64) {
     with_least_clearance(saddle_block)
 }
 
-/// The plates with knobs, and their clearance.
-pub fn knobs() -> (Pair, f64) {
-    with_least_clearance(knobbed_plates)
+/// The plates with studs, and their clearance.
+pub fn studs() -> (Pair, f64) {
+    with_least_clearance(studded_plates)
 }
 
 pub fn solid(part: &Part) -> Solid {

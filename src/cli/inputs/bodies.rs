@@ -309,7 +309,7 @@ fn sampling_text(pair: &MeshPair) -> String {
             ),
             (None, _) => "weights of one".to_owned(),
         };
-        let [low, high] = part.radii;
+        let (low, high) = (part.smallest_radius, part.radius);
         let radii = match part.per_cell {
             Some(k) => format!("radius {high:.4e}, one for {k} x {k} x {k} nodes"),
             None => format!("radius {low:.4e} to {high:.4e}"),

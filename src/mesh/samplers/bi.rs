@@ -2,8 +2,8 @@
 //!
 //! # The double skin
 //!
-//! Balls of any size count by volume when densities are multiplied and integrated (B&I eq. 51-53): F = f(S + B0) -
-//! lambda f(S) of each part, with f a sum of bumps that is about one in a solid and zero outside. A pair then scores
+//! Balls of any size count by volume when densities are multiplied and integrated (B&I eq. 51-53). Each part has F =
+//! f(S + B0) - lambda f(S), with f a sum of bumps that is about one in a solid and zero outside. A pair then scores
 //! -<F_A, F_B>. The balls are those of A3 at mu = 0.25, and f has weights fitted to the solid.
 //!
 //! **Two sets of weights.** f(S + B0) has the same balls, grown by the depth of the skin. Grown balls overlap more, so

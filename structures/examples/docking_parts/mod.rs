@@ -11,7 +11,7 @@
 //!   both.
 //! - **Broken block.** A block broken along four planes that meet in a point off its middle. No part has a symmetry.
 //! - **Saddle block.** A block cut along a smooth saddle. No part has a symmetry.
-//! - **Knobbed plates.** Two plates, one with two knobs and a dent, the other with what fits. No part has a symmetry.
+//! - **Studded plates.** Two plates, one with two studs and a dent, the other with what fits. No part has a symmetry.
 
 use std::f64::consts::PI;
 
@@ -52,7 +52,7 @@ pub fn pairs(clearance: f64) -> Vec<Pair> {
         linked_torus(clearance),
         broken_block(clearance),
         saddle_block(clearance),
-        knobbed_plates(clearance),
+        studded_plates(clearance),
     ]
 }
 
@@ -214,23 +214,23 @@ pub fn saddle_block(clearance: f64) -> Pair {
     cut_along("saddle", &height, [-0.45, 0.65], clearance)
 }
 
-/// Plates of one by one, about .2 and .5 thick, between them two knobs and a dent.
-pub fn knobbed_plates(clearance: f64) -> Pair {
-    let knobs = [
+/// Plates of one by one, about .2 and .5 thick, between them two studs and a dent.
+pub fn studded_plates(clearance: f64) -> Pair {
+    let studs = [
         (-0.22, -0.12, 0.22, 0.14),
         (0.2, 0.2, 0.16, 0.11),
         (0.1, -0.3, -0.14, 0.1),
     ];
     let height = move |x: f64, y: f64| -> f64 {
-        let knob = |(u, v, high, wide): (f64, f64, f64, f64)| {
+        let stud = |(u, v, high, wide): (f64, f64, f64, f64)| {
             high * (-((x - u).powi(2) + (y - v).powi(2)) / (2.0 * wide * wide)).exp()
         };
-        knobs.into_iter().map(knob).sum()
+        studs.into_iter().map(stud).sum()
     };
-    cut_along("knobs", &height, [-0.32, 0.5], clearance)
+    cut_along("studs", &height, [-0.32, 0.5], clearance)
 }
 
-/// A block between two heights, cut along a sheet whose sides are `clearance` apart.
+/// A block between two heights, cut along a sheet whose two sides are `clearance` from each other.
 fn cut_along(
     name: &'static str,
     height: &dyn Fn(f64, f64) -> f64,
