@@ -13,15 +13,14 @@ use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
-use knotdock_structures::molecule::InputSpec;
 
 use super::arguments::memory;
 use crate::cli::arguments::options::{GivenOptions, OfScore, OptionArguments};
-use crate::cli::inputs::bodies::Bodies;
-use crate::cli::inputs::meshes::is_mesh;
+use crate::cli::inputs::bodies::{Bodies, spec_of};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::inputs::poses::pose;
 use crate::cli::inputs::request::lengths;
+use crate::cli::inputs::shapes::is_shape;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{regions_text, site_text};
 use crate::cli::messages::failure::Failure;
@@ -68,7 +67,7 @@ impl Score {
         let given = self.options.given()?;
         let mut are_meshes = false;
         for text in [&self.receptor, &self.ligand] {
-            are_meshes |= is_mesh(&InputSpec::parse(text)?.path);
+            are_meshes |= is_shape(&spec_of(text)?.path);
         }
         threads::on(given.options.machine.threads.count(), || {
             if are_meshes {

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use knotdock_structures::mesh::Solid;
 use knotdock_structures::molecule::Molecule;
 
 use crate::dock::outcome::StageTime;
@@ -12,6 +11,7 @@ use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
 use crate::error::SearchError;
 use crate::mesh::samplers::SamplerName;
+use crate::mesh::shape::Shape;
 use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
 
@@ -20,8 +20,8 @@ use crate::options::{DockOptions, SampleWeights};
 pub enum Pair<'a> {
     /// Molecules, in Å.
     Molecules([&'a Molecule; 2]),
-    /// Meshes, in one unit of length.
-    Meshes([&'a Solid; 2]),
+    /// Meshes or files of balls, in one unit of length.
+    Meshes([Shape<'a>; 2]),
 }
 
 /// Why a setting cannot be run.
@@ -59,11 +59,8 @@ impl Sampling {
     ///
     /// # Errors
     /// [`MeshSceneError`].
-    pub fn of(
-        [receptor, ligand]: [&Solid; 2],
-        options: &MeshOptions,
-    ) -> Result<Self, MeshSceneError> {
-        let (pair, time) = timed("sample", || sample_pair(receptor, ligand, options));
+    pub fn of(shapes: [Shape; 2], options: &MeshOptions) -> Result<Self, MeshSceneError> {
+        let (pair, time) = timed("sample", || sample_pair(shapes, options));
         Ok(Self { pair: pair?, time })
     }
 }
@@ -162,7 +159,7 @@ impl<'a> Preparer<'a> {
 
     fn sampling(
         &mut self,
-        solids: [&Solid; 2],
+        solids: [Shape; 2],
         options: &DockOptions,
     ) -> Result<Arc<Sampling>, MeshSceneError> {
         let wanted = key(options);

@@ -14,19 +14,20 @@
 //! compares them.
 
 pub mod samplers;
+pub mod shape;
 
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
-use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::weights::FittedWeights;
-use knotdock_structures::sampling::{SampleError, knots};
+use knotdock_structures::sampling::{Ball, SampleError};
 use serde::Serialize;
 
-use crate::mesh::samplers::{PartToSample, Sampler, SamplerName};
+use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, SamplerName, union};
+use crate::mesh::shape::Shape;
 use crate::options::{DockOptions, SampleWeights};
 
 /// Default radius of clusters in offsets: that of molecules.
@@ -61,6 +62,12 @@ pub enum MeshSceneError {
         part: usize,
         /// Why.
         source: SampleError,
+    },
+    /// The sampler makes balls of solids alone.
+    #[error("the part is balls already, which this sampler cannot take as they are")]
+    BallFile {
+        /// Which part.
+        part: usize,
     },
     /// The bump function has no such exponent.
     #[error(transparent)]
@@ -112,9 +119,10 @@ impl MeshSceneError {
     /// The part at fault, where one is: 0 the receptor, 1 the ligand.
     pub fn part(&self) -> Option<usize> {
         match self {
-            Self::Sample { part, .. } | Self::Size { part, .. } | Self::Thin { part, .. } => {
-                Some(*part)
-            }
+            Self::Sample { part, .. }
+            | Self::Size { part, .. }
+            | Self::Thin { part, .. }
+            | Self::BallFile { part } => Some(*part),
             Self::Alpha(_) | Self::Knots(_) | Self::Offset { .. } => None,
         }
     }
@@ -125,6 +133,7 @@ impl MeshSceneError {
             Self::Sample { .. } => {
                 "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
             }
+            Self::BallFile { .. } => "dock files of balls with --sampler bi",
             Self::Alpha(_) => "give --alpha a number above zero",
             Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
             Self::Size { .. } => {
@@ -194,39 +203,29 @@ pub fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
     sampled.min(2.0 * features[0].min(features[1]))
 }
 
-/// Samples two solids for docking.
+/// Samples two parts for docking.
 ///
 /// # Errors
 /// [`MeshSceneError`].
-pub fn sample_pair(
-    receptor: &Solid,
-    ligand: &Solid,
-    options: &MeshOptions,
-) -> Result<MeshPair, MeshSceneError> {
-    let solids = [receptor, ligand];
-    let extents = solids.map(|solid| {
-        let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
-        2.0 * longest * solid.frame().unit
+pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair, MeshSceneError> {
+    let extents = shapes.map(|shape| match shape {
+        Shape::Solid(solid) => {
+            let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
+            2.0 * longest * solid.frame().unit
+        }
+        Shape::Balls(part) => part.bounds().1,
     });
     for (part, &extent) in extents.iter().enumerate() {
         if !SIZES.contains(&extent) {
             return Err(MeshSceneError::Size { part, extent });
         }
     }
-    let fields = solids.map(|solid| DepthField::new(solid, Grid::new(solid, options.per_axis)));
-    let measured = [0, 1].map(|part| {
-        let unit = solids[part].frame().unit;
-        let grid = fields[part].grid;
-        (
-            grid.epsilon() * unit,
-            feature_size(solids[part], &fields[part]) * unit,
-        )
-    });
-    let epsilons = measured.map(|(epsilon, _)| epsilon);
-    let features = measured.map(|(_, feature)| feature);
+    let measured = shapes.map(|shape| Measured::of(shape, options.per_axis));
+    let epsilons = measured.each_ref().map(|part| part.epsilon());
+    let features = measured.each_ref().map(|part| part.feature_size);
     let resolved = epsilons[0] + epsilons[1];
-    for (part, field) in fields.iter().enumerate() {
-        if !field.depth.iter().any(|&depth| depth > 0.0) {
+    for (part, measured) in measured.iter().enumerate() {
+        if measured.inside == 0 {
             let source = SampleError::NothingInside;
             return Err(MeshSceneError::Sample { part, source });
         }
@@ -249,54 +248,134 @@ pub fn sample_pair(
     }
     Ok(MeshPair {
         parts: [
-            sampled((0, solids[0]), &fields[0], (features[0], offset), options)?,
-            sampled((1, solids[1]), &fields[1], (features[1], offset), options)?,
+            measured[0].sampled(0, offset, options)?,
+            measured[1].sampled(1, offset, options)?,
         ],
         offset,
         sampler: options.sampler.sampler(),
     })
 }
 
-/// Samples one solid for a gap of `offset`, in its frame's unit as `feature_size`.
-fn sampled(
-    (index, solid): (usize, &Solid),
-    field: &DepthField,
-    (feature_size, offset): (f64, f64),
-    options: &MeshOptions,
-) -> Result<SampledPart, MeshSceneError> {
-    let frame = solid.frame();
-    let bump = Bump::new(options.alpha)?;
-    let part = PartToSample {
-        solid,
-        field,
-        offset: offset / frame.unit,
-        fitted: (options.weights == SampleWeights::Fitted).then_some(bump),
+/// A part on its grid.
+struct Measured<'a> {
+    shape: Shape<'a>,
+    grid: Grid,
+    /// Depths on it, of a solid.
+    field: Option<DepthField>,
+    /// Nodes strictly inside.
+    inside: usize,
+    /// Length of the grid's unit in that of the file.
+    unit: f64,
+    feature_size: f64,
+}
+
+impl<'a> Measured<'a> {
+    fn of(shape: Shape<'a>, per_axis: usize) -> Self {
+        match shape {
+            Shape::Solid(solid) => {
+                let field = DepthField::new(solid, Grid::new(solid, per_axis));
+                let unit = solid.frame().unit;
+                Self {
+                    shape,
+                    grid: field.grid,
+                    inside: field.inside().len(),
+                    unit,
+                    feature_size: feature_size(solid, &field) * unit,
+                    field: Some(field),
+                }
+            }
+            Shape::Balls(part) => {
+                let (middle, edge) = part.bounds();
+                let grid = Grid::of_edge(edge, per_axis);
+                Self {
+                    shape,
+                    grid,
+                    inside: union(grid, &about(middle, &part.balls)).inside().len(),
+                    field: None,
+                    unit: 1.0,
+                    feature_size: part.feature_size(),
+                }
+            }
+        }
+    }
+
+    fn epsilon(&self) -> f64 {
+        self.grid.epsilon() * self.unit
+    }
+
+    /// Balls for a gap of `offset`.
+    fn sampled(
+        &self,
+        index: usize,
+        offset: f64,
+        options: &MeshOptions,
+    ) -> Result<SampledPart, MeshSceneError> {
+        let bump = Bump::new(options.alpha)?;
+        let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
+        let sampler = options.sampler.sampler();
+        let (found, place): (_, Box<dyn Fn([f64; 3]) -> [f64; 3]>) =
+            match (self.shape, &self.field, sampler.of_balls) {
+                (Shape::Solid(solid), Some(field), _) => {
+                    let part = PartToSample {
+                        solid,
+                        field,
+                        offset: offset / self.unit,
+                        fitted,
+                    };
+                    let found = (sampler.sample)(&part).map_err(|source| {
+                        let part = index;
+                        MeshSceneError::Sample { part, source }
+                    })?;
+                    let frame = solid.frame();
+                    (found, Box::new(move |x| frame.outward(x)))
+                }
+                (Shape::Balls(part), _, Some(of_balls)) => {
+                    let (middle, _) = part.bounds();
+                    let found = of_balls(&BallsToWeigh {
+                        balls: about(middle, &part.balls),
+                        weights: part.weights.as_deref(),
+                        grid: self.grid,
+                        offset,
+                        fitted,
+                    });
+                    let back = move |x: [f64; 3]| [0, 1, 2].map(|axis| x[axis] + middle[axis]);
+                    (found, Box::new(back))
+                }
+                _ => return Err(MeshSceneError::BallFile { part: index }),
+            };
+        let radii = found.balls.iter().map(|ball| ball.radius * self.unit);
+        let (smallest_radius, radius) = radii
+            .clone()
+            .fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
+                (low.min(radius), high.max(radius))
+            });
+        let centers = found.balls.iter().map(|ball| place(ball.center)).collect();
+        let knots = Knots::with_weights(centers, radii.collect(), found.weights)?;
+        Ok(SampledPart {
+            knots: knots.with_skin_weights(found.skin_weights)?,
+            sampler: options.sampler,
+            balls: found.balls.len(),
+            radius,
+            smallest_radius,
+            per_axis: self.grid.per_axis(),
+            spacing: self.grid.spacing() * self.unit,
+            epsilon: self.epsilon(),
+            per_cell: found.per_cell,
+            inside_nodes: self.inside,
+            feature_size: self.feature_size,
+            weights: found.fit,
+            skin_weights: found.skin_fit,
+        })
+    }
+}
+
+/// Balls relative to a point.
+fn about(middle: [f64; 3], balls: &[Ball]) -> Vec<Ball> {
+    let moved = |ball: &Ball| Ball {
+        center: [0, 1, 2].map(|axis| ball.center[axis] - middle[axis]),
+        radius: ball.radius,
     };
-    let found =
-        (options.sampler.sampler().sample)(&part).map_err(|source| MeshSceneError::Sample {
-            part: index,
-            source,
-        })?;
-    let radii = found.balls.iter().map(|ball| ball.radius * frame.unit);
-    let (smallest_radius, radius) = radii.fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
-        (low.min(radius), high.max(radius))
-    });
-    let knots = knots(frame, &found.balls, Some(&found.weights))?;
-    Ok(SampledPart {
-        knots: knots.with_skin_weights(found.skin_weights)?,
-        sampler: options.sampler,
-        balls: found.balls.len(),
-        radius,
-        smallest_radius,
-        per_axis: field.grid.per_axis(),
-        spacing: field.grid.spacing() * frame.unit,
-        epsilon: field.grid.epsilon() * frame.unit,
-        per_cell: found.per_cell,
-        inside_nodes: field.inside().len(),
-        feature_size,
-        weights: found.fit,
-        skin_weights: found.skin_fit,
-    })
+    balls.iter().map(moved).collect()
 }
 
 impl MeshPair {

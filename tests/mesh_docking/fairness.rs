@@ -50,7 +50,7 @@ fn sampled(solids: [&Solid; 2], per_axis: usize) -> [SampledPart; 2] {
         weights: SampleWeights::Fitted,
         alpha: 16.0,
     };
-    sample_pair(solids[0], solids[1], &options).unwrap().parts
+    sample_pair(solids.map(Into::into), &options).unwrap().parts
 }
 
 /// Both bodies' balls as one.

@@ -23,7 +23,10 @@ fn sampled(pair: &Pair) -> MeshPair {
         weights: SampleWeights::Fitted,
         alpha: 2.0,
     };
-    sample_pair(&solid(&pair.receptor), &solid(&pair.ligand), &options).unwrap()
+    {
+        let solids = [solid(&pair.receptor), solid(&pair.ligand)];
+        sample_pair(solids.each_ref().map(Into::into), &options).unwrap()
+    }
 }
 
 fn scorer(meshes: &MeshPair) -> ExactScorer {

@@ -16,9 +16,10 @@ use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 
-use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::{Input, folders_of, label};
 use crate::cli::inputs::room::{room_to_read, room_to_sample};
+use crate::cli::inputs::shapes::{ShapeInput, is_shape};
+use crate::cli::inputs::solids::ball_file_of;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -26,8 +27,8 @@ use crate::cli::messages::failure::Failure;
 pub enum Bodies {
     /// Two molecules, which stays first.
     Molecules(Box<[Input; 2]>),
-    /// Two meshes, likewise.
-    Meshes(Box<[MeshInput; 2]>),
+    /// Two meshes or files of balls, likewise.
+    Meshes(Box<[ShapeInput; 2]>),
 }
 
 /// What was written of the first ranks.
@@ -44,10 +45,7 @@ const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 impl Bodies {
     /// Reads two bodies of one kind as the command line names them.
     pub fn read(receptor: &str, ligand: &str, options: &DockOptions) -> Result<Self, Failure> {
-        Self::of(
-            [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
-            options,
-        )
+        Self::of([spec_of(receptor)?, spec_of(ligand)?], options)
     }
 
     /// Whether they are sampled on a grid.
@@ -72,7 +70,7 @@ impl Bodies {
 
     fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
-        let are_meshes = [receptor, ligand].map(|spec| is_mesh(&spec.path));
+        let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {
             refuse_without_effect(options, are_meshes[0])?;
         }
@@ -83,8 +81,8 @@ impl Bodies {
                 Ok(Self::Molecules(Box::new(molecules)))
             }
             [true, true] => Ok(Self::Meshes(Box::new([
-                MeshInput::read(receptor)?,
-                MeshInput::read(ligand)?,
+                ShapeInput::read(receptor)?,
+                ShapeInput::read(ligand)?,
             ]))),
             [first, _] => {
                 let (mesh, other) = if first {
@@ -119,10 +117,7 @@ impl Bodies {
             }
             Self::Meshes(inputs) => {
                 for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
-                    console.say(format!("{side}: {}", input.report));
-                    for warning in input.report.warnings() {
-                        console.warn(format!("{}: {warning}", input.record.path.display()));
-                    }
+                    input.describe(side, console);
                 }
             }
         }
@@ -176,7 +171,7 @@ impl Bodies {
             Self::Molecules(inputs) => {
                 Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
             }
-            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
+            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(ShapeInput::shape)),
         }
     }
 
@@ -199,7 +194,7 @@ impl Bodies {
             Self::Meshes(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 Ok(WrittenBodies {
-                    names: write_assemblies(&receptor.mesh, &ligand.mesh, rows, folder)?,
+                    names: write_assemblies(receptor.surface(), ligand.surface(), rows, folder)?,
                     chains: None,
                 })
             }
@@ -223,7 +218,7 @@ impl Bodies {
     pub fn records(&self) -> [&InputRecord; 2] {
         match self {
             Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
-            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(ShapeInput::record),
         }
     }
 
@@ -231,6 +226,17 @@ impl Bodies {
     pub fn labels(&self) -> [String; 2] {
         self.records()
             .map(|record| label(&record.path, record.chains.as_deref()))
+    }
+}
+
+/// What a text names: of a file of balls, a link may stand behind a colon.
+pub fn spec_of(text: &str) -> Result<InputSpec, Failure> {
+    match ball_file_of(text) {
+        Some((path, group)) => Ok(InputSpec {
+            path,
+            chains: group.map(|group| vec![group]),
+        }),
+        None => Ok(InputSpec::parse(text)?),
     }
 }
 
@@ -254,7 +260,7 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
 
 /// Meshes as balls. Options that follow from them are filled in, and what was made is said.
 fn sampled(
-    inputs: &[MeshInput; 2],
+    inputs: &[ShapeInput; 2],
     options: &mut DockOptions,
     (offset, given): (Option<f64>, GivenLengths),
     console: Console,
@@ -275,7 +281,7 @@ fn sampled(
         alpha: options.kernel.alpha,
     };
     room_to_sample(sampling.per_axis, options.machine.memory)?;
-    let solids = inputs.each_ref().map(|input| &input.solid);
+    let solids = inputs.each_ref().map(ShapeInput::shape);
     let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
     sampling.pair.defaults(options, given);
     console.say(sampling_text(&sampling.pair));
@@ -283,10 +289,10 @@ fn sampled(
 }
 
 /// A failure that names the mesh at fault.
-fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+fn mesh_failure(error: &MeshSceneError, inputs: &[ShapeInput; 2]) -> Failure {
     let failure = Failure::input(error).remedy(error.remedy());
     match error.part() {
-        Some(part) => failure.at(&inputs[part].record.path),
+        Some(part) => failure.at(&inputs[part].record().path),
         None => failure,
     }
 }

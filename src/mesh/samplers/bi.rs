@@ -24,7 +24,7 @@ use knotdock_structures::sampling::grid::DepthField;
 use knotdock_structures::sampling::weights::{self, FittedWeights};
 use knotdock_structures::sampling::{Ball, SampleError};
 
-use super::{PartToSample, Sampler, WeightedBalls};
+use super::{BallsToWeigh, PartToSample, Sampler, WeightedBalls, union};
 
 /// The sampler.
 pub(super) static SAMPLER: Sampler = Sampler {
@@ -34,6 +34,7 @@ pub(super) static SAMPLER: Sampler = Sampler {
     resolution: super::lattice::RESOLUTION,
     skin: Some(SKIN),
     sample,
+    of_balls: Some(of_balls),
 };
 
 /// By how much the part is grown before its density is fitted, in offsets.
@@ -87,6 +88,38 @@ fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
         fit: Some(fit),
         skin_fit: Some(skin_fit),
     })
+}
+
+/// Balls of a file as they are, but for the rounding of radii: their weights are the file's where it has some.
+fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
+    let (core, skin) = (CORE * part.offset, SKIN * part.offset);
+    let mut balls: Vec<Ball> = part.balls.iter().map(|ball| ball.grown(core)).collect();
+    round_radii(&mut balls);
+    let grown: Vec<Ball> = balls.iter().map(|ball| ball.grown(skin)).collect();
+    let grid = part.grid.padded(core + skin + part.grid.epsilon());
+    let fitted = |balls: &[Ball]| {
+        let field = union(grid, balls);
+        let volume = field.inside().len() as f64 * grid.spacing().powi(3);
+        part.fitted
+            .map(|bump| weights::fit(&field, balls, bump, volume))
+    };
+    let fit = match part.weights {
+        Some(_) => None,
+        None => fitted(&balls),
+    };
+    let skin_fit = fitted(&grown);
+    let of = |fit: &Option<FittedWeights>| match fit {
+        Some(fit) => fit.weights.clone(),
+        None => vec![1.0; balls.len()],
+    };
+    WeightedBalls {
+        weights: part.weights.map_or_else(|| of(&fit), <[f64]>::to_vec),
+        skin_weights: of(&skin_fit),
+        balls,
+        per_cell: None,
+        fit,
+        skin_fit,
+    }
 }
 
 /// Rounds radii to equal steps from the smallest to the largest.

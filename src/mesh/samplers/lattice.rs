@@ -28,6 +28,7 @@ pub(super) static SAMPLER: Sampler = Sampler {
     resolution: RESOLUTION,
     skin: None,
     sample,
+    of_balls: None,
 };
 
 /// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.

@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampling::grid::DepthField;
+use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::hausdorff::HausdorffMeter;
 use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Ball, SampleError};
@@ -34,6 +34,29 @@ pub struct Sampler {
     pub skin: Option<f64>,
     /// Samples a part.
     pub(super) sample: fn(&PartToSample) -> Result<WeightedBalls, SampleError>,
+    /// Weighs balls of a file; `None`: it cannot dock these.
+    pub(super) of_balls: Option<fn(&BallsToWeigh) -> WeightedBalls>,
+}
+
+/// Balls of a file about the origin, with what a sampler needs of them. Lengths in the file's unit.
+pub(super) struct BallsToWeigh<'a> {
+    pub balls: Vec<Ball>,
+    /// Weights of the file; `None`: they are fitted.
+    pub weights: Option<&'a [f64]>,
+    /// The grid that weights are fitted on.
+    pub grid: Grid,
+    pub offset: f64,
+    /// The bump whose weights are fitted; `None`: weights are one.
+    pub fitted: Option<Bump>,
+}
+
+/// Which nodes lie in a union of balls: depth one inside and minus one outside.
+pub(super) fn union(grid: Grid, balls: &[Ball]) -> DepthField {
+    let mut depth = vec![-1.0; grid.nodes()];
+    for ball in balls {
+        grid.visit_ball(ball.center, ball.radius, |node, _| depth[node] = 1.0);
+    }
+    DepthField { grid, depth }
 }
 
 /// A solid with what a sampler needs of it.
