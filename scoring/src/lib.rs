@@ -40,6 +40,7 @@ pub mod affinity;
 mod correlator;
 pub mod engine;
 pub mod exact;
+pub mod exact_sum;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod overlap;

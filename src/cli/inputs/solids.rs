@@ -189,7 +189,7 @@ impl SolidInput {
 }
 
 /// The file of balls that a text names, and the link picked of it.
-fn ball_file_of(text: &str) -> Option<(PathBuf, Option<String>)> {
+pub fn ball_file_of(text: &str) -> Option<(PathBuf, Option<String>)> {
     let whole = Path::new(text);
     if ball_file::is_ball_file(whole) {
         return Some((whole.to_owned(), None));
