@@ -5,6 +5,12 @@
 //! [`Correlator`] is the entry (`cargo run -p knotdock-scoring --example correlate`):
 //!
 //! ```
+
+// No input may end in a panic; tests may.
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
 #![doc = include_str!("../examples/correlate.rs")]
 //! ```
 //!
@@ -40,6 +46,7 @@ pub mod affinity;
 mod correlator;
 pub mod engine;
 pub mod exact;
+pub mod exact_sum;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod overlap;

@@ -75,7 +75,7 @@ fn radii_a_million_apart() {
     assert!((gap - 0.1).abs() < 1e-8, "{gap}");
 }
 
-/// What an open mesh was meant to bound is sampled, with a warning; degenerate triangles are left out.
+/// What an open mesh was meant to bound is sampled, with a warning; degenerate triangles bound nothing.
 #[test]
 fn open_and_degenerate_meshes() {
     let place = Place::new();

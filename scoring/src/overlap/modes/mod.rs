@@ -36,7 +36,7 @@ use std::f64::consts::PI;
 
 /// Nanoseconds a mode and ball of B, torque included: a quarter of it without. As measured (`overlap_costs_of_modes`),
 /// on the machine of [`super::pairs_nanoseconds`].
-const MODE_BALL: f64 = 0.6;
+const MODE_BALL: f64 = 1.2;
 
 /// Balls that no modes can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -65,6 +65,10 @@ fn energies_lie_within_their_bounds() {
                 );
                 assert!(!part.certifies_hit() || exact.pairs > 0);
                 if part.complete {
+                    // In pieces and at once, the same bits.
+                    let mut work = modes.workspace();
+                    let whole = modes.start(&pose, &mut work).advance(|| false, false);
+                    assert_eq!(whole, part);
                     worst = worst.max(error);
                     scale = scale.max(exact.energy);
                     hits += usize::from(part.certifies_hit());
