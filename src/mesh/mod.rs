@@ -266,6 +266,8 @@ struct Measured<'a> {
     inside: usize,
     /// Length of the grid's unit in that of the file.
     unit: f64,
+    /// Of balls, where the grid's origin is in the file.
+    middle: [f64; 3],
     feature_size: f64,
 }
 
@@ -280,6 +282,7 @@ impl<'a> Measured<'a> {
                     grid: field.grid,
                     inside: field.inside().len(),
                     unit,
+                    middle: [0.0; 3],
                     feature_size: feature_size(solid, &field) * unit,
                     field: Some(field),
                 }
@@ -293,6 +296,7 @@ impl<'a> Measured<'a> {
                     inside: union(grid, &about(middle, &part.balls)).inside().len(),
                     field: None,
                     unit: 1.0,
+                    middle,
                     feature_size: part.feature_size(),
                 }
             }
@@ -313,43 +317,39 @@ impl<'a> Measured<'a> {
         let bump = Bump::new(options.alpha)?;
         let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
         let sampler = options.sampler.sampler();
-        let (found, place): (_, Box<dyn Fn([f64; 3]) -> [f64; 3]>) =
-            match (self.shape, &self.field, sampler.of_balls) {
-                (Shape::Solid(solid), Some(field), _) => {
-                    let part = PartToSample {
-                        solid,
-                        field,
-                        offset: offset / self.unit,
-                        fitted,
-                    };
-                    let found = (sampler.sample)(&part).map_err(|source| {
-                        let part = index;
-                        MeshSceneError::Sample { part, source }
-                    })?;
-                    let frame = solid.frame();
-                    (found, Box::new(move |x| frame.outward(x)))
-                }
-                (Shape::Balls(part), _, Some(of_balls)) => {
-                    let (middle, _) = part.bounds();
-                    let found = of_balls(&BallsToWeigh {
-                        balls: about(middle, &part.balls),
-                        weights: part.weights.as_deref(),
-                        grid: self.grid,
-                        offset,
-                        fitted,
-                    });
-                    let back = move |x: [f64; 3]| [0, 1, 2].map(|axis| x[axis] + middle[axis]);
-                    (found, Box::new(back))
-                }
-                _ => return Err(MeshSceneError::BallFile { part: index }),
-            };
+        let found = match (self.shape, &self.field, sampler.of_balls) {
+            (Shape::Solid(solid), Some(field), _) => {
+                let part = PartToSample {
+                    solid,
+                    field,
+                    offset: offset / self.unit,
+                    fitted,
+                };
+                (sampler.sample)(&part).map_err(|source| {
+                    let part = index;
+                    MeshSceneError::Sample { part, source }
+                })?
+            }
+            (Shape::Balls(part), _, Some(of_balls)) => of_balls(&BallsToWeigh {
+                balls: about(self.middle, &part.balls),
+                weights: part.weights.as_deref(),
+                grid: self.grid,
+                offset,
+                fitted,
+            }),
+            _ => return Err(MeshSceneError::BallFile { part: index }),
+        };
         let radii = found.balls.iter().map(|ball| ball.radius * self.unit);
         let (smallest_radius, radius) = radii
             .clone()
             .fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
                 (low.min(radius), high.max(radius))
             });
-        let centers = found.balls.iter().map(|ball| place(ball.center)).collect();
+        let outward = |ball: &Ball| match self.shape {
+            Shape::Solid(solid) => solid.frame().outward(ball.center),
+            Shape::Balls(_) => [0, 1, 2].map(|axis| ball.center[axis] + self.middle[axis]),
+        };
+        let centers = found.balls.iter().map(outward).collect();
         let knots = Knots::with_weights(centers, radii.collect(), found.weights)?;
         Ok(SampledPart {
             knots: knots.with_skin_weights(found.skin_weights)?,

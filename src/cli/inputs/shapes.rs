@@ -25,7 +25,7 @@ pub fn is_shape(path: &Path) -> bool {
 /// A part as read.
 pub enum ShapeInput {
     /// A mesh.
-    Mesh(MeshInput),
+    Mesh(Box<MeshInput>),
     /// Balls.
     Balls(BallInput),
 }
@@ -42,7 +42,7 @@ impl ShapeInput {
     /// Reads a mesh, or the balls of a file; of one with links those of the link behind the colon.
     pub fn read(spec: &InputSpec) -> Result<Self, Failure> {
         if is_mesh(&spec.path) {
-            return MeshInput::read(spec).map(Self::Mesh);
+            return Ok(Self::Mesh(Box::new(MeshInput::read(spec)?)));
         }
         let bytes = read_bounded(&spec.path, MAX_TABLE).map_err(|error| {
             Failure::input(format!("cannot read the balls: {error}"))
@@ -83,7 +83,7 @@ impl ShapeInput {
     /// What is shown of it in assemblies.
     pub fn surface(&self) -> Surface<'_> {
         match self {
-            Self::Mesh(input) => (&input.mesh).into(),
+            Self::Mesh(input) => Surface::from(&input.mesh),
             Self::Balls(input) => Surface {
                 positions: &input.spheres.0,
                 triangles: &input.spheres.1,

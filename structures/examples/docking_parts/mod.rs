@@ -259,7 +259,7 @@ fn cut_along(
         let mut part = Part::default();
         let row = SIDES + 1;
         let around = |sheet: &[[f64; 3]]| -> Vec<[f64; 3]> {
-            let south = (0..SIDES).map(|i| i);
+            let south = 0..SIDES;
             let east = (0..SIDES).map(|j| j * row + SIDES);
             let north = (0..SIDES).map(|i| SIDES * row + SIDES - i);
             let west = (0..SIDES).map(|j| (SIDES - j) * row);
