@@ -29,6 +29,14 @@ impl Grid {
         }
     }
 
+    /// The grid of the cube from -`half` to `half` along each axis.
+    pub fn of_cube(half: f64, per_axis: usize) -> Self {
+        Self {
+            per_axis: per_axis.max(2),
+            half,
+        }
+    }
+
     /// Nodes along each edge, n.
     pub fn per_axis(&self) -> usize {
         self.per_axis
@@ -155,6 +163,28 @@ impl DepthField {
                     // On the surface the sign says nothing about the next node; zero plus any distance up to h asks
                     // again.
                     last = Some(*depth);
+                }
+            });
+        Self { grid, depth }
+    }
+
+    /// The depth that a function gives, rows in parallel.
+    ///
+    /// `depth_within(point, most)` is the depth at a point, or `most` if it is more than that: the depths of two points
+    /// differ by the length between them at most, so that each bounds the next one.
+    pub fn of_depth(grid: Grid, depth_within: impl Fn([f64; 3], f64) -> f64 + Sync) -> Self {
+        let n = grid.per_axis();
+        let h = grid.spacing();
+        let rounding = grid.half() * 1e-12;
+        let mut depth = vec![0.0; grid.nodes()];
+        depth
+            .par_chunks_mut(n)
+            .enumerate()
+            .for_each(|(row, depths)| {
+                let mut most = f64::INFINITY;
+                for (x, depth) in depths.iter_mut().enumerate() {
+                    *depth = depth_within(grid.node(row * n + x), most);
+                    most = *depth + h + rounding;
                 }
             });
         Self { grid, depth }

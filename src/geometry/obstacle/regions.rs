@@ -1,0 +1,138 @@
+//! Connected regions of the space that a union of balls leaves free, in a padded box about it.
+//!
+//! Free nodes of the grid are joined along its edges, where the whole edge is free: seen at points between which the
+//! distance to the balls leaves no room for one. A wall thinner than the spacing therefore separates. A gap narrower
+//! than the spacing may be missed, so that the count belongs to the grid.
+
+use knotdock_structures::sampling::ball_tree::BallTree;
+
+use crate::geometry::ball_field::BallField;
+
+/// Halvings of an edge at most: what is then still in doubt counts as closed.
+const HALVINGS: u32 = 6;
+
+/// A component of the free nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// A node of it, the first.
+    pub node: usize,
+    /// Number of its nodes.
+    pub nodes: usize,
+}
+
+/// The free regions, the largest first. The one around the balls is among them.
+pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
+    let grid = field.grid;
+    let mut sets = DisjointSets::new(field.depth.len());
+    let strides = [1, grid.shape[0], grid.shape[0] * grid.shape[1]];
+    for node in 0..field.depth.len() {
+        if !field.is_free(node) {
+            continue;
+        }
+        let numbers = grid.numbers(node);
+        for axis in 0..3 {
+            if numbers[axis] + 1 == grid.shape[axis] {
+                continue;
+            }
+            let other = node + strides[axis];
+            if !field.is_free(other) || sets.find(node) == sets.find(other) {
+                continue;
+            }
+            let mut next = numbers;
+            next[axis] += 1;
+            if is_free(tree, grid.place(numbers), grid.place(next), grid.spacing, HALVINGS) {
+                sets.join(node, other);
+            }
+        }
+    }
+    let mut sizes = vec![0usize; field.depth.len()];
+    for node in (0..field.depth.len()).filter(|&node| field.is_free(node)) {
+        sizes[sets.find(node)] += 1;
+    }
+    let found = sizes.iter().enumerate().filter(|(_, nodes)| **nodes > 0);
+    let mut regions: Vec<Region> = found
+        .map(|(node, &nodes)| Region { node, nodes })
+        .collect();
+    regions.sort_by(|a, b| b.nodes.cmp(&a.nodes).then(a.node.cmp(&b.node)));
+    regions
+}
+
+/// Whether no ball reaches the segment from `a` to `b`, of this length.
+fn is_free(tree: &BallTree, a: [f64; 3], b: [f64; 3], length: f64, halvings: u32) -> bool {
+    let middle = [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]));
+    let half = 0.5 * length;
+    let distance = tree.distance_within(middle, length);
+    if distance >= half {
+        return true;
+    }
+    distance > 0.0
+        && halvings > 0
+        && is_free(tree, a, middle, half, halvings - 1)
+        && is_free(tree, middle, b, half, halvings - 1)
+}
+
+/// Sets of numbers that are joined two by two; the least number of a set stands for it.
+struct DisjointSets(Vec<u32>);
+
+impl DisjointSets {
+    fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    fn find(&mut self, mut number: usize) -> usize {
+        while self.0[number] as usize != number {
+            // Every look shortens the way.
+            self.0[number] = self.0[self.0[number] as usize];
+            number = self.0[number] as usize;
+        }
+        number
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.0[a.max(b)] = a.min(b) as u32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ball_field::FieldGrid;
+    use knotdock_structures::sampling::Ball;
+
+    fn count(balls: &[Ball], cells: usize) -> usize {
+        let tree = BallTree::new(balls);
+        let grid = FieldGrid::about(balls, cells).unwrap();
+        free_regions(&BallField::new(&tree, grid), &tree).len()
+    }
+
+    /// Balls on a spiral about a sphere of radius 1: a shell.
+    fn shell(radius: f64) -> Vec<Ball> {
+        let count = 2000;
+        (0..count)
+            .map(|i| {
+                let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+                let angle = 2.399_963_229_728_653 * f64::from(i);
+                let across = (1.0 - z * z).sqrt();
+                Ball {
+                    center: [across * angle.cos(), across * angle.sin(), z],
+                    radius,
+                }
+            })
+            .collect()
+    }
+
+    /// Of a shell the inside is free and apart from the outside, even where its wall is thinner than a cell.
+    #[test]
+    fn a_shell_leaves_two_regions_and_a_solid_one() {
+        assert_eq!(count(&shell(0.1), 40), 2);
+        assert_eq!(count(&shell(0.08), 16), 2);
+        // Filled, or with holes between the balls that are as wide as cells, one.
+        let full = Ball {
+            center: [0.0; 3],
+            radius: 1.0,
+        };
+        assert_eq!(count(&[shell(0.1), vec![full]].concat(), 40), 1);
+        assert_eq!(count(&shell(0.01), 60), 1);
+    }
+}
