@@ -10,6 +10,11 @@
 //! mmCIF files. With the feature `mesh` (default) it reads meshes and samples solids by balls. Without them [`Knots`],
 //! the volumes of their balls, [`Conformers`], [`neighbours`] and [`numeric`] remain.
 
+mod ball;
+#[cfg(feature = "mesh")]
+pub mod ball_file;
+#[cfg(feature = "mesh")]
+pub mod ball_solid;
 pub mod ball_union;
 mod conformers;
 pub mod knots;
@@ -27,5 +32,6 @@ pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]
 mod test_support;
 
+pub use ball::Ball;
 pub use conformers::Conformers;
 pub use knots::Knots;

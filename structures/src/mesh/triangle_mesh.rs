@@ -74,6 +74,27 @@ impl Mesh {
             .sum()
     }
 
+    /// Centre of mass of a closed mesh, in the file's unit, by the divergence theorem; parts that overlap count twice.
+    /// The middle of the bounding box where the volume is zero.
+    pub fn centroid(&self) -> [f64; 3] {
+        let (low, high) = self.bounds();
+        let middle = scale(add(low, high), 0.5);
+        let (mut volume, mut moment) = (0.0, [0.0; 3]);
+        for &triangle in &self.triangles {
+            let [a, b, c] = self
+                .corners(triangle)
+                .map(|corner| subtract(corner, middle));
+            let part = dot(a, cross(b, c));
+            volume += part;
+            moment = add(moment, scale(add(a, add(b, c)), 0.25 * part));
+        }
+        if volume == 0.0 {
+            middle
+        } else {
+            add(middle, scale(moment, 1.0 / volume))
+        }
+    }
+
     /// Area of the surface, in the file's unit squared.
     pub fn area(&self) -> f64 {
         self.triangles

@@ -1,31 +1,7 @@
-//! Balls, and a tree of boxes over them that answers how far a point is from their union.
+//! A tree of boxes over balls that answers how far a point is from their union.
 
+use crate::ball::Ball;
 use crate::mesh::vector::{distance, dot};
-
-/// A ball.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball {
-    /// Its centre.
-    pub center: [f64; 3],
-    /// Its radius, above zero, in the unit of `center`.
-    pub radius: f64,
-}
-
-impl Ball {
-    /// Whether this ball holds all of `other`.
-    pub fn holds(&self, other: &Ball) -> bool {
-        distance(self.center, other.center) + other.radius <= self.radius
-    }
-
-    /// This ball grown by `margin`.
-    #[must_use]
-    pub fn grown(&self, margin: f64) -> Self {
-        Self {
-            center: self.center,
-            radius: self.radius + margin,
-        }
-    }
-}
 
 /// Balls in a leaf.
 const LEAF: usize = 8;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::sampling::ball_tree::Ball;
+use crate::ball::Ball;
 
 /// Lines along x that are measured, each way, at most for each step across the box.
 const WIDEST: f64 = 4.0;

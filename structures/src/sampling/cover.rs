@@ -7,12 +7,13 @@
 
 use rayon::prelude::*;
 
+use crate::ball::Ball;
 use crate::mesh::Probe;
 use crate::mesh::Solid;
 use crate::mesh::SurfaceSample;
 use crate::mesh::vector::{along, distance};
 use crate::neighbours::SpatialHash;
-use crate::sampling::ball_tree::{Ball, BallTree};
+use crate::sampling::ball_tree::BallTree;
 use crate::sampling::grid::DepthField;
 
 /// Distance between a surface point and the nearest sample, as a share of eps.

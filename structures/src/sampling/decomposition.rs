@@ -24,9 +24,9 @@
 //! Let S(A) be the union of the balls. For a closed mesh then S(A1) in S in S(A2), and S(A1) in S(A3) in S(A2). Each
 //! is within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
 
+use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
-use crate::sampling::ball_tree::Ball;
 use crate::sampling::cover;
 use crate::sampling::cover::Covering;
 use crate::sampling::error::SampleError;

@@ -16,10 +16,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::mesh::is_beside;
 use crate::mesh::vector::{along, distance, subtract};
-use crate::sampling::ball_tree::{Ball, BallTree};
+use crate::sampling::ball_tree::BallTree;
 use crate::sampling::beyond::volume_beyond;
 use crate::sampling::cover::SAMPLE_SPACING;
 use crate::sampling::grid::DepthField;

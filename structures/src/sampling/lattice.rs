@@ -9,7 +9,7 @@
 //! resolution needs: cells narrower than half the finest wavelength it keeps are to it as good as the nodes themselves,
 //! at 1 / k^3 of their number.
 
-use crate::sampling::ball_tree::Ball;
+use crate::ball::Ball;
 use crate::sampling::grid::DepthField;
 
 /// The balls, in rising order of their cells; `per_cell` is k, at least one, and `radius` in the solid's unit.

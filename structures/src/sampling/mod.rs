@@ -34,6 +34,6 @@ pub mod skeletal_density;
 pub mod voxels;
 pub mod weights;
 
-pub use self::ball_tree::Ball;
 pub use self::error::SampleError;
 pub use self::sample::{BallSet, Method, Sampling, SetName, Step, knots, sample};
+pub use crate::ball::Ball;

@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
+use crate::ball::Ball;
 use crate::mesh::Solid;
-use crate::sampling::ball_tree::Ball;
 use crate::sampling::grid::DepthField;
 
 /// The balls, in depth-first order of the cells.

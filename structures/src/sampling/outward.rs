@@ -8,9 +8,9 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::mesh::vector::{add, along, distance, norm, scale};
-use crate::sampling::ball_tree::Ball;
 
 /// Points that are looked at for all balls together, at most.
 const MAX_POINTS: usize = 200_000;

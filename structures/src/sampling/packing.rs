@@ -7,7 +7,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::sampling::ball_tree::Ball;
+use crate::ball::Ball;
 use crate::sampling::grid::DepthField;
 
 /// Nearer to a ball or the surface than this, in the solid's unit, a node counts as covered.

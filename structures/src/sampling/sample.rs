@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
 use crate::mesh::{Frame, Solid};
-use crate::sampling::ball_tree::Ball;
 use crate::sampling::cover::Covering;
 use crate::sampling::decomposition::{DecompositionOptions, decompose_in_order};
 use crate::sampling::error::SampleError;

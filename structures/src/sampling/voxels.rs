@@ -1,7 +1,7 @@
 //! Uniform sampling: the ball about the cube of one spacing around every inside node, all of radius eps. B&I's own
 //! baseline.
 
-use crate::sampling::ball_tree::Ball;
+use crate::ball::Ball;
 use crate::sampling::grid::DepthField;
 
 /// The balls, in the order of the nodes.

@@ -13,8 +13,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::ball::Ball;
 use crate::numeric::Bump;
-use crate::sampling::ball_tree::Ball;
 use crate::sampling::grid::DepthField;
 
 /// Rounds over all weights at most.

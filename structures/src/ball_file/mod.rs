@@ -1,0 +1,98 @@
+//! Files of balls: tables (CSV) and the sphere lists of robot descriptions (YAML, JSON).
+//!
+//! # Formats, by the ending of the name
+//!
+//! - **`.csv`**: a row a ball, columns `x,y,z,r` and perhaps `weight`, named by a header or in this order without one
+//!   ([`table`]). `knotdock sample` writes such tables.
+//! - **`.yml`, `.yaml`, `.json`**: any mapping with a `radius` and a `center` or `origin` of three numbers is a ball
+//!   ([`spheres`]). This reads cuRobo's `collision_spheres` and what foam writes. Balls are grouped by the link, or the
+//!   level of detail, that they stand under.
+//!
+//! Lengths are in the file's unit. Errors carry the line.
+
+mod document;
+mod error;
+mod spheres;
+mod table;
+
+pub use error::{BallFileError, BallFileErrorKind};
+
+use std::path::Path;
+
+use crate::ball::Ball;
+
+/// Endings of files of balls, and how each is read.
+const ENDINGS: [(&str, Format); 4] = [
+    ("csv", Format::Table),
+    ("yml", Format::Spheres),
+    ("yaml", Format::Spheres),
+    ("json", Format::Spheres),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Table,
+    Spheres,
+}
+
+/// Balls of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BallFile {
+    /// The balls.
+    pub balls: Vec<Ball>,
+    /// A weight a ball; `None` where the file gives none.
+    pub weights: Option<Vec<f64>>,
+    /// The link or level that was read, where the file has groups.
+    pub group: Option<String>,
+    /// Names of all groups of the file.
+    pub groups: Vec<String>,
+    /// Spheres left out because their radius is not above zero, by which cuRobo switches spheres off.
+    pub switched_off: usize,
+}
+
+/// Whether a file is one of balls, by its name.
+pub fn is_ball_file(path: &Path) -> bool {
+    format_of(path).is_some()
+}
+
+fn format_of(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
+    let known = ENDINGS.iter().find(|(name, _)| *name == ending);
+    known.map(|(_, format)| *format)
+}
+
+/// Reads the bytes of a file of balls; of one with several groups the one named.
+///
+/// # Errors
+/// [`BallFileError`] on text that is no such file, a row or sphere that is no ball, a group that is not there, several
+/// groups of which none is named, or a file without balls.
+pub fn parse(path: &Path, bytes: &[u8], group: Option<&str>) -> Result<BallFile, BallFileError> {
+    let read = || {
+        let format = format_of(path).ok_or(BallFileErrorKind::Ending)?;
+        let text = std::str::from_utf8(bytes).map_err(|_| BallFileErrorKind::NotText)?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let file = match (format, group) {
+            (Format::Table, Some(_)) => return Err(BallFileErrorKind::NoGroups.into()),
+            (Format::Table, None) => table::read(text)?,
+            (Format::Spheres, group) => spheres::read(text, group)?,
+        };
+        if file.balls.is_empty() {
+            return Err(BallFileErrorKind::Empty.into());
+        }
+        Ok(file)
+    };
+    read().map_err(|fault: error::Fault| BallFileError {
+        path: path.to_path_buf(),
+        line: fault.line,
+        kind: fault.kind,
+    })
+}
+
+/// A finite number.
+fn number(text: &str) -> Option<f64> {
+    let number = text.trim().parse::<f64>().ok();
+    number.filter(|number| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,112 @@
+//! Tables of balls: comma, semicolon or tab between fields, with or without a header.
+
+use super::error::{BallFileErrorKind, Fault};
+use super::{BallFile, number};
+use crate::ball::Ball;
+
+/// Names of the columns, in the order in which they stand without a header.
+const COLUMNS: [(&str, &str); 5] = [
+    ("x", "x"),
+    ("y", "y"),
+    ("z", "z"),
+    ("r", "radius"),
+    ("weight", "weight"),
+];
+
+/// Where each column stands; the last one need not be there.
+struct Places {
+    place: [usize; 4],
+    weight: Option<usize>,
+}
+
+pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
+    let first = text.lines().next().unwrap_or_default();
+    let delimiter = [',', ';', '\t']
+        .into_iter()
+        .max_by_key(|&sign| first.matches(sign).count());
+    let delimiter = delimiter.unwrap_or(',');
+    let mut file = BallFile::default();
+    let mut weights = Vec::new();
+    let mut places: Option<(Places, usize)> = None;
+    // Numbers need no quotes, but some programs write them: a line is a row.
+    for (line, text) in (1..).zip(text.lines()) {
+        if text.trim().is_empty() || text.starts_with('#') {
+            continue;
+        }
+        let fields = text.split(delimiter);
+        let record: Vec<&str> = fields.map(|field| field.trim().trim_matches('"')).collect();
+        let (places, fields) = match &places {
+            Some((places, fields)) => (places, *fields),
+            None => {
+                let is_header = record.iter().all(|field| number(field).is_none());
+                let found = if is_header {
+                    header(&record)
+                } else {
+                    unnamed(record.len())
+                };
+                let found = found.map_err(|kind| kind.at(line))?;
+                let (placed, fields) = places.insert((found, record.len()));
+                if is_header {
+                    continue;
+                }
+                (&*placed, *fields)
+            }
+        };
+        if record.len() != fields {
+            let (found, expected) = (record.len(), fields);
+            return Err(BallFileErrorKind::Fields { found, expected }.at(line));
+        }
+        let (ball, weight) = row(&record, places).map_err(|kind| kind.at(line))?;
+        file.balls.push(ball);
+        weights.extend(weight);
+    }
+    file.weights = (!weights.is_empty()).then_some(weights);
+    Ok(file)
+}
+
+fn header(record: &[&str]) -> Result<Places, BallFileErrorKind> {
+    let place = |(short, long): (&str, &str)| {
+        let is_named =
+            |field: &&str| field.eq_ignore_ascii_case(short) || field.eq_ignore_ascii_case(long);
+        record.iter().position(is_named)
+    };
+    let mut places = [0; 4];
+    for (found, names) in places.iter_mut().zip(COLUMNS) {
+        *found = place(names).ok_or(BallFileErrorKind::Column(names.0))?;
+    }
+    Ok(Places {
+        place: places,
+        weight: place(COLUMNS[4]),
+    })
+}
+
+fn unnamed(fields: usize) -> Result<Places, BallFileErrorKind> {
+    match fields {
+        4 | 5 => Ok(Places {
+            place: [0, 1, 2, 3],
+            weight: (fields == 5).then_some(4),
+        }),
+        found => Err(BallFileErrorKind::Fields { found, expected: 4 }),
+    }
+}
+
+fn row(record: &[&str], places: &Places) -> Result<(Ball, Option<f64>), BallFileErrorKind> {
+    let field = |column: usize, place: usize| {
+        let text = record.get(place).copied().unwrap_or_default();
+        number(text).ok_or_else(|| BallFileErrorKind::number(COLUMNS[column].0, text))
+    };
+    let mut numbers = [0.0; 4];
+    for (column, value) in numbers.iter_mut().enumerate() {
+        *value = field(column, places.place[column])?;
+    }
+    let [x, y, z, radius] = numbers;
+    if radius <= 0.0 {
+        return Err(BallFileErrorKind::Radius(radius));
+    }
+    let weight = places.weight.map(|place| field(4, place)).transpose()?;
+    if let Some(weight) = weight.filter(|&weight| weight < 0.0) {
+        return Err(BallFileErrorKind::Weight(weight));
+    }
+    let center = [x, y, z];
+    Ok((Ball { center, radius }, weight))
+}

@@ -1,0 +1,89 @@
+//! The solid of a mesh as balls, by Algorithm 1.
+
+use super::{BallSolid, density, mean_center};
+use crate::ball::Ball;
+use crate::ball_solid::BallHierarchy;
+use crate::knots::Knots;
+use crate::mesh::Solid;
+use crate::numeric::Bump;
+use crate::sampling::decomposition::{DecompositionOptions, reduce};
+use crate::sampling::hausdorff::HausdorffMeter;
+use crate::sampling::{Method, SampleError, SetName, sample, weights};
+
+/// Exponent of the bumps that weights are fitted for.
+const ALPHA: f64 = 2.0;
+
+/// How a mesh was sampled. Lengths in the file's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshSampling {
+    /// Nodes along each edge of the grid.
+    pub per_axis: usize,
+    /// eps of the grid.
+    pub grid_epsilon: f64,
+    /// Farthest distance of a point of the solid from the inner balls, as measured.
+    pub inward: f64,
+    /// Share of the solid's volume that the inner balls miss; `None` where the grid sees no volume.
+    pub missed: Option<f64>,
+}
+
+impl BallSolid {
+    /// The solid of a mesh: A1 of Algorithm 1 on a grid of `per_axis` nodes an axis (B&I, appendix A).
+    ///
+    /// The balls of [`Self::density`] are the originals of A3, with weights fitted for bumps of exponent 2.
+    ///
+    /// # Errors
+    /// [`SampleError::NothingInside`] when no ball can be placed.
+    pub fn from_mesh(solid: &Solid, per_axis: usize) -> Result<(Self, MeshSampling), SampleError> {
+        let method = Method::BehandishIlies(DecompositionOptions::default());
+        let mut sampling = sample(solid, per_axis, method)?;
+        let field = &sampling.field;
+        let meter = HausdorffMeter::new(solid, field);
+        let position = sampling.sets.iter().position(|set| set.name == SetName::A1);
+        let a1 = sampling
+            .sets
+            .swap_remove(position.ok_or(SampleError::NothingInside)?);
+        let balls = a1.balls;
+        let fit = meter.measure(&balls);
+        let grid_epsilon = field.grid.epsilon();
+        // Algorithm 1 keeps to the grid's eps on closed meshes; on others it may not.
+        let epsilon = grid_epsilon.max(fit.hausdorff_inward);
+        let few: Vec<Ball> = reduce(&balls, grid_epsilon)
+            .into_iter()
+            .map(|index| balls[index])
+            .collect();
+        let volume = meter.volume();
+        let weights = match (Bump::new(ALPHA), sampling.inside_nodes) {
+            (Ok(bump), 1..) => weights::fit(field, &few, bump, volume).weights,
+            _ => vec![1.0; few.len()],
+        };
+        let (unit, origin) = (solid.frame().unit, solid.frame().origin);
+        let scaled = |balls: &[Ball]| -> Vec<Ball> {
+            let scaled = balls.iter().map(|ball| Ball {
+                center: ball.center.map(|x| x * unit),
+                radius: ball.radius * unit,
+            });
+            scaled.collect()
+        };
+        let few = scaled(&few);
+        let centroid = if solid.mesh().is_closed() {
+            solid.mesh().centroid().map(|x| x * unit)
+        } else {
+            mean_center(&few, &weights)
+        };
+        let density: Knots = density(&few, &weights).map_err(|_| SampleError::NothingInside)?;
+        let solid = Self {
+            origin,
+            hierarchy: BallHierarchy::new(&scaled(&balls)),
+            epsilon: epsilon * unit,
+            centroid,
+            density,
+        };
+        let sampled = MeshSampling {
+            per_axis,
+            grid_epsilon: grid_epsilon * unit,
+            inward: fit.hausdorff_inward * unit,
+            missed: (volume > 0.0).then(|| fit.volume_missed / volume),
+        };
+        Ok((solid, sampled))
+    }
+}

@@ -1,0 +1,243 @@
+//! A sphere tree over balls, for queries between two solids.
+//!
+//! A binary tree, halved at the median of the longest side of the box of the centres. Each node knows a ball about all
+//! of its balls, and the largest of them. Building takes O(n log n) time and O(n) memory; a rotation changes nothing.
+
+use crate::ball::Ball;
+
+/// Balls in a leaf at most.
+const LEAF: usize = 4;
+/// Steps by which the centre of a bounding ball is moved towards what reaches out farthest.
+const STEPS: i32 = 24;
+
+/// Some of the balls.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// A ball that holds all of them.
+    pub bound: Ball,
+    /// Where they begin in the list of all.
+    pub first: u32,
+    pub count: u32,
+    /// The second half; the first follows this node. Zero in a leaf.
+    pub second: u32,
+    /// The largest of them.
+    pub largest: u32,
+}
+
+/// Balls and a tree of balls about them.
+#[derive(Clone, Debug)]
+pub struct BallHierarchy {
+    /// In the order of the tree.
+    balls: Vec<Ball>,
+    /// Nodes in depth-first order; none without balls.
+    nodes: Vec<Node>,
+}
+
+impl BallHierarchy {
+    /// Builds the tree. Balls in the same place keep their order.
+    pub fn new(balls: &[Ball]) -> Self {
+        let mut numbered: Vec<(usize, Ball)> = balls.iter().copied().enumerate().collect();
+        let mut nodes = Vec::new();
+        if !numbered.is_empty() {
+            build(&mut numbered, 0, &mut nodes);
+        }
+        Self {
+            balls: numbered.into_iter().map(|(_, ball)| ball).collect(),
+            nodes,
+        }
+    }
+
+    /// The balls, in the order of the tree.
+    pub fn balls(&self) -> &[Ball] {
+        &self.balls
+    }
+
+    /// A ball that holds all.
+    pub fn bound(&self) -> Option<Ball> {
+        self.nodes.first().map(|root| root.bound)
+    }
+
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The balls of a node.
+    #[inline(always)]
+    pub(super) fn members(&self, node: &Node) -> &[Ball] {
+        &self.balls[node.first as usize..(node.first + node.count) as usize]
+    }
+}
+
+fn build(balls: &mut [(usize, Ball)], first: usize, nodes: &mut Vec<Node>) {
+    let at = nodes.len();
+    nodes.push(Node {
+        bound: bounding(balls),
+        first: first as u32,
+        count: balls.len() as u32,
+        second: 0,
+        largest: (first + largest(balls)) as u32,
+    });
+    if balls.len() <= LEAF {
+        return;
+    }
+    let (low, high) = center_box(balls);
+    let side = |axis: usize| high[axis] - low[axis];
+    let longer = |best, axis| if side(axis) > side(best) { axis } else { best };
+    let axis = (1..3).fold(0, longer);
+    let middle = balls.len() / 2;
+    balls.select_nth_unstable_by(middle, |(one, a), (other, b)| {
+        let order = a.center[axis].total_cmp(&b.center[axis]);
+        order.then(one.cmp(other))
+    });
+    // What is picked is sorted by nothing within its halves; the order of the input makes it definite.
+    let (left, right) = balls.split_at_mut(middle);
+    left.sort_unstable_by_key(|(number, _)| *number);
+    right.sort_unstable_by_key(|(number, _)| *number);
+    build(left, first, nodes);
+    nodes[at].second = nodes.len() as u32;
+    build(right, first + middle, nodes);
+    // The median moved them.
+    let own = nodes[at];
+    let halves = [nodes[at + 1], nodes[own.second as usize]];
+    let radius = |half: &Node| {
+        let place = half.largest as usize - first;
+        let list = if place < middle { &*left } else { &*right };
+        list[if place < middle {
+            place
+        } else {
+            place - middle
+        }]
+        .1
+        .radius
+    };
+    let bigger = if radius(&halves[1]) > radius(&halves[0]) {
+        1
+    } else {
+        0
+    };
+    nodes[at].largest = halves[bigger].largest;
+}
+
+fn largest(balls: &[(usize, Ball)]) -> usize {
+    (1..balls.len()).fold(0, |best, at| {
+        if balls[at].1.radius > balls[best].1.radius {
+            at
+        } else {
+            best
+        }
+    })
+}
+
+fn center_box(balls: &[(usize, Ball)]) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (_, ball) in balls {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(ball.center[axis]);
+            high[axis] = high[axis].max(ball.center[axis]);
+        }
+    }
+    (low, high)
+}
+
+/// A small ball that holds all: from the middle of their box, the centre moves towards the ball that reaches out
+/// farthest, by ever smaller steps (Badoiu and Clarkson, SODA 2003).
+fn bounding(balls: &[(usize, Ball)]) -> Ball {
+    if let [(_, only)] = balls {
+        return *only;
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (_, ball) in balls {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(ball.center[axis] - ball.radius);
+            high[axis] = high[axis].max(ball.center[axis] + ball.radius);
+        }
+    }
+    let mut center = [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+    let mut best = farthest(balls, center);
+    let mut bound = (center, best.0);
+    for step in 2..STEPS + 2 {
+        let (reach, at) = best;
+        let ball = &balls[at].1;
+        let toward = [0, 1, 2].map(|axis| ball.center[axis] - center[axis]);
+        let length = reach - ball.radius;
+        if length <= 0.0 {
+            break;
+        }
+        // The far point of the ball stands `reach` away; the step goes a share of that.
+        let share = reach / length / f64::from(step);
+        center = [0, 1, 2].map(|axis| center[axis] + share * toward[axis]);
+        best = farthest(balls, center);
+        if best.0 < bound.1 {
+            bound = (center, best.0);
+        }
+    }
+    // Rounding must not let a ball peep out.
+    Ball {
+        center: bound.0,
+        radius: bound.1 * (1.0 + 4.0 * f64::EPSILON),
+    }
+}
+
+/// How far the balls reach out from a point, and which of them does.
+fn farthest(balls: &[(usize, Ball)], center: [f64; 3]) -> (f64, usize) {
+    let mut best = (0.0, 0);
+    for (at, (_, ball)) in balls.iter().enumerate() {
+        let [x, y, z] = [0, 1, 2].map(|axis| ball.center[axis] - center[axis]);
+        let reach = (x * x + y * y + z * z).sqrt() + ball.radius;
+        if reach > best.0 {
+            best = (reach, at);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Balls in no order, of very different size.
+    pub fn jumbled(count: i32, seed: f64) -> Vec<Ball> {
+        let part = |i: i32, step: f64| (seed + f64::from(i) * step).fract();
+        let ball = |i| Ball {
+            center: [
+                3.0 * part(i, 0.8191) - 1.5,
+                2.0 * part(i, 0.6710) - 1.0,
+                part(i, 0.5497) - 0.5,
+            ],
+            radius: 0.002 + 0.3 * part(i, 0.4503).powi(6),
+        };
+        (1..=count).map(ball).collect()
+    }
+
+    #[test]
+    fn every_node_holds_its_balls_and_knows_the_largest() {
+        for count in [1, 2, 4, 5, 300] {
+            let given = jumbled(count, 0.3);
+            let tree = BallHierarchy::new(&given);
+            assert_eq!(tree.balls().len(), given.len());
+            assert!(given.iter().all(|ball| tree.balls().contains(ball)));
+            for (at, node) in tree.nodes().iter().enumerate() {
+                let members = tree.members(node);
+                assert!(
+                    members
+                        .iter()
+                        .all(|ball| node.bound.grown(1e-14).holds(ball))
+                );
+                let radii = members.iter().map(|ball| ball.radius);
+                let largest = tree.balls()[node.largest as usize].radius;
+                assert_eq!(largest, radii.fold(0.0, f64::max), "node {at} of {count}");
+                if node.second > 0 {
+                    let (one, other) = (&tree.nodes()[at + 1], &tree.nodes()[node.second as usize]);
+                    assert_eq!(
+                        (one.first, one.first + one.count),
+                        (node.first, other.first)
+                    );
+                    assert_eq!(one.count + other.count, node.count);
+                } else {
+                    assert!(members.len() <= LEAF);
+                }
+            }
+        }
+        assert!(BallHierarchy::new(&[]).bound().is_none());
+    }
+}

@@ -1,0 +1,171 @@
+//! Solids as balls between which their surface is known to lie.
+//!
+//! # What is certain
+//!
+//! Every *inner* ball lies inside the solid S. The *outer* balls, which are the inner ones grown by eps, hold S. So for
+//! two solids at a pose (B&I, section 4.1):
+//!
+//! - inner balls that meet certify a hit, also where one solid contains the other;
+//! - outer balls that do not meet certify a miss;
+//! - the distance of the solids lies between that of the outer and that of the inner balls.
+//!
+//! Since outer balls are inner balls grown, one tree serves both sets: a pair of balls with the signed distance g has
+//! the signed distance g - `eps_A` - `eps_B` once grown.
+//!
+//! # Where the balls come from
+//!
+//! - **Mesh**: the set A1 of Algorithm 1, eps that of its grid, or what was measured where that is more
+//!   ([`BallSolid::from_mesh`]). A3 as it is misses a little of the solid, so it is no outer set.
+//! - **Molecule**, or any list of balls: the solid is their union, and eps is zero ([`BallSolid::from_balls`]).
+//!
+//! # Conventions
+//!
+//! Lengths are in the file's unit. Balls are stored relative to [`BallSolid::origin`], so that an offset of the file
+//! costs no digits; [`Motion`] takes the one solid's stored coordinates to the other's.
+
+mod closest;
+mod from_mesh;
+mod hierarchy;
+mod meeting;
+mod motion;
+
+pub use closest::{Closest, ClosestSearch, Limits};
+pub use from_mesh::MeshSampling;
+pub use hierarchy::BallHierarchy;
+pub use meeting::MeetingPairs;
+pub use motion::Motion;
+
+use crate::ball::Ball;
+use crate::knots::{Knots, KnotsError};
+
+/// A solid between two sets of balls.
+#[derive(Clone, Debug)]
+pub struct BallSolid {
+    /// Where the stored coordinates have their zero, in the file's coordinates.
+    origin: [f64; 3],
+    /// The inner balls, relative to `origin`.
+    hierarchy: BallHierarchy,
+    /// What the inner balls must grow by to hold the solid.
+    epsilon: f64,
+    /// Centre of mass of the solid, relative to `origin`.
+    centroid: [f64; 3],
+    /// Balls and weights whose summed bumps are about one inside the solid; relative to `origin`.
+    density: Knots,
+}
+
+impl BallSolid {
+    /// The union of `balls`, which are weighted by `weights` where their overlap counts; in the file's coordinates.
+    ///
+    /// # Errors
+    /// [`KnotsError`] without balls, with radii not above zero, or with numbers that are not finite.
+    pub fn from_balls(balls: &[Ball], weights: Option<&[f64]>) -> Result<Self, KnotsError> {
+        let ones = vec![1.0; balls.len()];
+        let weights = weights.unwrap_or(&ones);
+        let knots = Knots::with_weights(
+            balls.iter().map(|ball| ball.center).collect(),
+            balls.iter().map(|ball| ball.radius).collect(),
+            weights.to_vec(),
+        )?;
+        let (low, high) = knots.bounds();
+        let origin = [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+        let moved: Vec<Ball> = balls.iter().map(|ball| relative(ball, origin)).collect();
+        let centroid = mean_center(&moved, weights);
+        Ok(Self {
+            origin,
+            hierarchy: BallHierarchy::new(&moved),
+            epsilon: 0.0,
+            centroid,
+            density: density(&moved, weights)?,
+        })
+    }
+
+    /// Where the stored coordinates have their zero, in the file's coordinates.
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// The inner balls in a sphere tree, relative to [`Self::origin`].
+    pub fn hierarchy(&self) -> &BallHierarchy {
+        &self.hierarchy
+    }
+
+    /// Balls inside the solid, relative to [`Self::origin`].
+    pub fn inner(&self) -> &[Ball] {
+        self.hierarchy.balls()
+    }
+
+    /// Balls that together hold the solid, relative to [`Self::origin`].
+    pub fn outer(&self) -> Vec<Ball> {
+        let grown = self.inner().iter().map(|ball| ball.grown(self.epsilon));
+        grown.collect()
+    }
+
+    /// How far the surface may lie outside of the inner balls.
+    pub fn epsilon(&self) -> f64 {
+        self.epsilon
+    }
+
+    /// Centre of mass of the solid, relative to [`Self::origin`].
+    pub fn centroid(&self) -> [f64; 3] {
+        self.centroid
+    }
+
+    /// Balls with weights, none negative, whose summed bumps are about one inside the solid and zero outside; relative
+    /// to [`Self::origin`]. Each is an inner ball, so solids whose bumps overlap meet.
+    pub fn density(&self) -> &Knots {
+        &self.density
+    }
+
+    /// Radius of a ball about the origin of the stored coordinates that holds the outer balls.
+    pub fn reach(&self) -> f64 {
+        let reach = |ball: &Ball| norm(ball.center) + ball.radius;
+        self.inner().iter().map(reach).fold(0.0, f64::max) + self.epsilon
+    }
+}
+
+/// A ball relative to a point.
+fn relative(ball: &Ball, origin: [f64; 3]) -> Ball {
+    Ball {
+        center: [0, 1, 2].map(|axis| ball.center[axis] - origin[axis]),
+        radius: ball.radius,
+    }
+}
+
+/// Mean of the centres, weighted by weight and volume.
+fn mean_center(balls: &[Ball], weights: &[f64]) -> [f64; 3] {
+    let largest = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
+    let (mut sum, mut total) = ([0.0; 3], 0.0);
+    for (ball, weight) in balls.iter().zip(weights) {
+        // Relative to the largest, so that no cube under- or overflows.
+        let share = weight.max(0.0) * (ball.radius / largest).powi(3);
+        total += share;
+        for (sum, center) in sum.iter_mut().zip(ball.center) {
+            *sum += share * center;
+        }
+    }
+    if total > 0.0 {
+        sum.map(|sum| sum / total)
+    } else {
+        [0.0; 3]
+    }
+}
+
+/// Weighted balls, those of no weight left out; all of them at weight one if none has any.
+fn density(balls: &[Ball], weights: &[f64]) -> Result<Knots, KnotsError> {
+    let any = weights.iter().any(|&weight| weight > 0.0);
+    let (balls, weights): (Vec<&Ball>, Vec<f64>) = balls
+        .iter()
+        .zip(weights)
+        .map(|(ball, &weight)| (ball, if any { weight } else { 1.0 }))
+        .filter(|(_, weight)| *weight > 0.0)
+        .unzip();
+    Knots::with_weights(
+        balls.iter().map(|ball| ball.center).collect(),
+        balls.iter().map(|ball| ball.radius).collect(),
+        weights,
+    )
+}
+
+fn norm([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
+}
