@@ -4,6 +4,7 @@ pub mod bounded_read;
 pub mod dock;
 pub mod error;
 pub mod evaluate;
+pub mod geometry;
 pub mod mesh;
 pub mod options;
 pub mod output;
