@@ -41,6 +41,7 @@ pub mod engine;
 pub mod exact;
 pub mod kernel;
 pub mod lifted_axis;
+pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;

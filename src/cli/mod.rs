@@ -4,6 +4,7 @@
 mod arguments;
 mod batch;
 mod calibrate;
+mod collide;
 mod dock;
 mod docking;
 mod evaluate;
@@ -56,6 +57,7 @@ enum Command {
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
     Sample(sample::Sample),
+    Collide(Box<collide::Collide>),
     Tradeoff(Box<tradeoff::TradeoffCommand>),
     Calibrate(calibrate::Calibrate),
 }
@@ -93,6 +95,7 @@ pub fn main() -> ExitCode {
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
         Command::Sample(command) => command.run(console),
+        Command::Collide(command) => command.run(console),
         Command::Tradeoff(command) => command.run(console),
         Command::Calibrate(command) => command.run(console),
     };

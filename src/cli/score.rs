@@ -16,6 +16,7 @@ use knotdock_scoring::transform::truncation::ModeOrder;
 use super::arguments::memory;
 use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::inputs::molecules::Input;
+use crate::cli::inputs::poses::pose;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{regions_text, site_text};
 use crate::cli::messages::failure::Failure;
@@ -54,9 +55,6 @@ enum Order {
     /// By falling magnitude at the pose's rotation.
     Magnitude,
 }
-
-/// How far from 1 the length of a quaternion may be: what digits left off explain.
-const UNIT_LENGTH: f64 = 1e-3;
 
 impl Score {
     /// Scores.
@@ -143,39 +141,6 @@ fn pose_terms_text(values: &TermValues) -> Option<String> {
         .filter_map(|(term, value)| Some(format!("{} {:.3}", term.label, value?)));
     let terms = acting.collect::<Vec<_>>().join(", ");
     (!terms.is_empty()).then(|| format!("Pose terms: {terms}"))
-}
-
-/// A pose from seven numbers.
-fn pose(text: &str) -> Result<Pose, Failure> {
-    let refused = |message: String, remedy: &str| Failure::input(message).remedy(remedy);
-    let numbers = text.split(',').map(|part| {
-        let number = part.trim().parse::<f64>().ok();
-        number.filter(|number| number.is_finite()).ok_or_else(|| {
-            refused(
-                format!("--pose: '{}' is not a finite number", part.trim()),
-                "give seven finite numbers, qw,qx,qy,qz,tx,ty,tz, with commas between them",
-            )
-        })
-    });
-    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
-    let [qw, qx, qy, qz, tx, ty, tz] = numbers[..] else {
-        return Err(refused(
-            format!("--pose has {} numbers, not seven", numbers.len()),
-            "give a unit quaternion and a translation in Å: qw,qx,qy,qz,tx,ty,tz",
-        ));
-    };
-    let length = [qw, qx, qy, qz]
-        .iter()
-        .fold(0.0f64, |length, part| length.hypot(*part));
-    if (length - 1.0).abs() > UNIT_LENGTH {
-        return Err(refused(
-            format!(
-                "--pose: the quaternion has length {length}; a rotation has length 1, to within {UNIT_LENGTH}"
-            ),
-            "divide qw, qx, qy and qz by their length, and check that the scalar part comes first",
-        ));
-    }
-    Ok(Pose::from_parts([qw, qx, qy, qz], [tx, ty, tz]))
 }
 
 /// The pose as two solids: buried surface and shared volume.
@@ -271,29 +236,5 @@ mod tests {
             .map(|term| format!("{} 1.500", term.label));
         let found = text.strip_prefix("Pose terms: ").unwrap().split(", ");
         assert!(found.eq(expected), "{text}");
-    }
-
-    #[test]
-    fn poses_are_normalised_when_they_nearly_are() {
-        let found = pose("1.0005, 0,0,0, -1,2.5,3e1").unwrap();
-        assert_eq!(
-            found,
-            Pose::from_parts([1.0, 0.0, 0.0, 0.0], [-1.0, 2.5, 30.0])
-        );
-        for text in [
-            "1,0,0,0,0,0",
-            "1,0,0,0,0,0,0,0",
-            "",
-            "1,0,0,0,0,0,nan",
-            "1,0,0,0,0,inf,0",
-            "1,0,0,0,0,,0",
-            "1.002,0,0,0,0,0,0",
-            "0,0,0,0,0,0,0",
-            "1e300,1e300,0,0,0,0,0",
-        ] {
-            let failure = pose(text).unwrap_err();
-            assert_eq!(failure.exit_code(), 2, "{text}");
-            assert!(failure.text().contains("help:"), "{text}");
-        }
     }
 }

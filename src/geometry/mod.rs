@@ -1,4 +1,4 @@
-//! Questions of geometry that ball sets answer: obstacles and Minkowski operations.
+//! Questions of geometry that ball sets answer: collision, obstacles and Minkowski operations.
 //!
 //! # Conventions
 //!
@@ -8,6 +8,7 @@
 
 pub mod ball_field;
 pub mod bracket;
+pub mod collide;
 pub mod morphology;
 pub mod motion;
 pub mod obstacle;

@@ -89,9 +89,11 @@ pub fn duration(text: &str) -> Result<f64, String> {
     let (number, unit) = text.split_at(end);
     let unit = match unit.trim() {
         "" | "s" => 1.0,
+        "us" | "µs" => 1e-6,
+        "ms" => 1e-3,
         "min" => 60.0,
         "h" => 3600.0,
-        other => return Err(format!("`{other}` is no unit of time; write s, min or h")),
+        other => return Err(format!("`{other}` is no unit of time; write us, ms, s, min or h")),
     };
     above_zero(number.trim())
         .map(|value| value * unit)

@@ -4,5 +4,7 @@ pub mod batch_pairs;
 pub mod bodies;
 pub mod meshes;
 pub mod molecules;
+pub mod poses;
 pub mod request;
 mod room;
+pub mod solids;

@@ -16,6 +16,7 @@ use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
 use knotdock::threads::ThreadsError;
+use knotdock_structures::ball_file::BallFileError;
 use knotdock_structures::mesh::MeshError;
 use knotdock_structures::molecule::ReadError;
 
@@ -73,6 +74,12 @@ impl From<ReadError> for Failure {
 impl From<MeshError> for Failure {
     fn from(error: MeshError) -> Self {
         unreadable(&error, error.file(), error.line(), error.remedy())
+    }
+}
+
+impl From<BallFileError> for Failure {
+    fn from(error: BallFileError) -> Self {
+        unreadable(&error, Some(&error.path), error.line, error.remedy())
     }
 }
 

@@ -3,10 +3,12 @@
 pub mod atom_table;
 pub mod batch_results;
 pub mod cells;
+pub mod collisions;
 pub(super) mod csv_lines;
 pub mod fields;
 pub mod pair_table;
 pub(super) mod pose_columns;
+pub mod pose_list;
 pub mod poses;
 pub mod poses_reader;
 pub mod quality;

@@ -55,14 +55,14 @@ pub enum PoseTableError {
         expected: &'static str,
     },
     /// A quaternion is too far from unit length to be a rotation.
-    #[error("the quaternion of rank {rank} has length {length}; a rotation has 1")]
+    #[error("the quaternion of {of} has length {length}; a rotation has 1")]
     Quaternion {
         /// The file.
         path: PathBuf,
         /// 1-based line.
         line: u64,
-        /// The row's rank.
-        rank: usize,
+        /// The row: its rank or number.
+        of: String,
         /// The quaternion's length.
         length: f64,
     },
@@ -139,29 +139,17 @@ impl PoseTable {
     }
 }
 
-/// Where the columns that place the ligand stand in a header.
+/// Where the columns of a table of poses stand in a header.
 struct PoseColumns {
     rank: usize,
-    quaternion: [(&'static str, usize); 4],
-    translation: [(&'static str, usize); 3],
+    placement: PlacementColumns,
 }
 
 impl PoseColumns {
     fn find(path: &Path, header: &StringRecord) -> Result<Self, PoseTableError> {
-        let place = |column: &'static str| {
-            header
-                .iter()
-                .position(|name| name == column)
-                .map(|place| (column, place))
-                .ok_or_else(|| PoseTableError::MissingColumn {
-                    path: path.to_owned(),
-                    column,
-                })
-        };
         Ok(Self {
-            rank: place("rank")?.1,
-            quaternion: [place("qw")?, place("qx")?, place("qy")?, place("qz")?],
-            translation: [place("tx")?, place("ty")?, place("tz")?],
+            rank: place_of(path, header, "rank")?,
+            placement: PlacementColumns::find(path, header)?,
         })
     }
 
@@ -171,26 +159,63 @@ impl PoseColumns {
         line: u64,
         record: &StringRecord,
     ) -> Result<PoseRow, PoseTableError> {
-        let fault = |column, field: &str, expected| PoseTableError::Field {
+        let field = record.get(self.rank).unwrap_or("");
+        let rank = field.parse::<usize>().ok().filter(|&rank| rank > 0);
+        let rank = rank.ok_or_else(|| PoseTableError::Field {
             path: path.to_owned(),
             line,
-            column,
+            column: "rank",
             field: field.to_owned(),
-            expected,
-        };
+            expected: "a whole number above zero",
+        })?;
+        let of = || format!("rank {rank}");
+        let pose = self.placement.pose(path, line, record, of)?;
+        Ok(PoseRow { rank, pose })
+    }
+}
+
+/// Where the columns that place the ligand stand in a header.
+pub(super) struct PlacementColumns {
+    quaternion: [(&'static str, usize); 4],
+    translation: [(&'static str, usize); 3],
+}
+
+impl PlacementColumns {
+    /// The columns in the order in which they stand without a header.
+    pub(super) const UNNAMED: Self = Self {
+        quaternion: [("qw", 0), ("qx", 1), ("qy", 2), ("qz", 3)],
+        translation: [("tx", 4), ("ty", 5), ("tz", 6)],
+    };
+
+    pub(super) fn find(path: &Path, header: &StringRecord) -> Result<Self, PoseTableError> {
+        let mut found = Self::UNNAMED;
+        for (column, place) in found.quaternion.iter_mut().chain(&mut found.translation) {
+            *place = place_of(path, header, column)?;
+        }
+        Ok(found)
+    }
+
+    /// The pose of a row, which `of` names.
+    pub(super) fn pose(
+        &self,
+        path: &Path,
+        line: u64,
+        record: &StringRecord,
+        of: impl FnOnce() -> String,
+    ) -> Result<Pose, PoseTableError> {
         let float = |(column, place): (&'static str, usize)| {
-            let field = record.get(place).unwrap_or("");
+            let field = record.get(place).unwrap_or("").trim();
             match field.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(value),
-                _ => Err(fault(column, field, "a finite number")),
+                _ => Err(PoseTableError::Field {
+                    path: path.to_owned(),
+                    line,
+                    column,
+                    field: field.to_owned(),
+                    expected: "a finite number",
+                }),
             }
         };
-        let rank_field = record.get(self.rank).unwrap_or("");
-        let rank = rank_field
-            .parse::<usize>()
-            .ok()
-            .filter(|&rank| rank > 0)
-            .ok_or_else(|| fault("rank", rank_field, "a whole number above zero"))?;
         let [w, x, y, z] = self.quaternion;
         let quaternion = [float(w)?, float(x)?, float(y)?, float(z)?];
         let [x, y, z] = self.translation;
@@ -205,15 +230,24 @@ impl PoseColumns {
             return Err(PoseTableError::Quaternion {
                 path: path.to_owned(),
                 line,
-                rank,
+                of: of(),
                 length,
             });
         }
-        Ok(PoseRow {
-            rank,
-            pose: Pose::from_parts(quaternion, translation),
-        })
+        Ok(Pose::from_parts(quaternion, translation))
     }
+}
+
+fn place_of(
+    path: &Path,
+    header: &StringRecord,
+    column: &'static str,
+) -> Result<usize, PoseTableError> {
+    let place = header.iter().position(|name| name == column);
+    place.ok_or_else(|| PoseTableError::MissingColumn {
+        path: path.to_owned(),
+        column,
+    })
 }
 
 #[cfg(test)]

@@ -29,6 +29,8 @@ pub(super) struct Node {
 pub struct BallHierarchy {
     /// In the order of the tree.
     balls: Vec<Ball>,
+    /// Where each stood in the list given.
+    order: Vec<u32>,
     /// Nodes in depth-first order; none without balls.
     nodes: Vec<Node>,
 }
@@ -41,8 +43,13 @@ impl BallHierarchy {
         if !numbered.is_empty() {
             build(&mut numbered, 0, &mut nodes);
         }
+        let (order, balls) = numbered
+            .into_iter()
+            .map(|(number, ball)| (number as u32, ball))
+            .unzip();
         Self {
-            balls: numbered.into_iter().map(|(_, ball)| ball).collect(),
+            balls,
+            order,
             nodes,
         }
     }
@@ -50,6 +57,11 @@ impl BallHierarchy {
     /// The balls, in the order of the tree.
     pub fn balls(&self) -> &[Ball] {
         &self.balls
+    }
+
+    /// Where each ball, in the order of the tree, stood in the list given to [`Self::new`].
+    pub fn order(&self) -> &[u32] {
+        &self.order
     }
 
     /// A ball that holds all.
@@ -215,7 +227,9 @@ pub(super) mod tests {
             let given = jumbled(count, 0.3);
             let tree = BallHierarchy::new(&given);
             assert_eq!(tree.balls().len(), given.len());
-            assert!(given.iter().all(|ball| tree.balls().contains(ball)));
+            for (ball, &number) in tree.balls().iter().zip(tree.order()) {
+                assert_eq!(*ball, given[number as usize]);
+            }
             for (at, node) in tree.nodes().iter().enumerate() {
                 let members = tree.members(node);
                 assert!(

@@ -30,7 +30,7 @@
 
 mod lens;
 mod pairs;
-mod tail_integral;
+pub(crate) mod tail_integral;
 #[cfg(test)]
 mod tests;
 

@@ -5,7 +5,7 @@ use knotdock_structures::numeric::double_exponential::{self, Node};
 
 /// Integral from v to 1 of u psi(u) du by double-exponential quadrature, which takes in the bump's end however steep it
 /// is.
-pub(super) struct TailIntegral {
+pub(crate) struct TailIntegral {
     bump: Bump,
     /// Nodes of the unit interval and their weights.
     nodes: Vec<(Node, f64)>,
@@ -13,7 +13,7 @@ pub(super) struct TailIntegral {
 
 impl TailIntegral {
     /// Prepares the nodes.
-    pub(super) fn new(bump: Bump) -> Self {
+    pub(crate) fn new(bump: Bump) -> Self {
         let step = 1.0 / 32.0;
         let nodes = double_exponential::nodes(step, 128)
             .map(|node| (node, node.slope * step))
@@ -23,7 +23,7 @@ impl TailIntegral {
     }
 
     /// The integral from v, 0 to 1, to 1.
-    pub(super) fn value(&self, v: f64) -> f64 {
+    pub(crate) fn value(&self, v: f64) -> f64 {
         let length = 1.0 - v;
         self.nodes
             .iter()

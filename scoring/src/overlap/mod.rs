@@ -1,0 +1,39 @@
+//! Overlap energy of two weighted ball sets at a pose, with force and torque.
+//!
+//! E(R, t) = <f_A, f_B o pose^-1> = sum over pairs of w_i v_j <psi_ri, psi_sj>(|R y_j + t - x_i|), with f the sum of a
+//! body's weighted bumps. It is B&I eq. 50 with the product kernel ([`crate::kernel::product`]): an integral over
+//! space, so that balls of any size count by volume. Energies are volumes, in the cube of the balls' unit.
+//!
+//! - Pairs: [`PairOverlap`] is the kernel, [`Accumulator`] the sum that a tree traversal feeds, [`overlap_of_pairs`] the
+//!   sum over a list.
+//! - Modes: [`OverlapModes`] sums the lowest Fourier modes of both bodies, with a bound on the rest that can certify a
+//!   hit; [`OverlapModes::start`] does so block by block, until a deadline or a certified hit.
+//!
+//! [`pairs_nanoseconds`] and [`OverlapModes::nanoseconds`] say which is expected to cost less. Pairs are exact and cost
+//! what meets; modes cost the same at every pose, and a hit of deep bodies shows after a hundred of them.
+//!
+//! # Conventions
+//!
+//! The force is -dE/dt on body B, the torque minus the slope of E by a turn of B about a chosen point, both in A's
+//! frame. Body A feels the opposite. A pose takes a ball of B at y to R y + t.
+//!
+//! # Contact
+//!
+//! Bumps vanish with all their derivatives at the end of their ball. The energy of balls that graze underflows: with an
+//! overlap of 1e-9 of the radius it is 0 in f64. So grazing contact is decided by d < r + s ([`meet`],
+//! [`Overlap::pairs`]). An energy above its error shows a hit; an energy of 0 shows nothing.
+
+mod accumulator;
+mod modes;
+mod pair;
+mod pair_table;
+mod pairs;
+mod quadrature;
+mod sharp;
+#[cfg(test)]
+mod tests;
+
+pub use accumulator::{Accumulator, Overlap, WeightedBall};
+pub use modes::{ModesOverlap, ModesSum, ModesWorkspace, OverlapModes, OverlapModesError};
+pub use pair::{PairOverlap, meet};
+pub use pairs::{overlap_of_all, overlap_of_pairs, pairs_nanoseconds};

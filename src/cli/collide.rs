@@ -1,0 +1,296 @@
+//! `knotdock collide`: whether two solids meet at a pose, how far apart or how deep they are, and what pushes them out.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use knotdock::geometry::collide::impact::{Impact, first_impact};
+use knotdock::geometry::collide::{
+    Answer, CollisionScene, Quantities, Questions, Verdict, Workspace,
+};
+use knotdock::options::Threads;
+use knotdock::options::values::{duration, not_negative};
+use knotdock::output::tables::collisions;
+use knotdock::threads;
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::mesh::Figure;
+use serde_json::{Value, json};
+
+use crate::cli::arguments::memory;
+use crate::cli::arguments::output_file::check_output;
+use crate::cli::inputs::poses::{PoseArguments, pose_file};
+use crate::cli::inputs::solids::{SolidArguments, SolidInput};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// Collide two solids: hit or free at each pose, with bounds of the distance, the shared volume, force and torque.
+///
+/// A solid is a mesh (.stl, .obj, .ply, .off), a molecule (.pdb, .ent, .cif) or a file of balls (.csv, cuRobo .yml,
+/// foam .json). Balls inside both that meet certify a hit, containment included. Balls that hold both and do not meet
+/// certify that the pose is free. Between the two it is undecided, and a finer --grid says more.
+#[derive(Args, Debug)]
+pub struct Collide {
+    /// The solid that stands; robot.yml:hand picks a link, FILE:H,L chains.
+    #[arg(value_name = "A")]
+    first: String,
+    /// The solid that moves, in the same unit of length.
+    #[arg(value_name = "B")]
+    second: String,
+    #[command(flatten)]
+    poses: PoseArguments,
+    /// Poses in order, with geodesics between: report the first time at which the solids may meet.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose", "poses"])]
+    path: Option<PathBuf>,
+    /// Count poses as hits at which the solids are closer than this.
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0, value_parser = not_negative)]
+    margin: f64,
+    /// Time for a pose, such as 1ms: bounds are the best known by then, which depend on the machine.
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    deadline: Option<f64>,
+    /// What to compute beside the verdict; with commas between.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
+    compute: Vec<Compute>,
+    /// The table to write, a row a pose.
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    /// Replace a file that is there.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    solids: SolidArguments,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// What may be computed of a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Compute {
+    /// The verdict alone.
+    Verdict,
+    /// Bounds of the signed distance, with witness points.
+    Distance,
+    /// The shared volume.
+    Volume,
+    /// Overlap energy, force and torque.
+    Force,
+}
+
+/// How near a path comes before it counts as a hit, as a share of the smaller solid.
+const TOLERANCE: f64 = 1e-6;
+
+impl Collide {
+    /// Answers.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.collide(console))?
+    }
+
+    /// Answers on the threads of the caller.
+    fn collide(&self, console: Console) -> Result<(), Failure> {
+        let poses = match &self.path {
+            Some(path) => pose_file(path)?,
+            None => self.poses.read()?,
+        };
+        let solids = self.read()?;
+        self.check_output(&solids)?;
+        for (side, solid) in ["A", "B"].iter().zip(&solids) {
+            solid.describe(side, console);
+        }
+        let scene = CollisionScene::new(
+            solids.each_ref().map(|input| input.solid.clone()),
+            self.margin,
+        );
+        let questions = Questions::new(
+            scene,
+            self.quantities(),
+            self.deadline.map(Duration::from_secs_f64),
+        )
+        .map_err(Failure::other)?;
+        let start = Instant::now();
+        let answers = questions.answers(&poses);
+        let seconds = start.elapsed().as_secs_f64();
+        let impact = self.path.is_some().then(|| impact(&questions, &poses));
+        if let Some(file) = &self.output {
+            collisions::write(file, &poses, &answers)?.place()?;
+        }
+        console.say(format!("\n{}", summary(&answers, &questions, seconds)));
+        if let [answer] = &answers[..] {
+            console.say(one_pose(answer));
+        }
+        if let Some(impact) = &impact {
+            console.say(impact_text(impact));
+        }
+        if let Some(file) = &self.output {
+            console.say(format!(
+                "Wrote {} rows to {}",
+                answers.len(),
+                file.display()
+            ));
+        }
+        console.result(&self.object(&solids, &questions, &poses, &answers, impact, seconds))
+    }
+
+    fn read(&self) -> Result<[SolidInput; 2], Failure> {
+        let allowed = memory::default_limit();
+        let first = SolidInput::read(&self.first, &self.solids, allowed)?;
+        let second = if self.second == self.first {
+            first.clone()
+        } else {
+            SolidInput::read(&self.second, &self.solids, allowed)?
+        };
+        Ok([first, second])
+    }
+
+    fn check_output(&self, solids: &[SolidInput; 2]) -> Result<(), Failure> {
+        let Some(file) = &self.output else {
+            return Ok(());
+        };
+        let read: Vec<&Path> = solids
+            .iter()
+            .map(SolidInput::path)
+            .chain(self.poses.file())
+            .chain(self.path.as_deref())
+            .collect();
+        check_output(file, read, self.force)
+    }
+
+    fn quantities(&self) -> Quantities {
+        let wants = |what| self.compute.contains(&what);
+        Quantities {
+            distance: wants(Compute::Distance),
+            volume: wants(Compute::Volume),
+            force: wants(Compute::Force),
+        }
+    }
+
+    fn object(
+        &self,
+        solids: &[SolidInput; 2],
+        questions: &Questions,
+        poses: &[Pose],
+        answers: &[Answer],
+        impact: Option<Impact>,
+        seconds: f64,
+    ) -> Value {
+        let rows = self
+            .output
+            .is_none()
+            .then(|| collisions::objects(poses, answers));
+        json!({
+            "a": solids[0].object(),
+            "b": solids[1].object(),
+            "margin": self.margin,
+            "undecided_band": questions.scene().band(),
+            "hit": count(answers, Verdict::Hit),
+            "free": count(answers, Verdict::Free),
+            "undecided": count(answers, Verdict::Undecided),
+            "seconds": seconds,
+            "impact": impact.map(|impact| json!({
+                "free_until": impact.free_until,
+                "verdict": impact.verdict,
+                "quaternion": impact.pose.map(|pose| pose.quaternion()),
+                "translation": impact.pose.map(|pose| <[f64; 3]>::from(pose.translation)),
+                "distances": impact.steps,
+            })),
+            "table": self.output.as_ref().map(|file| file.display().to_string()),
+            "poses": rows,
+        })
+    }
+}
+
+fn impact(questions: &Questions, path: &[Pose]) -> Impact {
+    let sizes = questions
+        .scene()
+        .solids()
+        .each_ref()
+        .map(|solid| solid.reach());
+    let tolerance = TOLERANCE * sizes[0].min(sizes[1]);
+    first_impact(questions.scene(), path, tolerance, &mut Workspace::new())
+}
+
+fn count(answers: &[Answer], verdict: Verdict) -> usize {
+    let these = answers
+        .iter()
+        .filter(|answer| answer.found.verdict == verdict);
+    these.count()
+}
+
+fn summary(answers: &[Answer], questions: &Questions, seconds: f64) -> String {
+    let mut times: Vec<f64> = answers.iter().map(|answer| 1e6 * answer.seconds).collect();
+    times.sort_by(f64::total_cmp);
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    format!(
+        "{} poses: {} hit, {} free, {} undecided (gaps below {}); {:.0} poses a second; microseconds a pose: median {:.1}, \
+         99% {:.1}, worst {:.1}",
+        answers.len(),
+        count(answers, Verdict::Hit),
+        count(answers, Verdict::Free),
+        count(answers, Verdict::Undecided),
+        Figure(questions.scene().band()),
+        answers.len() as f64 / seconds,
+        at(0.5),
+        at(0.99),
+        at(1.0),
+    )
+}
+
+fn one_pose(answer: &Answer) -> String {
+    let point = |point: [f64; 3]| {
+        format!(
+            "({}, {}, {})",
+            Figure(point[0]),
+            Figure(point[1]),
+            Figure(point[2])
+        )
+    };
+    let mut lines = vec![format!(
+        "Verdict: {} (certified by {})",
+        answer.found.verdict.name(),
+        answer.found.certificate.name()
+    )];
+    if let Some(bounds) = answer.bounds {
+        let [a, b] = bounds.witnesses.map(point);
+        lines.push(format!(
+            "Signed distance: {} to {}; witness points {a} of A and {b} of B",
+            Figure(bounds.low),
+            Figure(bounds.high)
+        ));
+    }
+    if let Some(volume) = answer.volume {
+        lines.push(format!(
+            "Shared volume: {} ± {}",
+            Figure(volume.value),
+            Figure(volume.bound)
+        ));
+    }
+    if let Some(contact) = answer.contact {
+        lines.push(format!(
+            "Overlap energy {}; force on B {}, torque about its centre of mass {}",
+            Figure(contact.energy),
+            point(contact.force),
+            point(contact.torque)
+        ));
+    }
+    lines.join("\n")
+}
+
+fn impact_text(impact: &Impact) -> String {
+    match &impact.pose {
+        None => format!(
+            "The path is free to its end, time {}",
+            Figure(impact.free_until)
+        ),
+        Some(pose) => {
+            let [w, x, y, z] = pose.quaternion();
+            let [a, b, c]: [f64; 3] = pose.translation.into();
+            let then = match impact.verdict {
+                Verdict::Hit => "there the solids meet",
+                Verdict::Free | Verdict::Undecided => "from there on they may meet",
+            };
+            format!(
+                "First impact: the path is free until time {} (in poses from the first), and {then}, at pose \
+                 {w},{x},{y},{z},{a},{b},{c}",
+                Figure(impact.free_until)
+            )
+        }
+    }
+}

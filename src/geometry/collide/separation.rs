@@ -1,0 +1,121 @@
+//! A translation that parts two solids: an upper bound of their penetration depth.
+//!
+//! Body B moves along a line, away from A. At every place the deepest pair of outer balls known says how far B must go
+//! at least to part that pair. It goes there, and so on until no pair of outer balls meets. The shortest of several
+//! lines is taken: that of the deepest pair, that of the centres of mass, and the axes both ways.
+//!
+//! Each line ends, since every step leaves its pair behind for good: balls are convex, so that a line leaves each once.
+//! After many steps it ends beyond the balls about all of A and all of B.
+
+use knotdock_structures::ball_solid::{ClosestSearch, Limits, Motion};
+
+use super::scene::{CollisionScene, Deadline, Workspace, unit};
+
+/// Steps along one line.
+const STEPS: usize = 64;
+/// Pairs of balls looked at for one step, unless none that meets is found among them.
+const PAIRS_A_STEP: usize = 512;
+/// Share by which a step goes on, so that rounding does not leave it at the pair that it parts.
+const BEYOND: f64 = 1e-12;
+
+impl CollisionScene {
+    /// Length of a translation of B after which no outer balls meet, given the deepest pair of inner balls, and the
+    /// pairs of balls looked at.
+    pub(super) fn separation(
+        &self,
+        motion: &Motion,
+        deepest: Option<[usize; 2]>,
+        deadline: Deadline,
+        work: &mut Workspace,
+    ) -> (f64, usize) {
+        let mut pairs = 0;
+        let mut best = f64::INFINITY;
+        for direction in self.directions(motion, deepest) {
+            let end = self.beyond_all(motion, direction);
+            let along = self.line(motion, direction, best.min(end), deadline, work, &mut pairs);
+            best = best.min(along.unwrap_or(end));
+            if deadline.has_come() {
+                break;
+            }
+        }
+        (best, pairs)
+    }
+
+    fn directions(&self, motion: &Motion, deepest: Option<[usize; 2]>) -> Vec<[f64; 3]> {
+        let from = |a: [f64; 3], b: [f64; 3]| {
+            let b = motion.apply(b);
+            unit([0, 1, 2].map(|axis| b[axis] - a[axis]))
+        };
+        let [a, b] = self.solids();
+        let pair = deepest.map(|[i, j]| from(a.inner()[i].center, b.inner()[j].center));
+        let mut directions: Vec<[f64; 3]> = pair.into_iter().collect();
+        directions.push(from(a.centroid(), b.centroid()));
+        for axis in 0..3 {
+            for sign in [1.0, -1.0] {
+                let mut direction = [0.0; 3];
+                direction[axis] = sign;
+                directions.push(direction);
+            }
+        }
+        directions
+    }
+
+    /// Where on a line the balls about both bodies no longer meet.
+    fn beyond_all(&self, motion: &Motion, direction: [f64; 3]) -> f64 {
+        let [a, b] = self.trees().map(|tree| tree.bound());
+        let (Some(a), Some(b)) = (a, b) else {
+            return 0.0;
+        };
+        let center = motion.apply(b.center);
+        let sum = a.radius + b.radius + self.band();
+        exit(a.center, center, direction, sum).max(0.0)
+    }
+
+    /// Where on a line no pair of outer balls meets any more; `None` where that is not before `enough`, or not known.
+    fn line(
+        &self,
+        motion: &Motion,
+        direction: [f64; 3],
+        enough: f64,
+        deadline: Deadline,
+        work: &mut Workspace,
+        pairs: &mut usize,
+    ) -> Option<f64> {
+        let limits = Limits {
+            ignored_from: self.band(),
+            enough_below: f64::NEG_INFINITY,
+        };
+        let trees = self.trees();
+        let mut place = 0.0;
+        for _ in 0..STEPS {
+            let moved = motion.shifted(direction.map(|part| place * part));
+            let search: &mut ClosestSearch = &mut work.search;
+            search.begin(trees, &moved, &limits);
+            let mut found = search.advance(trees, &moved, &limits, PAIRS_A_STEP);
+            while found.pair.is_none() && !found.finished {
+                found = search.advance(trees, &moved, &limits, PAIRS_A_STEP);
+            }
+            *pairs += found.ball_pairs;
+            let Some([i, j]) = found.pair else {
+                return Some(place);
+            };
+            let (a, b) = (trees[0].balls()[i], trees[1].balls()[j]);
+            let sum = a.radius + b.radius + self.band();
+            let step = exit(a.center, moved.apply(b.center), direction, sum);
+            place += step.max(0.0) + BEYOND * (sum + place);
+            if place >= enough || deadline.has_come() {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+/// How far a ball at `center` goes along a direction of length one until it is `sum` away from `from` and leaves.
+fn exit(from: [f64; 3], center: [f64; 3], direction: [f64; 3], sum: f64) -> f64 {
+    let arm = [0, 1, 2].map(|axis| center[axis] - from[axis]);
+    let along = (0..3).map(|axis| arm[axis] * direction[axis]).sum::<f64>();
+    let across = [0, 1, 2].map(|axis| arm[axis] - along * direction[axis]);
+    let squared = sum * sum - across.iter().map(|part| part * part).sum::<f64>();
+    squared.max(0.0).sqrt() - along
+}

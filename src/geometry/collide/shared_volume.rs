@@ -1,0 +1,85 @@
+//! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
+//!
+//! A point of both solids lies in a ball of either, and these two meet. So only balls that meet one of the other body's
+//! count, and the volumes are those of [`ball_union::overlap`] over these.
+
+use knotdock_structures::ball_solid::Motion;
+use knotdock_structures::knots::Knots;
+use knotdock_structures::{Ball, ball_union};
+
+use super::scene::{CollisionScene, Workspace};
+
+/// A volume and how far the true one may be from it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SharedVolume {
+    /// The middle of the range, in the cube of the files' unit.
+    pub value: f64,
+    /// Half of the range, with the errors of the lines by which volumes are measured.
+    pub bound: f64,
+}
+
+impl CollisionScene {
+    /// The volume of the region that lies in both solids.
+    pub fn shared_volume(&self, motion: &Motion, work: &mut Workspace) -> SharedVolume {
+        let inner = self.shared(motion, 0.0, work);
+        if self.band() == 0.0 {
+            return SharedVolume {
+                value: inner.0,
+                bound: inner.1,
+            };
+        }
+        let outer = self.shared(motion, self.band(), work);
+        let (low, high) = ((inner.0 - inner.1).max(0.0), outer.0 + outer.1);
+        SharedVolume {
+            value: 0.5 * (low + high),
+            bound: 0.5 * (high - low),
+        }
+    }
+
+    /// Shared volume of the inner balls, or where `band` is above zero of the outer ones, and its error.
+    fn shared(&self, motion: &Motion, band: f64, work: &mut Workspace) -> (f64, f64) {
+        let trees = self.trees();
+        let Workspace { pairs, marks, .. } = work;
+        for (marks, tree) in marks.iter_mut().zip(trees) {
+            marks.clear();
+            marks.resize(tree.balls().len(), false);
+        }
+        pairs.visit(trees, motion, band, |[i, j], _, _| {
+            marks[0][i] = true;
+            marks[1][j] = true;
+            true
+        });
+        let grown = |solid: usize| {
+            if band > 0.0 {
+                self.solids()[solid].epsilon()
+            } else {
+                0.0
+            }
+        };
+        let first = marked(trees[0].balls(), &marks[0], grown(0), |center| center);
+        let second = marked(trees[1].balls(), &marks[1], grown(1), |center| {
+            motion.apply(center)
+        });
+        match (first, second) {
+            (Some(first), Some(second)) => {
+                let overlap = ball_union::overlap(&first, &second);
+                (overlap.shared.max(0.0), overlap.error)
+            }
+            _ => (0.0, 0.0),
+        }
+    }
+}
+
+/// The marked balls, grown and moved; `None` where none is marked.
+fn marked(
+    balls: &[Ball],
+    marks: &[bool],
+    grown: f64,
+    moved: impl Fn([f64; 3]) -> [f64; 3],
+) -> Option<Knots> {
+    let marked = balls.iter().zip(marks).filter(|(_, mark)| **mark);
+    let (centers, radii) = marked
+        .map(|(ball, _)| (moved(ball.center), ball.radius + grown))
+        .unzip();
+    Knots::new(centers, radii).ok()
+}

@@ -1,0 +1,302 @@
+//! Closed forms: balls, boxes, shells and nested solids.
+
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::Ball;
+use knotdock_structures::ball_solid::BallSolid;
+use knotdock_structures::mesh::{self, Solid};
+
+use super::contact::Densities;
+use super::impact::first_impact;
+use super::{Bounds, Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};
+
+fn balls(list: &[([f64; 3], f64)]) -> BallSolid {
+    let balls: Vec<Ball> = list
+        .iter()
+        .map(|&(center, radius)| Ball { center, radius })
+        .collect();
+    BallSolid::from_balls(&balls, None).unwrap()
+}
+
+fn ball(radius: f64) -> BallSolid {
+    balls(&[([0.0; 3], radius)])
+}
+
+/// Corners and faces of a box, outward, or inward where a part is hollowed out.
+fn cuboid(half: [f64; 3], inward: bool) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let corner = |i: u32| {
+        [0, 1, 2].map(|axis| {
+            if i >> axis & 1 == 1 {
+                half[axis]
+            } else {
+                -half[axis]
+            }
+        })
+    };
+    let faces = [
+        [0, 2, 3],
+        [0, 3, 1],
+        [4, 5, 7],
+        [4, 7, 6],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 6, 7],
+        [2, 7, 3],
+        [0, 4, 6],
+        [0, 6, 2],
+        [1, 3, 7],
+        [1, 7, 5],
+    ];
+    let faces = faces.map(|[a, b, c]| if inward { [a, c, b] } else { [a, b, c] });
+    ((0..8).map(corner).collect(), faces.to_vec())
+}
+
+fn solid(parts: &[([f64; 3], bool)], per_axis: usize) -> BallSolid {
+    let mut corners = Vec::new();
+    let mut faces = Vec::new();
+    for &(half, inward) in parts {
+        let first = corners.len() as u32;
+        let (own, triangles) = cuboid(half, inward);
+        corners.extend(own);
+        faces.extend(triangles.iter().map(|t| t.map(|corner| corner + first)));
+    }
+    let (mesh, _) = mesh::from_triangles(&corners, &faces).unwrap();
+    BallSolid::from_mesh(&Solid::new(&mesh).unwrap(), per_axis)
+        .unwrap()
+        .0
+}
+
+fn at(translation: [f64; 3]) -> Pose {
+    Pose::from_parts([1.0, 0.0, 0.0, 0.0], translation)
+}
+
+fn ask(scene: &CollisionScene, pose: &Pose) -> (Found, Bounds) {
+    let mut work = Workspace::new();
+    let motion = scene.motion(pose);
+    (
+        scene.verdict(&motion, Deadline::NEVER, &mut work),
+        scene.distance(&motion, Deadline::NEVER, &mut work),
+    )
+}
+
+#[test]
+fn two_balls_are_exact() {
+    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.0);
+    for (x, verdict) in [
+        (3.0, Verdict::Free),
+        (1.5, Verdict::Free),
+        (1.5 - 1e-12, Verdict::Hit),
+        (0.7, Verdict::Hit),
+        (0.0, Verdict::Hit),
+    ] {
+        let (found, bounds) = ask(&scene, &at([0.0, x, 0.0]));
+        assert_eq!(found.verdict, verdict, "{x}");
+        assert!((bounds.high - (x - 1.5)).abs() < 1e-14, "{x}");
+        assert!(
+            bounds.low <= bounds.high && bounds.high - bounds.low < 1e-10,
+            "{x}: {bounds:?}"
+        );
+        let [a, b] = bounds.witnesses;
+        if x > 0.0 {
+            assert!((a[1] - 1.0).abs() < 1e-14 && (b[1] - (x - 0.5)).abs() < 1e-14);
+        }
+    }
+}
+
+#[test]
+fn a_margin_is_a_distance() {
+    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.25);
+    for (x, verdict) in [(1.74, Verdict::Hit), (1.76, Verdict::Free)] {
+        assert_eq!(ask(&scene, &at([x, 0.0, 0.0])).0.verdict, verdict);
+    }
+}
+
+#[test]
+fn a_box_and_a_ball() {
+    let block = solid(&[([1.0, 0.6, 0.4], false)], 24);
+    let band = block.epsilon();
+    let scene = CollisionScene::new([block, ball(0.5)], 0.0);
+    // Above a face, beyond an edge, beyond a corner, and through a face: exact signed distances.
+    let slope = (0.3f64 * 0.3 + 0.4 * 0.4).sqrt();
+    let corner = (0.3f64 * 0.3 * 3.0).sqrt();
+    for (center, exact) in [
+        ([0.1, 0.2, 1.7], 0.8),
+        ([1.3, 1.0, 0.1], slope - 0.5),
+        ([1.3, 0.9, 0.7], corner - 0.5),
+        ([0.0, 0.0, 0.8], -0.1),
+        ([0.0, 0.0, 0.0], -0.9),
+    ] {
+        let (found, bounds) = ask(&scene, &at(center));
+        assert!(
+            bounds.low <= exact + 1e-12 && exact <= bounds.high + 1e-12,
+            "{center:?} {bounds:?}"
+        );
+        if exact > 0.0 {
+            assert!((bounds.high - bounds.low - band).abs() < 1e-12);
+        }
+        match found.verdict {
+            Verdict::Hit => assert!(exact < 0.0),
+            Verdict::Free => assert!(exact >= 0.0),
+            Verdict::Undecided => assert!(exact.abs() <= band),
+        }
+    }
+    assert_eq!(ask(&scene, &at([0.0; 3])).0.verdict, Verdict::Hit);
+    assert_eq!(
+        ask(&scene, &at([0.1, 0.2, 1.7])).0.certificate,
+        Certificate::OuterBalls
+    );
+}
+
+/// Surface trees miss a solid within another; within a shell's hollow there is none.
+#[test]
+fn containment_is_a_hit_and_a_hollow_is_free() {
+    let block = solid(&[([1.0; 3], false)], 24);
+    let scene = CollisionScene::new([block, ball(0.2)], 0.0);
+    assert_eq!(ask(&scene, &at([0.1, -0.1, 0.2])).0.verdict, Verdict::Hit);
+    let shell = solid(&[([1.0; 3], false), ([0.8; 3], true)], 32);
+    let scene = CollisionScene::new([shell, ball(0.3)], 0.0);
+    let (found, bounds) = ask(&scene, &at([0.1, 0.0, 0.0]));
+    assert_eq!(found.verdict, Verdict::Free);
+    assert!(
+        bounds.low <= 0.4 && 0.4 <= bounds.high && bounds.low > 0.2,
+        "{bounds:?}"
+    );
+    assert_eq!(ask(&scene, &at([0.8, 0.0, 0.0])).0.verdict, Verdict::Hit);
+    assert_eq!(ask(&scene, &at([1.5, 0.0, 0.0])).0.verdict, Verdict::Free);
+}
+
+/// A ball in a ring of balls: the translation that frees it goes along the axis.
+#[test]
+fn penetration_depth_of_nested_solids() {
+    let ring: Vec<_> = (0..36)
+        .map(|i| f64::from(i) * std::f64::consts::TAU / 36.0)
+        .map(|turn| ([turn.cos(), turn.sin(), 0.0], 0.3))
+        .collect();
+    let scene = CollisionScene::new([balls(&ring), ball(0.8)], 0.0);
+    let (found, bounds) = ask(&scene, &at([0.0; 3]));
+    assert_eq!(found.verdict, Verdict::Hit);
+    // All pairs are 0.1 deep; along z the ball must go until it rests on the ring.
+    let out = (1.1f64 * 1.1 - 1.0).sqrt();
+    assert!((bounds.high + 0.1).abs() < 1e-14);
+    assert!((bounds.low + out).abs() < 1e-9, "{bounds:?}");
+}
+
+/// Far coordinates, small sizes and radius ratios of a million.
+#[test]
+fn far_small_and_uneven_solids() {
+    for (offset, size) in [(1e6, 1.0), (0.0, 1e-6), (1e6, 1e3)] {
+        let one = balls(&[([offset, -offset, offset], size)]);
+        let other = balls(&[
+            ([-offset, offset, 0.0], size),
+            ([-offset + 1.5 * size, offset, 0.0], 1e-6 * size),
+        ]);
+        let scene = CollisionScene::new([one, other], 0.0);
+        for (gap, verdict) in [(0.1, Verdict::Free), (-0.1, Verdict::Hit)] {
+            let pose = at([2.0 * offset, -2.0 * offset, offset + (2.0 + gap) * size]);
+            let (found, bounds) = ask(&scene, &pose);
+            assert_eq!(found.verdict, verdict, "{offset} {size} {gap}");
+            assert!((bounds.high / size - gap).abs() < 1e-8 + 1e-9 * offset / size);
+        }
+    }
+}
+
+#[test]
+fn deadlines_bracket() {
+    let block = solid(&[([1.0, 0.6, 0.4], false)], 24);
+    let other = solid(&[([0.7, 0.3, 0.9], false)], 24);
+    let scene = CollisionScene::new([block, other], 0.0);
+    let pose = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [1.4, 0.7, 0.4]);
+    let motion = scene.motion(&pose);
+    let mut work = Workspace::new();
+    let whole = scene.distance(&motion, Deadline::NEVER, &mut work);
+    let now = Deadline::after(Some(std::time::Duration::ZERO));
+    let early = scene.distance(&motion, now, &mut work);
+    assert!(early.low <= whole.high && early.high >= whole.high);
+    assert!(early.ball_pairs <= whole.ball_pairs);
+    let found = scene.verdict(&motion, now, &mut work);
+    let final_verdict = scene.verdict(&motion, Deadline::NEVER, &mut work);
+    assert!(found == final_verdict || found.certificate == Certificate::Deadline);
+}
+
+#[test]
+fn forces_are_slopes_of_the_energy() {
+    let block = solid(&[([1.0, 0.6, 0.4], false)], 20);
+    let other = solid(&[([0.7, 0.3, 0.9], false)], 20);
+    let scene = CollisionScene::new([block, other], 0.0);
+    let densities = Densities::new(&scene, 2.0).unwrap();
+    let mut work = Workspace::new();
+    let mut contact = |pose: &Pose| densities.contact(&scene, &scene.motion(pose), &mut work.pairs);
+    let pose = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [0.9, 0.3, 0.2]);
+    let here = contact(&pose);
+    assert!(here.energy > 0.01);
+    let step = 1e-5;
+    let [_, b] = scene.solids();
+    let center = pose.apply([0, 1, 2].map(|axis| b.origin()[axis] + b.centroid()[axis]));
+    for axis in 0..3 {
+        let mut shift = [0.0; 3];
+        shift[axis] = step;
+        let moved = |sign: f64| Pose {
+            rotation: pose.rotation,
+            translation: pose.translation + nalgebra::Vector3::from(shift) * sign,
+        };
+        let slope = (contact(&moved(1.0)).energy - contact(&moved(-1.0)).energy) / (2.0 * step);
+        assert!(
+            (slope + here.force[axis]).abs() < 1e-6,
+            "{axis}: {slope} {:?}",
+            here.force
+        );
+        let turned = |sign: f64| {
+            let turn =
+                nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::from(shift) * sign);
+            let about = nalgebra::Vector3::from(center);
+            Pose {
+                rotation: turn * pose.rotation,
+                translation: turn * (pose.translation - about) + about,
+            }
+        };
+        let slope = (contact(&turned(1.0)).energy - contact(&turned(-1.0)).energy) / (2.0 * step);
+        assert!(
+            (slope + here.torque[axis]).abs() < 1e-6,
+            "{axis}: {slope} {:?}",
+            here.torque
+        );
+    }
+}
+
+/// A ball that flies at another one: contact at the time of the closed form.
+#[test]
+fn the_time_of_impact_of_two_balls() {
+    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.0);
+    let mut work = Workspace::new();
+    let path = [
+        at([5.0, 0.9, 0.0]),
+        at([3.0, 0.9, 0.0]),
+        at([-3.0, 0.9, 0.0]),
+    ];
+    let found = first_impact(&scene, &path, 1e-9, &mut work);
+    // Contact at x = 1.2.
+    assert!((found.free_until - 1.3).abs() < 1e-6, "{found:?}");
+    assert!(found.pose.is_some() && found.steps < 200);
+    let past = [at([5.0, 1.6, 0.0]), at([-5.0, 1.6, 0.0])];
+    let found = first_impact(&scene, &past, 1e-9, &mut work);
+    assert_eq!((found.pose, found.free_until), (None, 1.0));
+}
+
+#[test]
+fn shared_volume_of_two_balls_is_the_lens() {
+    let scene = CollisionScene::new([ball(1.0), ball(0.8)], 0.0);
+    let mut work = Workspace::new();
+    let d = 1.1f64;
+    let motion = scene.motion(&at([d, 0.0, 0.0]));
+    let volume = scene.shared_volume(&motion, &mut work);
+    let (r, s) = (1.0f64, 0.8f64);
+    let exact = std::f64::consts::PI
+        * (r + s - d).powi(2)
+        * (d * d + 2.0 * d * (r + s) - 3.0 * (r - s).powi(2))
+        / (12.0 * d);
+    assert!(
+        (volume.value - exact).abs() < 0.02 * exact,
+        "{volume:?} {exact}"
+    );
+    let motion = scene.motion(&at([1.9, 0.0, 0.0]));
+    assert_eq!(scene.shared_volume(&motion, &mut work).value, 0.0);
+}
