@@ -85,7 +85,7 @@ impl BallField {
             // No step along the row adds more than its length to the distance.
             let mut most = f64::INFINITY;
             for (x, depth) in depths.iter_mut().enumerate() {
-                let distance = tree.distance_within(grid.place([x, y, z]), most);
+                let distance = tree.distance_within(grid.place([x, y, z]), f64::NEG_INFINITY, most);
                 most = distance + step;
                 *depth = -distance as f32;
             }

@@ -1,6 +1,7 @@
 //! A solid between two sets of balls.
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::sampling::Ball;
 
 /// A solid S between balls: S(inner) in S in S(outer). The same holds for the result of every operation here.
@@ -15,6 +16,17 @@ pub struct Bracket {
     /// Bound of the Hausdorff distance from the solid to either set; infinite where none is known, as where one of two
     /// sets is empty.
     pub epsilon: f64,
+}
+
+impl From<&BallSolid> for Bracket {
+    fn from(solid: &BallSolid) -> Self {
+        Self {
+            origin: solid.origin(),
+            inner: solid.inner().to_vec(),
+            outer: solid.outer(),
+            epsilon: solid.epsilon(),
+        }
+    }
 }
 
 impl Bracket {

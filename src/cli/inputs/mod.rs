@@ -6,5 +6,5 @@ pub mod meshes;
 pub mod molecules;
 pub mod poses;
 pub mod request;
-mod room;
+pub mod room;
 pub mod solids;

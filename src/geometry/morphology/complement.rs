@@ -16,6 +16,7 @@ use knotdock_structures::sampling::decomposition::cover_nodes;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use rayon::prelude::*;
 
+use super::copies::Copies;
 use crate::geometry::bracket::{bounds, shifted};
 
 /// The protrusion factor mu of Algorithm 1.
@@ -59,24 +60,8 @@ impl Cube {
         }
     }
 
-    /// Whether a ball reaches the cube, the cells about its outermost nodes included.
-    pub fn meets(&self, ball: &Ball) -> bool {
-        let half = self.half * (1.0 + 1.0 / (self.per_axis - 1) as f64);
-        let beyond = (0..3).map(|axis| {
-            let beyond = (ball.center[axis] - self.center[axis]).abs() - half;
-            beyond.max(0.0).powi(2)
-        });
-        beyond.sum::<f64>() <= ball.radius * ball.radius
-    }
-
     fn grid(&self) -> Grid {
         Grid::of_cube(self.half, self.per_axis)
-    }
-
-    /// Balls relative to the middle.
-    fn inward(&self, balls: &[Ball]) -> Vec<Ball> {
-        let by = self.center.map(|part| -part);
-        balls.iter().map(|ball| shifted(ball, by)).collect()
     }
 
     /// Balls relative to what the middle is relative to.
@@ -86,23 +71,24 @@ impl Cube {
     }
 }
 
-/// The distance to a union of balls, at least one, at the nodes of a grid.
-fn distances(tree: &BallTree, grid: Grid) -> DepthField {
-    DepthField::of_depth(grid, |point, most| tree.distance_within(point, most))
+/// The distance to a union of balls at the nodes of a grid; infinite without balls. Up to `enough` it says no more than
+/// "within".
+fn distances(union: &Copies, grid: Grid, enough: f64) -> DepthField {
+    DepthField::of_depth(grid, |point, most| {
+        union.distance_within(point, enough, most)
+    })
 }
 
 /// Balls that no ball of the union reaches and that hold all free nodes of the cube.
-pub fn inside(union: &[Ball], cube: &Cube) -> Vec<Ball> {
-    let tree = BallTree::new(&cube.inward(union));
-    cube.outward(cover_nodes(&distances(&tree, cube.grid()), MU))
+pub fn inside(union: &Copies, cube: &Cube) -> Vec<Ball> {
+    cube.outward(cover_nodes(&distances(union, cube.grid(), 0.0), MU))
 }
 
 /// Balls that hold all of the cube but what the union holds.
-pub fn holding(union: &[Ball], cube: &Cube) -> Vec<Ball> {
-    let tree = BallTree::new(&cube.inward(union));
+pub fn holding(union: &Copies, cube: &Cube) -> Vec<Ball> {
     let grid = cube.grid();
     let epsilon = grid.epsilon() * (1.0 + 1e-9);
-    let mut field = distances(&tree, grid);
+    let mut field = distances(union, grid, -1.0001 * epsilon);
     let near: Vec<usize> = (0..grid.nodes())
         .filter(|&node| field.depth[node].abs() <= epsilon)
         .collect();
@@ -111,13 +97,16 @@ pub fn holding(union: &[Ball], cube: &Cube) -> Vec<Ball> {
     }
     let free = cover_nodes(&field, MU);
     let mut balls: Vec<Ball> = free.iter().map(|ball| ball.grown(epsilon)).collect();
-    let cover = [tree, BallTree::new(&balls)];
+    let free = BallTree::new(&balls);
     let half = 0.5 * grid.spacing() * (1.0 + 1e-9);
     let of_cells: Vec<Option<Ball>> = near
         .par_iter()
         .map(|&node| {
+            let center = grid.node(node);
+            let copies = union.near(center, epsilon);
+            let is_held = |ball: &Ball| free.holds(ball) || union.holds(&copies, ball);
             let mut left = Part::default();
-            left.find(&cover, grid.node(node), half, HALVINGS);
+            left.find(&is_held, center, half, HALVINGS);
             left.ball()
         })
         .collect();
@@ -142,12 +131,18 @@ impl Default for Part {
 
 impl Part {
     /// Adds what is left of the cube of half edge `half` about `center`.
-    fn find(&mut self, cover: &[BallTree; 2], center: [f64; 3], half: f64, halvings: u32) {
+    fn find(
+        &mut self,
+        is_held: &impl Fn(&Ball) -> bool,
+        center: [f64; 3],
+        half: f64,
+        halvings: u32,
+    ) {
         let around = Ball {
             center,
             radius: half * 3f64.sqrt(),
         };
-        if cover.iter().any(|tree| tree.holds(&around)) {
+        if is_held(&around) {
             return;
         }
         if halvings == 0 {
@@ -163,7 +158,7 @@ impl Part {
                 let sign = if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
                 center[axis] + sign * quarter
             });
-            self.find(cover, middle, quarter, halvings - 1);
+            self.find(is_held, middle, quarter, halvings - 1);
         }
     }
 
@@ -192,12 +187,12 @@ pub fn hausdorff_bound(inner: &[Ball], outer: &[Ball], per_axis: usize) -> f64 {
     let cube = Cube::about(bounds(outer), per_axis, 0.0);
     let grid = cube.grid();
     let epsilon = grid.epsilon() * (1.0 + 1e-9);
-    let [outer, inner] = [outer, inner].map(|balls| BallTree::new(&cube.inward(balls)));
-    let outward = distances(&outer, grid);
+    let outward = distances(&Copies::of(outer, cube.center), grid, epsilon);
+    let inner = Copies::of(inner, cube.center);
     let farthest = (0..grid.nodes())
         .into_par_iter()
         .filter(|&node| outward.depth[node] <= epsilon)
-        .map(|node| inner.distance(grid.node(node), f64::NEG_INFINITY))
+        .map(|node| inner.distance_within(grid.node(node), 0.0, f64::INFINITY))
         .reduce(|| f64::NEG_INFINITY, f64::max);
     (farthest + epsilon).max(0.0)
 }

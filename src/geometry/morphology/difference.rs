@@ -13,10 +13,11 @@
 use knotdock_structures::sampling::Ball;
 
 use super::complement::{Cube, hausdorff_bound, holding, inside};
+use super::copies::Copies;
 use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, bounds};
 use crate::geometry::obstacle::pairs::PairSums;
-use crate::geometry::obstacle::reduce::reduced;
+use crate::geometry::obstacle::reduce::reduced_sum;
 
 /// Cells of free space about A, so that nothing of the result touches the cube's faces.
 const MARGIN: f64 = 2.0;
@@ -47,17 +48,18 @@ pub fn difference(
     let inner = if a.inner.is_empty() {
         Vec::new()
     } else {
-        let outside = holding(&a.inner, &around);
-        let blocked = sum_in(&outside, &reflected(&b.outer), &result, options)?;
-        inside(&blocked, &result)
+        let outside = holding(&Copies::of(&a.inner, around.center), &around);
+        inside(&Copies::sum(&outside, &reflected(&b.outer), result.center), &result)
     };
     let outer = if b.inner.is_empty() {
         // Of B only where it may be is known: A - B is inside A + (-B).
-        sum_in(&a.outer, &reflected(&b.outer), &result, options)?
+        let others = reflected(&b.outer);
+        let sums = PairSums::new(&a.outer, &others, 0.0);
+        options.room_for(sums.pairs())?;
+        reduced_sum(&sums)
     } else {
-        let outside = inside(&a.outer, &around);
-        let blocked = sum_in(&outside, &reflected(&b.inner), &result, options)?;
-        holding(&blocked, &result)
+        let outside = inside(&Copies::of(&a.outer, around.center), &around);
+        holding(&Copies::sum(&outside, &reflected(&b.inner), result.center), &result)
     };
     let epsilon = hausdorff_bound(&inner, &outer, options.per_axis);
     Ok(Bracket {
@@ -67,21 +69,3 @@ pub fn difference(
         epsilon,
     })
 }
-
-/// The balls of a sum that reach a cube, reduced.
-fn sum_in(
-    a: &[Ball],
-    b: &[Ball],
-    cube: &Cube,
-    options: &MorphologyOptions,
-) -> Result<Vec<Ball>, MorphologyError> {
-    let sums = PairSums::new(a, b, 0.0);
-    options.room_for(sums.pairs())?;
-    let mut larger_first = [a.to_vec(), b.to_vec()];
-    for balls in &mut larger_first {
-        balls.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-    }
-    let sums = PairSums::new(&larger_first[0], &larger_first[1], 0.0);
-    Ok(reduced(sums.iter().filter(|ball| cube.meets(ball))))
-}
-

@@ -15,6 +15,7 @@
 //! ([`complement`]). Every result is a [`Bracket`] about the true one.
 
 pub mod complement;
+pub mod copies;
 pub mod difference;
 pub mod products;
 pub mod sweep;

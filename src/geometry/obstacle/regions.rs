@@ -61,7 +61,7 @@ pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
 fn is_free(tree: &BallTree, a: [f64; 3], b: [f64; 3], length: f64, halvings: u32) -> bool {
     let middle = [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]));
     let half = 0.5 * length;
-    let distance = tree.distance_within(middle, length);
+    let distance = tree.distance_within(middle, 0.0, length);
     if distance >= half {
         return true;
     }

@@ -73,10 +73,10 @@ impl BallTree {
     }
 
     /// As [`Self::distance`], never more than `at_most`, which spares the search for what lies farther.
-    pub fn distance_within(&self, point: [f64; 3], at_most: f64) -> f64 {
+    pub fn distance_within(&self, point: [f64; 3], enough: f64, at_most: f64) -> f64 {
         let mut best = at_most;
         if let Some(root) = self.nodes.first() {
-            self.search(0, root.bound(point), point, f64::NEG_INFINITY, &mut best);
+            self.search(0, root.bound(point), point, enough, &mut best);
         }
         best
     }
@@ -244,7 +244,10 @@ mod tests {
             let point = place.center.map(|part| 2.0 * part - 0.5);
             let exact = tree.distance(point, f64::NEG_INFINITY);
             for at_most in [-0.2, 0.0, 0.1, 1.0] {
-                assert_eq!(tree.distance_within(point, at_most), exact.min(at_most));
+                let found = tree.distance_within(point, f64::NEG_INFINITY, at_most);
+                assert_eq!(found, exact.min(at_most));
+                let early = tree.distance_within(point, 0.05, at_most);
+                assert!(early == exact.min(at_most) || (exact..=0.05).contains(&early));
             }
         }
     }
