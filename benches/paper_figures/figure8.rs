@@ -5,7 +5,7 @@
 
 use crate::report::{Figure, grid_name};
 use crate::scene::Scene;
-use crate::spectrum::Kernel;
+use knotdock::geometry::gap::spectrum::Kernel;
 use crate::table::{Cell, Table};
 use crate::timing::timed;
 use crate::ways_measured::{Measured, OfGrid, measure};

@@ -1,9 +1,9 @@
 //! The correlation of two bodies at one grid size, the time of each of its steps, and what leaving out modes does to
 //! it.
 
-use crate::correlation::Grid;
+use knotdock::geometry::gap::grid::Grid;
 use crate::scene::Scene;
-use crate::spectrum::Kernel;
+use knotdock::geometry::gap::spectrum::Kernel;
 use crate::timing::least;
 use knotdock_scoring::transform::truncation::Selection;
 use num_complex::Complex64;

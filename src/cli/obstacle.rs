@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::Args;
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BallField, FieldGrid};
+use knotdock::geometry::gap::{GapWay, gap_ways};
 use knotdock::geometry::obstacle::pairs::PairSums;
 use knotdock::geometry::obstacle::regions::free_regions;
 use knotdock::geometry::obstacle::{mirrored, sum};
@@ -57,6 +58,10 @@ pub struct Obstacle {
     /// Write no ball that lies in another one; without it the table holds a ball for each pair.
     #[arg(long)]
     reduce: bool,
+    /// Compute the gap function on a grid of N points an axis by each way too, with residuals and times; N is rounded up
+    /// to a multiple of four.
+    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "rotations")]
+    gap_grid: Option<usize>,
     #[command(flatten)]
     output: SolidOutput,
     #[command(flatten)]
@@ -130,10 +135,15 @@ impl Obstacle {
             "  Free regions: {inner} about the inner balls, {outer} about the outer ones (grid of {} cells)",
             self.output.cells
         ));
+        let ways = match self.gap_grid {
+            Some(per_axis) => gap(a, &mirrored(b, rotation), per_axis, console)?,
+            None => Vec::new(),
+        };
         if !files.is_empty() {
             console.say(format!("Wrote {}", files.join(", ")));
         }
         let mut object = found.object();
+        object["gap_function"] = json!(ways.iter().map(way_object).collect::<Vec<Value>>());
         object["a"] = first;
         object["b"] = second;
         object["offset"] = json!(self.offset);
@@ -215,6 +225,54 @@ impl Obstacle {
             "table": self.output.output.as_ref().map(|path| path.display().to_string()),
         }))
     }
+}
+
+/// Most points an axis of a gap function.
+const MAX_GAP_GRID: usize = 256;
+
+/// The gap function of the inner balls by each way, printed as a table.
+fn gap(
+    a: &Bracket,
+    mirror: &Bracket,
+    per_axis: usize,
+    console: Console,
+) -> Result<Vec<GapWay>, Failure> {
+    if per_axis > MAX_GAP_GRID {
+        return Err(Failure::input(format!("--gap-grid {per_axis} is more than {MAX_GAP_GRID}"))
+            .remedy(format!("give at most {MAX_GAP_GRID}")));
+    }
+    let per_axis = per_axis.max(16).next_multiple_of(4);
+    // The mirror image of -R B is R B.
+    let turned: Vec<Ball> = (mirror.inner.iter())
+        .map(|ball| Ball {
+            center: ball.center.map(|part| 0.0 - part),
+            radius: ball.radius,
+        })
+        .collect();
+    let ways = gap_ways(&a.inner, &turned, per_axis).map_err(Failure::other)?;
+    console.say(format!(
+        "\nGap function of the inner balls on {per_axis}^3 points; residuals as shares of its peak:\n  {:<28}{:>10}{:>13}{:>13}{:>13}",
+        "way", "modes", "seconds", "residual", "Hausdorff"
+    ));
+    for way in &ways {
+        let modes = way.modes.map_or("-".to_owned(), |modes| modes.to_string());
+        let apart = way.hausdorff.map_or("-".to_owned(), |apart| format!("{apart:.4e}"));
+        console.say(format!(
+            "  {:<28}{modes:>10}{:>13.4e}{:>13.2e}{apart:>13}",
+            way.name, way.seconds, way.residual
+        ));
+    }
+    Ok(ways)
+}
+
+fn way_object(way: &GapWay) -> Value {
+    json!({
+        "way": way.name,
+        "modes": way.modes,
+        "seconds": way.seconds,
+        "residual": way.residual,
+        "hausdorff": way.hausdorff,
+    })
 }
 
 impl Found {

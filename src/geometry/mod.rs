@@ -9,6 +9,7 @@
 pub mod ball_field;
 pub mod bracket;
 pub mod collide;
+pub mod gap;
 pub mod morphology;
 pub mod motion;
 pub mod obstacle;

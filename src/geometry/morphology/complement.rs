@@ -16,7 +16,7 @@ use knotdock_structures::sampling::decomposition::cover_nodes;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use rayon::prelude::*;
 
-use super::copies::Copies;
+use super::held_cells::HeldCells;
 use crate::geometry::bracket::{bounds, shifted};
 
 /// The protrusion factor mu of Algorithm 1.
@@ -64,6 +64,12 @@ impl Cube {
         Grid::of_cube(self.half, self.per_axis)
     }
 
+    /// Balls relative to the middle.
+    fn inward(&self, balls: &[Ball]) -> Vec<Ball> {
+        let by = self.center.map(|part| -part);
+        balls.iter().map(|ball| shifted(ball, by)).collect()
+    }
+
     /// Balls relative to what the middle is relative to.
     fn outward(&self, balls: Vec<Ball>) -> Vec<Ball> {
         let balls = balls.iter().map(|ball| shifted(ball, self.center));
@@ -71,24 +77,34 @@ impl Cube {
     }
 }
 
+/// The balls of a union, the larger ones best first, that make a difference within a cube: the others meet only cells of
+/// its grid that single balls hold.
+pub fn needed_in(cube: &Cube, balls: impl Iterator<Item = Ball>) -> Vec<Ball> {
+    let mut cells = HeldCells::new(cube.grid());
+    let by = cube.center.map(|part| -part);
+    balls.filter(|ball| cells.takes(&shifted(ball, by))).collect()
+}
+
 /// The distance to a union of balls at the nodes of a grid; infinite without balls. Up to `enough` it says no more than
 /// "within".
-fn distances(union: &Copies, grid: Grid, enough: f64) -> DepthField {
+fn distances(tree: &BallTree, grid: Grid, enough: f64) -> DepthField {
     DepthField::of_depth(grid, |point, most| {
-        union.distance_within(point, enough, most)
+        tree.distance_within(point, enough, most)
     })
 }
 
 /// Balls that no ball of the union reaches and that hold all free nodes of the cube.
-pub fn inside(union: &Copies, cube: &Cube) -> Vec<Ball> {
-    cube.outward(cover_nodes(&distances(union, cube.grid(), 0.0), MU))
+pub fn inside(union: &[Ball], cube: &Cube) -> Vec<Ball> {
+    let tree = BallTree::new(&cube.inward(union));
+    cube.outward(cover_nodes(&distances(&tree, cube.grid(), 0.0), MU))
 }
 
 /// Balls that hold all of the cube but what the union holds.
-pub fn holding(union: &Copies, cube: &Cube) -> Vec<Ball> {
+pub fn holding(union: &[Ball], cube: &Cube) -> Vec<Ball> {
+    let tree = BallTree::new(&cube.inward(union));
     let grid = cube.grid();
     let epsilon = grid.epsilon() * (1.0 + 1e-9);
-    let mut field = distances(union, grid, -1.0001 * epsilon);
+    let mut field = distances(&tree, grid, -1.0001 * epsilon);
     let near: Vec<usize> = (0..grid.nodes())
         .filter(|&node| field.depth[node].abs() <= epsilon)
         .collect();
@@ -103,8 +119,7 @@ pub fn holding(union: &Copies, cube: &Cube) -> Vec<Ball> {
         .par_iter()
         .map(|&node| {
             let center = grid.node(node);
-            let copies = union.near(center, epsilon);
-            let is_held = |ball: &Ball| free.holds(ball) || union.holds(&copies, ball);
+            let is_held = |ball: &Ball| free.holds(ball) || tree.holds(ball);
             let mut left = Part::default();
             left.find(&is_held, center, half, HALVINGS);
             left.ball()
@@ -187,12 +202,12 @@ pub fn hausdorff_bound(inner: &[Ball], outer: &[Ball], per_axis: usize) -> f64 {
     let cube = Cube::about(bounds(outer), per_axis, 0.0);
     let grid = cube.grid();
     let epsilon = grid.epsilon() * (1.0 + 1e-9);
-    let outward = distances(&Copies::of(outer, cube.center), grid, epsilon);
-    let inner = Copies::of(inner, cube.center);
+    let [outer, inner] = [outer, inner].map(|balls| BallTree::new(&cube.inward(balls)));
+    let outward = distances(&outer, grid, epsilon);
     let farthest = (0..grid.nodes())
         .into_par_iter()
         .filter(|&node| outward.depth[node] <= epsilon)
-        .map(|node| inner.distance_within(grid.node(node), 0.0, f64::INFINITY))
+        .map(|node| inner.distance(grid.node(node), 0.0))
         .reduce(|| f64::NEG_INFINITY, f64::max);
     (farthest + epsilon).max(0.0)
 }

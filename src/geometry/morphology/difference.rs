@@ -12,8 +12,7 @@
 
 use knotdock_structures::sampling::Ball;
 
-use super::complement::{Cube, hausdorff_bound, holding, inside};
-use super::copies::Copies;
+use super::complement::{Cube, hausdorff_bound, holding, inside, needed_in};
 use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, bounds};
 use crate::geometry::obstacle::pairs::PairSums;
@@ -45,11 +44,19 @@ pub fn difference(
     let result = Cube::about(bounds(&a.outer), options.per_axis, MARGIN);
     let around = result.wider(reach);
     let origin = [0, 1, 2].map(|axis| a.origin[axis] - b.origin[axis] - middle[axis]);
+    // The balls of a sum, the larger of the first summand first.
+    let sum = |mut outside: Vec<Ball>, others: &[Ball]| {
+        let others = reflected(others);
+        outside.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        let sums = PairSums::new(&outside, &others, 0.0);
+        let balls = needed_in(&result, sums.iter());
+        options.room_for(balls.len() as u64).map(|()| balls)
+    };
     let inner = if a.inner.is_empty() {
         Vec::new()
     } else {
-        let outside = holding(&Copies::of(&a.inner, around.center), &around);
-        inside(&Copies::sum(&outside, &reflected(&b.outer), result.center), &result)
+        let blocked = sum(holding(&a.inner, &around), &b.outer)?;
+        inside(&blocked, &result)
     };
     let outer = if b.inner.is_empty() {
         // Of B only where it may be is known: A - B is inside A + (-B).
@@ -58,8 +65,8 @@ pub fn difference(
         options.room_for(sums.pairs())?;
         reduced_sum(&sums)
     } else {
-        let outside = inside(&Copies::of(&a.outer, around.center), &around);
-        holding(&Copies::sum(&outside, &reflected(&b.inner), result.center), &result)
+        let blocked = sum(inside(&a.outer, &around), &b.inner)?;
+        holding(&blocked, &result)
     };
     let epsilon = hausdorff_bound(&inner, &outer, options.per_axis);
     Ok(Bracket {

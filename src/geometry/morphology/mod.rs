@@ -15,8 +15,8 @@
 //! ([`complement`]). Every result is a [`Bracket`] about the true one.
 
 pub mod complement;
-pub mod copies;
 pub mod difference;
+pub mod held_cells;
 pub mod products;
 pub mod sweep;
 

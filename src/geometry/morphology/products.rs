@@ -3,8 +3,7 @@
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::sampling::Ball;
 
-use super::complement::{Cube, hausdorff_bound, holding, inside};
-use super::copies::Copies;
+use super::complement::{Cube, hausdorff_bound, holding, inside, needed_in};
 use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, bounds};
 use crate::geometry::obstacle::reduce::reduced;
@@ -77,24 +76,23 @@ pub fn quotient(
     });
     let reach = reach.fold(around.half, f64::max);
     around = around.wider(reach - around.half);
-    // The complement is known relative to A's origin, and the cube relative to the result's.
-    let shift = |by: [f64; 3]| Pose {
-        translation: by.into(),
-        ..Pose::identity()
+    let blocked = |mut outside: Vec<Ball>| {
+        outside.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        let outside = Bracket {
+            origin: a.origin,
+            inner: Vec::new(),
+            outer: outside,
+            epsilon: 0.0,
+        };
+        let moved = poses.iter().flat_map(|pose| outside.moved(pose).about(origin).outer);
+        let balls = needed_in(&result, moved);
+        options.room_for(balls.len() as u64).map(|()| balls)
     };
-    let to_result = shift(origin.map(|part| 0.0 - part));
-    let placed: Vec<Pose> = (poses.iter())
-        .map(|pose| to_result.after(pose).after(&shift(a.origin)))
-        .collect();
     let inner = match a.inner.is_empty() {
         true => Vec::new(),
-        false => {
-            let outside = holding(&Copies::of(&a.inner, around.center), &around);
-            inside(&Copies::moved(&outside, &placed, result.center), &result)
-        }
+        false => inside(&blocked(holding(&a.inner, &around))?, &result),
     };
-    let outside = inside(&Copies::of(&a.outer, around.center), &around);
-    let outer = holding(&Copies::moved(&outside, &placed, result.center), &result);
+    let outer = holding(&blocked(inside(&a.outer, &around))?, &result);
     let epsilon = hausdorff_bound(&inner, &outer, options.per_axis);
     Ok(Bracket {
         inner,

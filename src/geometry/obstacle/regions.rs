@@ -1,7 +1,7 @@
 //! Connected regions of the space that a union of balls leaves free, in a padded box about it.
 //!
-//! Free nodes of the grid are joined along its edges, where the whole edge is free: seen at points between which the
-//! distance to the balls leaves no room for one. A wall thinner than the spacing therefore separates. A gap narrower
+//! Free nodes of the grid are joined to neighbours, along edges and diagonals, where the whole way is free: seen at points
+//! between which the distance to the balls leaves no room for one. A wall thinner than the spacing therefore separates. A gap narrower
 //! than the spacing may be missed, so that the count belongs to the grid.
 
 use knotdock_structures::sampling::ball_tree::BallTree;
@@ -10,6 +10,24 @@ use crate::geometry::ball_field::BallField;
 
 /// Halvings of an edge at most: what is then still in doubt counts as closed.
 const HALVINGS: u32 = 6;
+
+/// Steps to the neighbours of a node, one of each opposite two: along edges and diagonals, so that some step leads away
+/// from any surface nearly along its normal, out of dimples between balls.
+const STEPS: [[isize; 3]; 13] = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [1, 1, 0],
+    [1, -1, 0],
+    [1, 0, 1],
+    [1, 0, -1],
+    [0, 1, 1],
+    [0, 1, -1],
+    [1, 1, 1],
+    [1, 1, -1],
+    [1, -1, 1],
+    [1, -1, -1],
+];
 
 /// A component of the free nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,23 +42,27 @@ pub struct Region {
 pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
     let grid = field.grid;
     let mut sets = DisjointSets::new(field.depth.len());
-    let strides = [1, grid.shape[0], grid.shape[0] * grid.shape[1]];
     for node in 0..field.depth.len() {
         if !field.is_free(node) {
             continue;
         }
         let numbers = grid.numbers(node);
-        for axis in 0..3 {
-            if numbers[axis] + 1 == grid.shape[axis] {
+        for step in STEPS {
+            let moved = |axis: usize| numbers[axis].checked_add_signed(step[axis]);
+            let (Some(x), Some(y), Some(z)) = (moved(0), moved(1), moved(2)) else {
+                continue;
+            };
+            let next = [x, y, z];
+            if (0..3).any(|axis| next[axis] >= grid.shape[axis]) {
                 continue;
             }
-            let other = node + strides[axis];
+            let other = (z * grid.shape[1] + y) * grid.shape[0] + x;
             if !field.is_free(other) || sets.find(node) == sets.find(other) {
                 continue;
             }
-            let mut next = numbers;
-            next[axis] += 1;
-            if is_free(tree, grid.place(numbers), grid.place(next), grid.spacing, HALVINGS) {
+            let axes = step.iter().filter(|&&part| part != 0).count();
+            let length = grid.spacing * (axes as f64).sqrt();
+            if is_free(tree, grid.place(numbers), grid.place(next), length, HALVINGS) {
                 sets.join(node, other);
             }
         }
