@@ -1,5 +1,11 @@
 //! knotdock: the pipeline from two structures, or two meshes, to a ranked list of poses.
 
+// No input may end in a panic; tests may.
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
+
 pub mod bounded_read;
 pub mod dock;
 pub mod error;

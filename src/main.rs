@@ -1,5 +1,11 @@
 //! The `knotdock` program: reads the command line and hands over to [`cli`].
 
+// No input may end in a panic; tests may.
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
+
 mod cli;
 mod system_limits;
 

@@ -5,7 +5,7 @@ use crate::dock::scene::Scene;
 use crate::error::SearchError;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
-use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{ModeOrder, Selection, Tail, total};
@@ -118,8 +118,8 @@ pub struct PoseScore {
     pub gradient: Gradient,
     /// The same from all modes.
     pub gradient_modes: Gradient,
-    /// Sensitivity to the offset.
-    pub offset_sensitivity: OffsetSensitivity,
+    /// Sensitivity to the offset; `None` of the product kernel, which has no lifted axis to take it along.
+    pub offset_sensitivity: Option<OffsetSensitivity>,
 }
 
 /// Scores one pose.
@@ -129,7 +129,7 @@ pub struct PoseScore {
 pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, SearchError> {
     let (receptor, ligand) = (&scene.receptor, &scene.ligand);
     let plan = plan(scene, options)?;
-    let scorer = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())?;
+    let scorer = ExactSum::of(&plan, receptor, ligand)?;
     let exact = scorer.score(pose);
     let whole = correlations(&plan, receptor, ligand);
     let [(spectra, first), by_offset @ ..] = whole.as_slice() else {
@@ -158,8 +158,20 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         force: gradient.force.into(),
         torque: gradient.torque.into(),
     };
-    let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
-    let weights = plan.options().kernel.slice_weights();
+    let offset_sensitivity = match scene.skin {
+        Some(_) => None,
+        None => {
+            let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
+            let weights = plan.options().kernel.slice_weights();
+            let weighted = slices.iter().zip(weights);
+            Some(OffsetSensitivity {
+                score: weighted.map(|(s, weight)| s * weight).sum(),
+                slices,
+                exact_score,
+                exact_slices,
+            })
+        }
+    };
     Ok(PoseScore {
         exact: exact.score,
         terms: scene
@@ -181,16 +193,7 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         unfiltered: exact.unfiltered,
         gradient: gradient(scorer.gradient(pose)),
         gradient_modes: gradient(first.gradient(pose, &mut work)),
-        offset_sensitivity: OffsetSensitivity {
-            score: slices
-                .iter()
-                .zip(weights)
-                .map(|(s, weight)| s * weight)
-                .sum(),
-            slices,
-            exact_score,
-            exact_slices,
-        },
+        offset_sensitivity,
     })
 }
 
@@ -227,13 +230,7 @@ fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, SearchError>
         tolerance: kernel_tolerance.min(MODE_TOLERANCE),
         ..options.engine
     };
-    let plan = Plan::with_effects(
-        &scene.receptor,
-        &scene.ligand,
-        fine,
-        kernel_tolerance,
-        scene.terms.clone(),
-    )?;
+    let plan = scene.plan_of(fine, kernel_tolerance)?;
     let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
     let needed = bytes_a_mode * plan.modes().count as u64;
     match options.memory.filter(|&allowed| needed > allowed) {
@@ -337,7 +334,7 @@ fn exact_sensitivity(
         for radius in &mut ligand.radii {
             *radius += by;
         }
-        ExactScorer::new(plan.kernel(), receptor, &ligand).map(|scorer| scorer.score(pose))
+        ExactSum::of(plan, receptor, &ligand).map(|scorer| scorer.score(pose))
     };
     let (more, less) = (grown(h)?, grown(-h)?);
     let slope = |a: f64, b: f64| (a - b) / (2.0 * h);

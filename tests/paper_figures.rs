@@ -1,13 +1,22 @@
 //! What `cargo bench --bench paper_figures` times is the same thing by every way: whole and truncated correlations,
-//! one configuration, and a body's spectrum from a grid and from its balls. Nothing is timed here.
+//! one configuration, a body's spectrum from a grid and from its balls, and Minkowski sums of balls and of a grid's
+//! nodes. Nothing is timed here.
 
 #[path = "../benches/paper_figures/correlation.rs"]
 #[allow(dead_code)] // The figures use more of it.
 mod correlation;
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
+#[path = "../structures/examples/docking_parts/mod.rs"]
+#[allow(dead_code)]
+mod docking_parts;
 #[path = "../benches/paper_figures/lifted.rs"]
 mod lifted;
+#[path = "../benches/paper_figures/minkowski.rs"]
+mod minkowski;
+#[path = "../benches/paper_figures/scene.rs"]
+#[allow(dead_code)]
+mod scene;
 #[path = "../benches/paper_figures/spectrum.rs"]
 #[allow(dead_code)]
 mod spectrum;
@@ -18,9 +27,12 @@ mod ways;
 use correlation::Grid;
 use knotdock_scoring::transform::truncation::{Selection, Tail};
 use knotdock_scoring::truncated::RotationSpectrum;
+use knotdock_structures::mesh::{Mesh, from_triangles};
 use lifted::{Expansion, Task};
+use minkowski::{Knot, Node, gap_of_balls, gap_of_nodes};
 use nalgebra::Vector3;
 use num_complex::Complex64;
+use scene::{Scene, sampled};
 use spectrum::{Body, FrequencyBox, Kernel, exact};
 
 const EDGE: f64 = 2.0;
@@ -268,4 +280,116 @@ fn curves_cross_a_level_between_their_points() {
     assert!((at - 64.0 * 2f64.sqrt()).abs() < 1e-9);
     assert_eq!(crossing::crossing(&curve, 0.5), None);
     assert_eq!(crossing::crossing(&curve, 5.0), None);
+}
+
+/// Centres of a sum of two sets of balls or nodes.
+fn sum<const N: usize>(first: &[[f64; N]], second: &[[f64; N]]) -> Vec<[f64; N]> {
+    let mut sum = Vec::new();
+    minkowski::write(first, second, &mut sum);
+    sum
+}
+
+fn center([x, y, z, _]: Knot) -> Node {
+    [x, y, z]
+}
+
+/// Written sums are all pairs', and streaming gives the gap that they have.
+#[test]
+fn streamed_sums_are_the_written_ones() {
+    let [first, second] = [body(12, 0.0), body(7, 0.5)].map(|body| body.knots());
+    let balls = sum(&first, &second);
+    assert_eq!(balls.len(), 12 * 7);
+    for (index, ball) in balls.iter().enumerate() {
+        let pair = [&first[index / 7], &second[index % 7]];
+        assert!((0..4).all(|i| ball[i] == pair[0][i] + pair[1][i]));
+    }
+    let centers = |balls: &[Knot]| -> Vec<Node> { balls.iter().copied().map(center).collect() };
+    let nodes = sum(&centers(&first), &centers(&second));
+    for place in [[0.0; 3], [0.3, -0.2, 0.1], [2.0, 1.0, -3.0]] {
+        let apart = |center: Node| (Vector3::from(center) - Vector3::from(place)).norm();
+        let gaps = balls.iter().map(|ball| apart(center(*ball)) - ball[3]);
+        let gap = gap_of_balls(&first, &second, place);
+        assert!((gap - gaps.fold(f64::INFINITY, f64::min)).abs() < 1e-14);
+        let least = nodes
+            .iter()
+            .map(|node| apart(*node))
+            .fold(f64::INFINITY, f64::min);
+        let gap = gap_of_nodes(&centers(&first), &centers(&second), place);
+        assert!((gap - least).abs() < 1e-14);
+    }
+}
+
+/// The sum of two boxes is a box. The balls reach out of it by both eps at most, and cover all of it to that. The nodes
+/// do only to twice as much.
+#[test]
+fn sums_of_boxes_are_the_box_to_both_eps() {
+    let halves = [[0.5, 0.3, 0.41], [0.5, 0.2, 0.13]];
+    let per_axis = 12;
+    let epsilon = 0.5 * 3f64.sqrt() / (per_axis - 1) as f64;
+    let boxes = halves.map(|half| {
+        let mesh = cuboid(half);
+        let (body, nodes) = sampled(&mesh, 1.0, per_axis).unwrap();
+        (body.knots(), nodes)
+    });
+    let [(first, first_nodes), (second, second_nodes)] = &boxes;
+    assert!(first.len() < first_nodes.len() && second.len() < second_nodes.len());
+    let half: [f64; 3] = std::array::from_fn(|axis| halves[0][axis] + halves[1][axis]);
+    for ball in sum(first, second) {
+        for axis in 0..3 {
+            assert!(ball[axis].abs() + ball[3] < half[axis] + 2.0 * epsilon + 1e-9);
+        }
+    }
+    for node in sum(first_nodes, second_nodes) {
+        assert!((0..3).all(|axis| node[axis].abs() < half[axis]));
+    }
+    const STEPS: usize = 8;
+    for index in 0..(STEPS + 1).pow(3) {
+        let numbers = [index, index / (STEPS + 1), index / (STEPS + 1).pow(2)];
+        let place: Node = std::array::from_fn(|axis| {
+            let share = (numbers[axis] % (STEPS + 1)) as f64 / STEPS as f64;
+            half[axis] * (2.0 * share - 1.0)
+        });
+        assert!(gap_of_balls(first, second, place) < 2.0 * epsilon);
+        // Planes of nodes end up to a spacing under a face, so 2 eps from a corner: eps is no bound for nodes alone.
+        assert!(gap_of_nodes(first_nodes, second_nodes, place) < 4.0 * epsilon + 1e-9);
+    }
+}
+
+/// A box about the origin.
+fn cuboid(half: [f64; 3]) -> Mesh {
+    let corners: Vec<Node> = (0..8)
+        .map(|corner| std::array::from_fn(|axis| half[axis] * [-1.0, 1.0][corner >> axis & 1]))
+        .collect();
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let triangles: Vec<[u32; 3]> = quads
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
+    from_triangles(&corners, &triangles).unwrap().0
+}
+
+/// Bunny and peg: the sum of their balls covers what that of their nodes covers, to both eps, with fewer by the paper's
+/// ratio at least (Table 1: 23 at 2^12).
+#[test]
+fn sums_of_balls_cover_those_of_nodes() {
+    let scene = Scene::new(16).unwrap();
+    let [bunny, peg] = [&scene.bunny, &scene.peg].map(|body| body.knots());
+    let [bunny_nodes, peg_nodes, _] = &scene.nodes;
+    let nodes = sum(bunny_nodes, peg_nodes);
+    assert_eq!(nodes.len(), bunny_nodes.len() * peg_nodes.len());
+    let ratio = nodes.len() as f64 / (bunny.len() * peg.len()) as f64;
+    assert!(ratio > 23.0, "{ratio}");
+    let same = (bunny_nodes.len() as f64 / bunny.len() as f64).powi(2);
+    assert!(same > 23.0, "{same}");
+    for node in nodes.into_iter().step_by(7) {
+        let gap = gap_of_balls(&bunny, &peg, node);
+        assert!(gap < 2.0 * scene.epsilon(), "{node:?}: {gap}");
+    }
 }

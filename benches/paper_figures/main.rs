@@ -1,15 +1,17 @@
-//! Figures 7, 8 and 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny against a
-//! keyed peg.
+//! Table 1 and Figures 5 to 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny
+//! against a keyed peg.
 //!
 //! `cargo bench --bench paper_figures` prints the tables. It writes them (Markdown, CSV) and the pictures (SVG, PNG)
 //! to `paper_figures` in the folder of Cargo's temporary files.
 //!
 //! - `-- --out FOLDER` writes them elsewhere.
 //! - `--images docs/images` writes the pictures to that folder as well.
-//! - `--grids 12,15` takes fewer grid sizes.
+//! - `--grids 12,15` takes fewer grid sizes, `--figures 5,6` fewer figures; Table 1 belongs to Figure 6.
 //!
 //! The page docs/paper_figures.md says what is measured and shows the results.
 //!
+//! - Figure 5 ([`figure5`]): two samples and their Minkowski sum.
+//! - Table 1 and Figure 6 ([`figure6`]): counts, memory and time of Minkowski sums by pairs.
 //! - Figure 7 ([`figure7`]): the gap function by FFT, and what is left of it with m' modes.
 //! - Figure 8 ([`figure8`]): a body's spectrum by rasterising and FFT, or from its balls by direct and fast transforms.
 //! - Figure 9 ([`figure9`]): one configuration from m' modes.
@@ -20,9 +22,12 @@ mod crossing;
 #[path = "../../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // Only the peg is used.
 mod docking_parts;
+mod figure5;
+mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod minkowski;
 mod report;
 mod scene;
 mod sections;
@@ -36,10 +41,11 @@ use scene::Scene;
 use knotdock::geometry::gap::spectrum::Kernel;
 use std::error::Error;
 use std::fs;
+use std::io;
 use std::path::PathBuf;
 use whole::Whole;
 
-/// The paper's Figures 7, 8 and 9, done again.
+/// The paper's Table 1 and Figures 5 to 9, done again.
 #[derive(Parser)]
 struct Options {
     /// Folder for tables and pictures.
@@ -52,6 +58,9 @@ struct Options {
     #[arg(long, value_delimiter = ',', default_value = "12,15,18,21",
           value_parser = clap::value_parser!(u32).range(9..=24))]
     grids: Vec<u32>,
+    /// Figures to do.
+    #[arg(long, value_delimiter = ',', default_value = "5,6,7,8,9", value_parser = clap::value_parser!(u32).range(5..=9))]
+    figures: Vec<u32>,
     /// What Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
@@ -68,45 +77,75 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|power| Scene::new(1 << (power / 3)))
         .collect::<Result<Vec<_>, _>>()?;
-    let kernels = scenes.iter().map(kernel).collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
         println!(
             "m = {}^3: bunny {} balls ({} nodes inside), peg {} ({}), cube of edge {:.3}",
             scene.per_axis,
             scene.bunny.radii.len(),
-            scene.inside[0],
+            scene.nodes[0].len(),
             scene.peg.radii.len(),
-            scene.inside[1],
+            scene.nodes[1].len(),
             scene.edge
         );
     }
     println!();
-    let wholes: Vec<Whole> = scenes
-        .iter()
-        .zip(&kernels)
-        .map(|(scene, kernel)| Whole::new(scene, kernel))
-        .collect();
     let images = options.images.as_deref();
-    let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
-    figure7::figure(&correlations).write(&options.out, images)?;
-    // Of the largest grid but one, whose points the eye can still resolve.
-    if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
-        let picture = sections::sections(whole);
-        for folder in [Some(options.out.as_path()), images].into_iter().flatten() {
-            fs::write(folder.join("fig7_sections.svg"), &picture)?;
+    if options.figures.contains(&5) {
+        // Of the largest grid but two, whose balls the eye can still resolve.
+        if let Some(scene) = scenes.iter().rfind(|scene| scene.per_axis <= 32) {
+            write_picture("fig5", &figure5::picture(scene), &options)?;
         }
     }
-    let correlations: Vec<(&Scene, &Kernel, &Whole)> = scenes
-        .iter()
-        .zip(&kernels)
-        .zip(&wholes)
-        .map(|((scene, kernel), whole)| (scene, kernel, whole))
-        .collect();
-    figure9::figure(&correlations)?.write(&options.out, images)?;
-    drop(wholes);
-    let pairs: Vec<(&Scene, &Kernel)> = scenes.iter().zip(&kernels).collect();
-    figure8::figure(&pairs)?.write(&options.out, images)?;
+    if options.figures.contains(&6) {
+        figure6::figure(&scenes).write(&options.out, images)?;
+    }
+    if options.figures.iter().any(|figure| *figure > 6) {
+        correlate(&scenes, &options)?;
+    }
     eprintln!("written to {}", options.out.display());
+    Ok(())
+}
+
+/// Writes a picture that is no chart.
+fn write_picture(name: &str, picture: &str, options: &Options) -> io::Result<()> {
+    let folders = [Some(&options.out), options.images.as_ref()];
+    for folder in folders.into_iter().flatten() {
+        fs::write(folder.join(format!("{name}.svg")), picture)?;
+    }
+    Ok(())
+}
+
+/// Figures 7, 8 and 9, which share kernels, correlations or both.
+fn correlate(scenes: &[Scene], options: &Options) -> Result<(), Box<dyn Error>> {
+    let images = options.images.as_deref();
+    let wanted = |figure| options.figures.contains(&figure);
+    let kernels = scenes.iter().map(kernel).collect::<Result<Vec<_>, _>>()?;
+    let pairs: Vec<(&Scene, &Kernel)> = scenes.iter().zip(&kernels).collect();
+    if wanted(7) || wanted(9) {
+        let wholes: Vec<Whole> = pairs
+            .iter()
+            .map(|(scene, kernel)| Whole::new(scene, kernel))
+            .collect();
+        if wanted(7) {
+            let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
+            figure7::figure(&correlations).write(&options.out, images)?;
+            // Of the largest grid but one, whose points the eye can still resolve.
+            if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
+                write_picture("fig7_sections", &sections::sections(whole), options)?;
+            }
+        }
+        if wanted(9) {
+            let correlations: Vec<(&Scene, &Kernel, &Whole)> = pairs
+                .iter()
+                .zip(&wholes)
+                .map(|((scene, kernel), whole)| (*scene, *kernel, whole))
+                .collect();
+            figure9::figure(&correlations)?.write(&options.out, images)?;
+        }
+    }
+    if wanted(8) {
+        figure8::figure(&pairs)?.write(&options.out, images)?;
+    }
     Ok(())
 }
 

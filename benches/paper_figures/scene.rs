@@ -6,6 +6,7 @@
 //! its faces lies along the grid.
 
 use crate::docking_parts::peg_and_hole;
+use crate::minkowski::Node;
 use knotdock::geometry::gap::spectrum::Body;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
@@ -16,6 +17,8 @@ use std::path::Path;
 
 /// Longest edge of the peg.
 const PEG: f64 = 0.42;
+/// Longest edge of a small bunny, which has the paper's share of the bunny's nodes without flat faces.
+const SMALL: f64 = 0.45;
 
 /// Both solids at one grid size.
 pub struct Scene {
@@ -25,8 +28,10 @@ pub struct Scene {
     pub bunny: Body,
     /// The peg's, turned.
     pub peg: Body,
-    /// Nodes of the sampling grids inside the solids: the balls that uniform sampling would need.
-    pub inside: [usize; 2],
+    /// The small bunny's, as it stands.
+    pub small: Body,
+    /// Nodes of the sampling grids inside bunny, peg and small bunny, where the balls are: what uniform sampling takes.
+    pub nodes: [Vec<Node>; 3],
     /// Edge of the periodic cube in which the two are correlated: their extents together, so that nothing wraps around.
     pub edge: f64,
 }
@@ -35,28 +40,40 @@ impl Scene {
     /// Samples both with the spacing of `per_axis` nodes along the bunny's longest edge.
     pub fn new(per_axis: usize) -> Result<Self, Box<dyn Error>> {
         let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
-        let (bunny, nodes) = sampled(&read(&bunny)?.0, 1.0, per_axis)?;
+        let (mesh, _) = read(&bunny)?;
+        let (bunny, nodes) = sampled(&mesh, 1.0, per_axis)?;
+        let nodes_along = |edge: f64| 1 + (edge * (per_axis - 1) as f64).round() as usize;
+        let (small, small_nodes) = sampled(&mesh, SMALL, nodes_along(SMALL))?;
         let part = peg_and_hole(0.05).ligand;
         let (peg, _) = from_triangles(&part.positions, &part.triangles)?;
-        let along_peg = 1 + (PEG * (per_axis - 1) as f64).round() as usize;
-        let (mut peg, peg_nodes) = sampled(&peg, PEG, along_peg)?;
+        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, nodes_along(PEG))?;
         let turn = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
-        for center in &mut peg.centers {
-            *center = (turn * Vector3::from(*center)).into();
+        for place in peg.centers.iter_mut().chain(&mut peg_nodes) {
+            *place = (turn * Vector3::from(*place)).into();
         }
         let edge = edge(&bunny, &peg);
         Ok(Self {
             per_axis,
             bunny,
             peg,
-            inside: [nodes, peg_nodes],
+            small,
+            nodes: [nodes, peg_nodes, small_nodes],
             edge,
         })
     }
+
+    /// The bound eps of the bunny's sampling; the others' are this but for what rounding their nodes to whole ones changes.
+    pub fn epsilon(&self) -> f64 {
+        0.5 * 3f64.sqrt() / (self.per_axis - 1) as f64
+    }
 }
 
-/// The set A3 of a mesh scaled to a longest edge, with the number of nodes inside.
-fn sampled(mesh: &Mesh, edge: f64, per_axis: usize) -> Result<(Body, usize), Box<dyn Error>> {
+/// The set A3 of a mesh scaled to a longest edge, and the nodes inside.
+pub fn sampled(
+    mesh: &Mesh,
+    edge: f64,
+    per_axis: usize,
+) -> Result<(Body, Vec<Node>), Box<dyn Error>> {
     let solid = Solid::new(mesh)?;
     let method = Method::BehandishIlies(DecompositionOptions::default());
     let sampling = sample(&solid, per_axis, method)?;
@@ -69,11 +86,14 @@ fn sampled(mesh: &Mesh, edge: f64, per_axis: usize) -> Result<(Body, usize), Box
         .centers
         .iter()
         .map(|center| [0, 1, 2].map(|axis| scale * (center[axis] - frame.origin[axis])));
+    let field = &sampling.field;
+    let inside = field.inside().into_iter();
+    let nodes = inside.map(|node| field.grid.node(node).map(|x| scale * frame.unit * x));
     let body = Body {
         centers: centers.collect(),
         radii: knots.radii.iter().map(|radius| scale * radius).collect(),
     };
-    Ok((body, sampling.inside_nodes))
+    Ok((body, nodes.collect()))
 }
 
 /// Edge of the smallest cube in which the correlation of two bodies does not wrap around.

@@ -5,6 +5,12 @@
 //! [`Correlator`] is the entry (`cargo run -p knotdock-scoring --example correlate`):
 //!
 //! ```
+
+// No input may end in a panic; tests may.
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
 #![doc = include_str!("../examples/correlate.rs")]
 //! ```
 //!
@@ -30,6 +36,7 @@
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
 //! | [`engine`] | the correlation over all translations at a rotation: plan, rank, CPU, graphics processor |
 //! | [`truncated`] | the correlation at one pose from chosen modes |
+//! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
@@ -39,6 +46,7 @@ pub mod affinity;
 mod correlator;
 pub mod engine;
 pub mod exact;
+pub mod exact_sum;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod overlap;

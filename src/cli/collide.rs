@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use knotdock::geometry::collide::impact::{Impact, first_impact};
 use knotdock::geometry::collide::{
-    Answer, CollisionScene, Quantities, Questions, Verdict, Workspace,
+    Answer, CollisionScene, Method, Quantities, Questions, Verdict, Ways, Workspace,
 };
 use knotdock::options::Threads;
-use knotdock::options::values::{duration, not_negative};
+use knotdock::options::values::{count, duration, not_negative};
 use knotdock::output::tables::collisions;
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
@@ -47,6 +47,12 @@ pub struct Collide {
     /// Time for a pose, such as 1ms: bounds are the best known by then, which depend on the machine.
     #[arg(long, value_name = "TIME", value_parser = duration)]
     deadline: Option<f64>,
+    /// How verdicts and forces are found.
+    #[arg(long, value_enum, default_value_t = MethodName::Auto)]
+    method: MethodName,
+    /// The most Fourier modes that are summed, with their conjugates.
+    #[arg(long, value_name = "M", default_value_t = Ways::default().modes, value_parser = count(1..=1_000_000))]
+    modes: usize,
     /// What to compute beside the verdict; with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
     compute: Vec<Compute>,
@@ -60,6 +66,30 @@ pub struct Collide {
     solids: SolidArguments,
     #[command(flatten)]
     threads: Threads,
+}
+
+/// [`Method`] by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Trees, and modes for forces where they cost less.
+    Auto,
+    /// Trees alone.
+    Tree,
+    /// Modes alone, which certify hits and never that a pose is free.
+    Modes,
+    /// Trees cull, and pairs or modes are summed, whichever cost less.
+    Hybrid,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Auto => Self::Auto,
+            MethodName::Tree => Self::Tree,
+            MethodName::Modes => Self::Modes,
+            MethodName::Hybrid => Self::Hybrid,
+        }
+    }
 }
 
 /// What may be computed of a pose.
@@ -99,12 +129,12 @@ impl Collide {
             solids.each_ref().map(|input| input.solid.clone()),
             self.margin,
         );
-        let questions = Questions::new(
-            scene,
-            self.quantities(),
-            self.deadline.map(Duration::from_secs_f64),
-        )
-        .map_err(Failure::other)?;
+        let ways = Ways {
+            method: self.method.into(),
+            modes: self.modes,
+            deadline: self.deadline.map(Duration::from_secs_f64),
+        };
+        let questions = Questions::new(scene, self.quantities(), ways).map_err(Failure::input)?;
         let start = Instant::now();
         let answers = questions.answers(&poses);
         let seconds = start.elapsed().as_secs_f64();
@@ -112,10 +142,10 @@ impl Collide {
         if let Some(file) = &self.output {
             collisions::write(file, &poses, &answers)?.place()?;
         }
-        console.say(format!("\n{}", summary(&answers, &questions, seconds)));
-        if let [answer] = &answers[..] {
-            console.say(one_pose(answer));
-        }
+        console.say(match &answers[..] {
+            [answer] => format!("\n{}", one_pose(answer)),
+            answers => format!("\n{}", summary(answers, &questions, seconds)),
+        });
         if let Some(impact) = &impact {
             console.say(impact_text(impact));
         }
@@ -180,9 +210,9 @@ impl Collide {
             "b": solids[1].object(),
             "margin": self.margin,
             "undecided_band": questions.scene().band(),
-            "hit": count(answers, Verdict::Hit),
-            "free": count(answers, Verdict::Free),
-            "undecided": count(answers, Verdict::Undecided),
+            "hit": number_of(answers, Verdict::Hit),
+            "free": number_of(answers, Verdict::Free),
+            "undecided": number_of(answers, Verdict::Undecided),
             "seconds": seconds,
             "impact": impact.map(|impact| json!({
                 "free_until": impact.free_until,
@@ -207,7 +237,7 @@ fn impact(questions: &Questions, path: &[Pose]) -> Impact {
     first_impact(questions.scene(), path, tolerance, &mut Workspace::new())
 }
 
-fn count(answers: &[Answer], verdict: Verdict) -> usize {
+fn number_of(answers: &[Answer], verdict: Verdict) -> usize {
     let these = answers
         .iter()
         .filter(|answer| answer.found.verdict == verdict);
@@ -222,9 +252,9 @@ fn summary(answers: &[Answer], questions: &Questions, seconds: f64) -> String {
         "{} poses: {} hit, {} free, {} undecided (gaps below {}); {:.0} poses a second; microseconds a pose: median {:.1}, \
          99% {:.1}, worst {:.1}",
         answers.len(),
-        count(answers, Verdict::Hit),
-        count(answers, Verdict::Free),
-        count(answers, Verdict::Undecided),
+        number_of(answers, Verdict::Hit),
+        number_of(answers, Verdict::Free),
+        number_of(answers, Verdict::Undecided),
         Figure(questions.scene().band()),
         answers.len() as f64 / seconds,
         at(0.5),
@@ -270,6 +300,12 @@ fn one_pose(answer: &Answer) -> String {
             point(contact.torque)
         ));
     }
+    lines.push(format!(
+        "Took {:.1} microseconds, {} pairs of balls and {} modes",
+        1e6 * answer.seconds,
+        answer.ball_pairs,
+        answer.modes
+    ));
     lines.join("\n")
 }
 

@@ -189,6 +189,7 @@ mod tests {
         for option in definitions() {
             let value = match option.name() {
                 "sample_weights" => "unit",
+                "sampler" => "bi",
                 "precision" => "double",
                 "antibody" => "whole",
                 "waters" | "hetatm" | "hydrogens" => "keep",

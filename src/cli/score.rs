@@ -7,6 +7,7 @@ use knotdock::options::DockOptions;
 use knotdock::options::values::at_least_one;
 use knotdock::output::tables::report;
 use knotdock::pose_geometry::PoseGeometry;
+use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
@@ -14,9 +15,12 @@ use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
 
 use super::arguments::memory;
-use crate::cli::arguments::options::{OfScore, OptionArguments};
+use crate::cli::arguments::options::{GivenOptions, OfScore, OptionArguments};
+use crate::cli::inputs::bodies::{Bodies, spec_of};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::inputs::poses::pose;
+use crate::cli::inputs::request::lengths;
+use crate::cli::inputs::shapes::is_shape;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{regions_text, site_text};
 use crate::cli::messages::failure::Failure;
@@ -28,7 +32,7 @@ use crate::cli::messages::failure::Failure;
 #[derive(Args, Debug)]
 pub struct Score {
     /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
-    /// FILE:H:1-120,L residues too.
+    /// FILE:H:1-120,L residues too. Or a mesh: .stl, .obj, .ply or .off.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
     /// The molecule that moves, likewise.
@@ -60,15 +64,23 @@ impl Score {
     /// Scores.
     pub fn run(self, console: Console) -> Result<(), Failure> {
         let pose = pose(&self.pose)?;
-        let dock = self.options.given()?.options;
-        threads::on(dock.machine.threads.count(), || {
-            self.score(&pose, &dock, console)
+        let given = self.options.given()?;
+        let mut are_meshes = false;
+        for text in [&self.receptor, &self.ligand] {
+            are_meshes |= is_shape(&spec_of(text)?.path);
+        }
+        threads::on(given.options.machine.threads.count(), || {
+            if are_meshes {
+                self.score_meshes(&pose, given, console)
+            } else {
+                self.score(&pose, &given.options, console)
+            }
         })?
     }
 
-    /// Scores on the threads of the caller.
-    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
-        let options = ScoreOptions {
+    /// Options of the ladder.
+    fn ladder(&self, dock: &DockOptions) -> ScoreOptions {
+        ScoreOptions {
             engine: dock.kernel.engine(),
             modes: self.modes,
             order: match self.order {
@@ -76,7 +88,41 @@ impl Score {
                 Order::Magnitude => ModeOrder::Magnitude,
             },
             memory: memory::default_limit(),
+        }
+    }
+
+    /// Scores two meshes, sampled as `dock` samples them.
+    fn score_meshes(
+        &self,
+        pose: &Pose,
+        given: GivenOptions,
+        console: Console,
+    ) -> Result<(), Failure> {
+        let lengths = lengths(&given);
+        let mut dock = given.options;
+        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
+        let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
+        bodies.describe(Arrangement::Pair, console);
+        let Some(sampling) = bodies.sampling(&mut dock, lengths, console)? else {
+            return Err(Failure::input("two meshes are needed"));
         };
+        let scene = Scene::of_meshes(&sampling.pair, &dock).map_err(refused)?;
+        let scored = score::score(&scene, pose, &self.ladder(&dock)).map_err(refused)?;
+        console.say(format!("\n{}", ladder_text(&scored, "unit")));
+        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        if let Some(object) = object.as_object_mut() {
+            object.insert("pose".to_owned(), pose_numbers(pose));
+            let parts = serde_json::to_value(&sampling.pair.parts).map_err(Failure::other)?;
+            object.insert("sampling".to_owned(), parts);
+            object.insert("pose_score".to_owned(), serde_json::json!(scored.exact));
+        }
+        console.result(&object)?;
+        Ok(())
+    }
+
+    /// Scores on the threads of the caller.
+    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
+        let options = self.ladder(dock);
         let reading = dock.input.reading();
         let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
@@ -92,7 +138,7 @@ impl Score {
                 rescorer.score(pose, &mut Workspace::default())
             });
         let pose_score = scored.exact + pose_terms.sum();
-        console.say(format!("\n{}", ladder_text(&scored)));
+        console.say(format!("\n{}", ladder_text(&scored, "Å")));
         for text in regions_text(&["receptor", "ligand"], &scene.regions) {
             console.say(text);
         }
@@ -118,12 +164,7 @@ impl Score {
             object.insert("active_site".to_owned(), site);
             let regions = serde_json::to_value(&scene.regions).map_err(Failure::other)?;
             object.extend(regions.as_object().cloned().unwrap_or_default());
-            let [qw, qx, qy, qz] = pose.quaternion();
-            let [tx, ty, tz]: [f64; 3] = pose.translation.into();
-            object.insert(
-                "pose".to_owned(),
-                serde_json::json!([qw, qx, qy, qz, tx, ty, tz]),
-            );
+            object.insert("pose".to_owned(), pose_numbers(pose));
             for (term, value) in pose_terms.iter() {
                 object.insert(term.id.to_owned(), serde_json::json!(value));
             }
@@ -141,6 +182,13 @@ fn pose_terms_text(values: &TermValues) -> Option<String> {
         .filter_map(|(term, value)| Some(format!("{} {:.3}", term.label, value?)));
     let terms = acting.collect::<Vec<_>>().join(", ");
     (!terms.is_empty()).then(|| format!("Pose terms: {terms}"))
+}
+
+/// The seven numbers of a pose.
+fn pose_numbers(pose: &Pose) -> serde_json::Value {
+    let [qw, qx, qy, qz] = pose.quaternion();
+    let [tx, ty, tz]: [f64; 3] = pose.translation.into();
+    serde_json::json!([qw, qx, qy, qz, tx, ty, tz])
 }
 
 /// The pose as two solids: buried surface and shared volume.
@@ -161,7 +209,7 @@ fn geometry_text(geometry: &PoseGeometry) -> String {
 }
 
 /// The exact score with its derivatives, and the table of modes.
-fn ladder_text(scored: &PoseScore) -> String {
+fn ladder_text(scored: &PoseScore, unit: &str) -> String {
     let mut lines = vec![
         [
             "modes",
@@ -187,11 +235,20 @@ fn ladder_text(scored: &PoseScore) -> String {
         ]
     }));
     let vector = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
-    let sensitivity = &scored.offset_sensitivity;
+    let sensitivity = match &scored.offset_sensitivity {
+        Some(sensitivity) => format!(
+            "Sensitivity to the offset, per {unit}: {:.2} of the score, {} of the slices; by differences of the exact sum {:.2}, {}\n",
+            sensitivity.score,
+            vector(sensitivity.slices),
+            sensitivity.exact_score,
+            vector(sensitivity.exact_slices),
+        ),
+        None => String::new(),
+    };
     format!(
         "Exact score {:.3} (without the low-pass {:.3}); best score at this rotation {:.3}\n\
-         Gradient: {} per Å, {} per radian about the ligand's centre\n\
-         Sensitivity to the offset, per Å: {:.2} of the score, {} of the slices; by differences of the exact sum {:.2}, {}\n\
+         Gradient: {} per {unit}, {} per radian about the ligand's centre\n\
+         {sensitivity}\
          \n{}\n\
          Modes: of {}, conjugates counted. Bound: the most that the modes left out can add at this rotation; rms: what they add over \
          all translations.\n{}",
@@ -200,10 +257,6 @@ fn ladder_text(scored: &PoseScore) -> String {
         scored.scale,
         vector(scored.gradient.force),
         vector(scored.gradient.torque),
-        sensitivity.score,
-        vector(sensitivity.slices),
-        sensitivity.exact_score,
-        vector(sensitivity.exact_slices),
         report::align(&lines),
         scored.modes_total,
         if scored.reached {

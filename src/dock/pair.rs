@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use knotdock_structures::mesh::Solid;
 use knotdock_structures::molecule::Molecule;
 
 use crate::dock::outcome::StageTime;
@@ -11,6 +10,8 @@ use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
 use crate::error::SearchError;
+use crate::mesh::samplers::SamplerName;
+use crate::mesh::shape::Shape;
 use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
 
@@ -19,8 +20,8 @@ use crate::options::{DockOptions, SampleWeights};
 pub enum Pair<'a> {
     /// Molecules, in Å.
     Molecules([&'a Molecule; 2]),
-    /// Meshes, in one unit of length.
-    Meshes([&'a Solid; 2]),
+    /// Meshes or files of balls, in one unit of length.
+    Meshes([Shape<'a>; 2]),
 }
 
 /// Why a setting cannot be run.
@@ -58,11 +59,8 @@ impl Sampling {
     ///
     /// # Errors
     /// [`MeshSceneError`].
-    pub fn of(
-        [receptor, ligand]: [&Solid; 2],
-        options: &MeshOptions,
-    ) -> Result<Self, MeshSceneError> {
-        let (pair, time) = timed("sample", || sample_pair(receptor, ligand, options));
+    pub fn of(shapes: [Shape; 2], options: &MeshOptions) -> Result<Self, MeshSceneError> {
+        let (pair, time) = timed("sample", || sample_pair(shapes, options));
         Ok(Self { pair: pair?, time })
     }
 }
@@ -122,12 +120,13 @@ pub struct Preparer<'a> {
 }
 
 /// What a sampling depends on, of one pair and one offset.
-type SamplingKey = (usize, SampleWeights);
+type SamplingKey = (usize, SampleWeights, SamplerName);
 
 fn key(options: &DockOptions) -> SamplingKey {
     (
         options.sampling.sample_grid.unwrap_or_default().per_axis,
         options.sampling.sample_weights.unwrap_or_default(),
+        options.sampling.sampler.unwrap_or_default(),
     )
 }
 
@@ -160,18 +159,19 @@ impl<'a> Preparer<'a> {
 
     fn sampling(
         &mut self,
-        solids: [&Solid; 2],
+        solids: [Shape; 2],
         options: &DockOptions,
     ) -> Result<Arc<Sampling>, MeshSceneError> {
         let wanted = key(options);
         if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
             return Ok(Arc::clone(known));
         }
-        let (per_axis, weights) = wanted;
+        let (per_axis, weights, sampler) = wanted;
         let sampling = Arc::new(Sampling::of(
             solids,
             &MeshOptions {
                 per_axis,
+                sampler,
                 offset: Some(options.kernel.offset),
                 weights,
                 alpha: options.kernel.alpha,

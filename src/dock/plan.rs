@@ -11,7 +11,7 @@ use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::rank::rescoring::Rescoring;
 use crate::search::plan::SearchPlan;
-use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
@@ -126,7 +126,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         spreading_width: engine.width(),
         modes: engine.modes().count,
         lifted_modes: engine.axis().modes(),
-        kernel_reach: engine.kernel().reach(),
+        kernel_reach: engine.reach(),
         pass_frequency: 1.0 / engine.options().kernel.pass_length,
         stop_frequency: engine.kernel().stop(),
         radii,
@@ -164,13 +164,9 @@ impl DockPlan {
     ///
     /// # Errors
     /// [`SearchError::Knots`] on knots that cannot be summed.
-    pub fn exact_scorer(&self) -> Result<ExactScorer, SearchError> {
-        Ok(ExactScorer::with_effects(
-            self.search.engine.kernel(),
-            &self.receptor,
-            &self.ligand,
-            self.search.engine.effects(),
-        )?)
+    pub fn exact_scorer(&self) -> Result<ExactSum, SearchError> {
+        let engine = &self.search.engine;
+        Ok(ExactSum::of(engine, &self.receptor, &self.ligand)?)
     }
 
     /// Number of poses to refine: all where none lies on the grid, as of rings.

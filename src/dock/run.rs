@@ -20,7 +20,8 @@ use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
 use crate::threads;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
-use knotdock_scoring::exact::{ExactScore, ExactScorer};
+use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -165,7 +166,7 @@ struct Prepared<T: Real> {
     /// The receptor's spectra, where poses are refined.
     spectra: Option<ReceptorSpectra<T>>,
     engine: ScanEngine<T>,
-    scorer: ExactScorer,
+    scorer: ExactSum,
     /// Error of the compressed components at the probe rotations, relative to their best score.
     rank_error: f64,
     effects: Vec<EffectCost>,
@@ -295,7 +296,7 @@ struct Check {
 }
 
 impl Check {
-    fn new(scorer: &ExactScorer, grid_poses: &[Pose]) -> Self {
+    fn new(scorer: &ExactSum, grid_poses: &[Pose]) -> Self {
         let started = Instant::now();
         let at_grid: Vec<ExactScore> = grid_poses
             .par_iter()

@@ -9,7 +9,8 @@ use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
-use knotdock_scoring::engine::Plan;
+use knotdock_scoring::engine::{EngineOptions, Plan};
+use knotdock_scoring::kernel::Band;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_scoring::terms::effect::{Effect, EffectInputs, LabelCounts, Term};
 use knotdock_scoring::terms::pose::Rescorer;
@@ -43,6 +44,8 @@ pub struct Scene {
     pub unit: LengthUnit,
     /// Length in that unit that stands for an Ångström: first and last steps of refinement are shares of it.
     pub angstrom: f64,
+    /// Depth of the skin where the kernel is the product kernel, in that unit; `None`: it is B&I's cone.
+    pub skin: Option<f64>,
     /// The receptor, labelled where an effect needs it.
     pub receptor: Knots,
     /// The ligand, likewise.
@@ -145,6 +148,7 @@ impl Scene {
         Ok(Self {
             unit: LengthUnit::Angstrom,
             angstrom: 1.0,
+            skin: None,
             receptor,
             ligand,
             terms,
@@ -165,6 +169,7 @@ impl Scene {
         Ok(Self {
             unit: LengthUnit::File,
             angstrom: pair.angstrom(),
+            skin: pair.skin(),
             receptor,
             ligand,
             terms: Vec::new(),
@@ -181,11 +186,32 @@ impl Scene {
     /// # Errors
     /// [`SearchError`] on knots or options that no engine can correlate.
     pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
-        let terms = self.terms.clone();
-        let engine = options.kernel.engine();
-        let tolerance = options.kernel.tolerance;
-        let plan = Plan::with_effects(&self.receptor, &self.ligand, engine, tolerance, terms)?;
-        Ok(plan)
+        self.plan_of(options.kernel.engine(), options.kernel.tolerance)
+    }
+
+    /// The plan for an engine's options, with the kernel of a tolerance: see [`Plan::with_kernel_of`]. Of the product
+    /// kernel volumes are in offsets cubed, and the offset of the engine is the depth of the skin.
+    ///
+    /// # Errors
+    /// As [`Self::engine_plan`].
+    pub(crate) fn plan_of(
+        &self,
+        engine: EngineOptions,
+        kernel_tolerance: f64,
+    ) -> Result<Plan, SearchError> {
+        let (receptor, ligand) = (&self.receptor, &self.ligand);
+        Ok(match self.skin {
+            None => {
+                let terms = self.terms.clone();
+                Plan::with_effects(receptor, ligand, engine, kernel_tolerance, terms)?
+            }
+            Some(skin) => {
+                let unit = engine.kernel.offset;
+                let mut engine = engine;
+                engine.kernel.offset = skin;
+                Plan::product_in(receptor, ligand, engine, Band::LowPass, unit)?
+            }
+        })
     }
 
     /// The active site that the partner of a peptidase is assumed to bind, where one is.

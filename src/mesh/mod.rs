@@ -6,49 +6,32 @@
 //! sqrt(3) h / 2 is the bound within which the sampler knows its surface ([`knotdock_structures::sampling::grid`]). A
 //! is the receptor, B the ligand.
 //!
-//! # Why balls of one radius
+//! # Two samplers
 //!
-//! A sum over pairs of balls counts pairs. Over balls of very different size that is no volume. A large ball that
-//! overlaps another by its whole volume counts as much as two tiny ones that touch. The many balls of an edge
-//! outweigh the one that fills the middle.
-//!
-//! So parts that dock are sampled by balls of one radius on a lattice ([`lattice()`]). Weights are fitted so that
-//! their bumps add up to one inside and zero outside. The sum over pairs is then an integral over both volumes,
-//! however the lattices lie. The kernel is that of molecules, B&I's cone, whose balls are all of about one size.
-//!
-//! For balls of mixed radii touching means too little at large radii. A skin of fixed width would fix that but not
-//! the counting. docs/mesh_docking.md has the figures.
-//!
-//! # Which lengths
-//!
-//! Two flat faces with a gap g between them score, per area, E(g) = pi times the integral from g on of K(d) d (d -
-//! g)^2. K is the ranking kernel. The radii are [`RADIUS`], the resolution is [`RESOLUTION`] (both in units of r0)
-//! and lambda is 9. Then E is greatest at g = r0, above half of that from 0.65 to 1.55 r0, and below zero under 0.3
-//! r0. So **the offset r0 is the gap that is looked for**: of a peg in its hole, the clearance.
+//! [`samplers`] has a file for each. `lattice` makes balls of one radius and correlates them by B&I's cone; `bi` makes
+//! those of Algorithm 1 and correlates them by the product kernel. Both score two flat faces most at a gap of one
+//! offset: **the offset r0 is the gap that is looked for**, of a peg in its hole the clearance. docs/mesh_docking.md
+//! compares them.
+
+pub mod samplers;
+pub mod shape;
 
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
-use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
-use knotdock_structures::sampling::hausdorff::HausdorffMeter;
-use knotdock_structures::sampling::lattice::lattice;
-use knotdock_structures::sampling::weights::{self, FittedWeights};
-use knotdock_structures::sampling::{SampleError, knots};
+use knotdock_structures::sampling::weights::FittedWeights;
+use knotdock_structures::sampling::{Ball, SampleError};
 use serde::Serialize;
 
+use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, SamplerName, union};
+use crate::mesh::shape::Shape;
 use crate::options::{DockOptions, SampleWeights};
 
-/// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
-pub const RADIUS: f64 = 2.5 / 2.2;
-/// Default resolution in offsets: that of molecules.
-pub const RESOLUTION: f64 = 4.5 / 2.2;
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
-/// Widest cell of the lattice in offsets: half the default resolution.
-const CELL: f64 = 0.5 * RESOLUTION;
 /// Length that stands for one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Longest edges of a bounding box that single precision carries through the search.
@@ -59,6 +42,8 @@ const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 pub struct MeshOptions {
     /// Nodes along each edge of each part's grid, n = m^(1/3).
     pub per_axis: usize,
+    /// The sampler.
+    pub sampler: SamplerName,
     /// Skin offset r0, the gap looked for; `None`: [`default_offset`].
     pub offset: Option<f64>,
     /// Weights of the balls.
@@ -77,6 +62,12 @@ pub enum MeshSceneError {
         part: usize,
         /// Why.
         source: SampleError,
+    },
+    /// The sampler makes balls of solids alone.
+    #[error("the part is balls already, which this sampler cannot take as they are")]
+    BallFile {
+        /// Which part.
+        part: usize,
     },
     /// The bump function has no such exponent.
     #[error(transparent)]
@@ -128,9 +119,10 @@ impl MeshSceneError {
     /// The part at fault, where one is: 0 the receptor, 1 the ligand.
     pub fn part(&self) -> Option<usize> {
         match self {
-            Self::Sample { part, .. } | Self::Size { part, .. } | Self::Thin { part, .. } => {
-                Some(*part)
-            }
+            Self::Sample { part, .. }
+            | Self::Size { part, .. }
+            | Self::Thin { part, .. }
+            | Self::BallFile { part } => Some(*part),
             Self::Alpha(_) | Self::Knots(_) | Self::Offset { .. } => None,
         }
     }
@@ -141,6 +133,7 @@ impl MeshSceneError {
             Self::Sample { .. } => {
                 "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
             }
+            Self::BallFile { .. } => "dock files of balls with --sampler bi",
             Self::Alpha(_) => "give --alpha a number above zero",
             Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
             Self::Size { .. } => {
@@ -165,24 +158,30 @@ pub struct SampledPart {
     /// The balls.
     #[serde(skip)]
     pub knots: Knots,
+    /// The sampler.
+    pub sampler: SamplerName,
     /// Number of balls.
     pub balls: usize,
-    /// Their radius.
+    /// Their radius, of balls of every size the largest.
     pub radius: f64,
+    /// The smallest.
+    pub smallest_radius: f64,
     /// Nodes along each edge of the grid.
     pub per_axis: usize,
     /// Spacing h of the grid.
     pub spacing: f64,
     /// eps = sqrt(3) h / 2.
     pub epsilon: f64,
-    /// Nodes along each edge of a cell of the lattice.
-    pub per_cell: usize,
+    /// Nodes along each edge of a cell of the lattice; `null` without a lattice.
+    pub per_cell: Option<usize>,
     /// Nodes strictly inside.
     pub inside_nodes: usize,
     /// Median local feature size, as a radius.
     pub feature_size: f64,
     /// How the weights were fitted; `null` where they are one.
     pub weights: Option<FittedWeights>,
+    /// How those of the grown balls were fitted; `null` where there are none.
+    pub skin_weights: Option<FittedWeights>,
 }
 
 /// Two parts that are to be docked.
@@ -192,6 +191,8 @@ pub struct MeshPair {
     pub parts: [SampledPart; 2],
     /// Skin offset r0 in use.
     pub offset: f64,
+    /// The sampler.
+    pub sampler: &'static Sampler,
 }
 
 /// The default offset: 2 (`eps_A` + `eps_B`), but no more than twice the smaller feature size.
@@ -202,39 +203,29 @@ pub fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
     sampled.min(2.0 * features[0].min(features[1]))
 }
 
-/// Samples two solids for docking.
+/// Samples two parts for docking.
 ///
 /// # Errors
 /// [`MeshSceneError`].
-pub fn sample_pair(
-    receptor: &Solid,
-    ligand: &Solid,
-    options: &MeshOptions,
-) -> Result<MeshPair, MeshSceneError> {
-    let solids = [receptor, ligand];
-    let extents = solids.map(|solid| {
-        let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
-        2.0 * longest * solid.frame().unit
+pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair, MeshSceneError> {
+    let extents = shapes.map(|shape| match shape {
+        Shape::Solid(solid) => {
+            let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
+            2.0 * longest * solid.frame().unit
+        }
+        Shape::Balls(part) => part.bounds().1,
     });
     for (part, &extent) in extents.iter().enumerate() {
         if !SIZES.contains(&extent) {
             return Err(MeshSceneError::Size { part, extent });
         }
     }
-    let fields = solids.map(|solid| DepthField::new(solid, Grid::new(solid, options.per_axis)));
-    let measured = [0, 1].map(|part| {
-        let unit = solids[part].frame().unit;
-        let grid = fields[part].grid;
-        (
-            grid.epsilon() * unit,
-            feature_size(solids[part], &fields[part]) * unit,
-        )
-    });
-    let epsilons = measured.map(|(epsilon, _)| epsilon);
-    let features = measured.map(|(_, feature)| feature);
+    let measured = shapes.map(|shape| Measured::of(shape, options.per_axis));
+    let epsilons = measured.each_ref().map(|part| part.epsilon());
+    let features = measured.each_ref().map(|part| part.feature_size);
     let resolved = epsilons[0] + epsilons[1];
-    for (part, field) in fields.iter().enumerate() {
-        if !field.depth.iter().any(|&depth| depth > 0.0) {
+    for (part, measured) in measured.iter().enumerate() {
+        if measured.inside == 0 {
             let source = SampleError::NothingInside;
             return Err(MeshSceneError::Sample { part, source });
         }
@@ -257,53 +248,134 @@ pub fn sample_pair(
     }
     Ok(MeshPair {
         parts: [
-            sampled(solids[0], &fields[0], (features[0], offset), options)?,
-            sampled(solids[1], &fields[1], (features[1], offset), options)?,
+            measured[0].sampled(0, offset, options)?,
+            measured[1].sampled(1, offset, options)?,
         ],
         offset,
+        sampler: options.sampler.sampler(),
     })
 }
 
-/// Samples one solid for a gap of `offset`, in its frame's unit as `feature_size`.
-fn sampled(
-    solid: &Solid,
-    field: &DepthField,
-    (feature_size, offset): (f64, f64),
-    options: &MeshOptions,
-) -> Result<SampledPart, MeshSceneError> {
-    let frame = solid.frame();
-    let spacing = field.grid.spacing() * frame.unit;
-    let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
-    let radius = RADIUS * offset;
-    let balls = lattice(field, per_cell, radius / frame.unit);
-    // Exact where the surface is closed; an open one has as much as its grid says.
-    let volume = || match solid.mesh().is_closed() {
-        true => solid.mesh().volume(),
-        false => HausdorffMeter::new(solid, field).volume(),
+/// A part on its grid.
+struct Measured<'a> {
+    shape: Shape<'a>,
+    grid: Grid,
+    /// Depths on it, of a solid.
+    field: Option<DepthField>,
+    /// Nodes strictly inside.
+    inside: usize,
+    /// Length of the grid's unit in that of the file.
+    unit: f64,
+    feature_size: f64,
+}
+
+impl<'a> Measured<'a> {
+    fn of(shape: Shape<'a>, per_axis: usize) -> Self {
+        match shape {
+            Shape::Solid(solid) => {
+                let field = DepthField::new(solid, Grid::new(solid, per_axis));
+                let unit = solid.frame().unit;
+                Self {
+                    shape,
+                    grid: field.grid,
+                    inside: field.inside().len(),
+                    unit,
+                    feature_size: feature_size(solid, &field) * unit,
+                    field: Some(field),
+                }
+            }
+            Shape::Balls(part) => {
+                let (middle, edge) = part.bounds();
+                let grid = Grid::of_edge(edge, per_axis);
+                Self {
+                    shape,
+                    grid,
+                    inside: union(grid, &about(middle, &part.balls)).inside().len(),
+                    field: None,
+                    unit: 1.0,
+                    feature_size: part.feature_size(),
+                }
+            }
+        }
+    }
+
+    fn epsilon(&self) -> f64 {
+        self.grid.epsilon() * self.unit
+    }
+
+    /// Balls for a gap of `offset`.
+    fn sampled(
+        &self,
+        index: usize,
+        offset: f64,
+        options: &MeshOptions,
+    ) -> Result<SampledPart, MeshSceneError> {
+        let bump = Bump::new(options.alpha)?;
+        let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
+        let sampler = options.sampler.sampler();
+        let (found, place): (_, Box<dyn Fn([f64; 3]) -> [f64; 3]>) =
+            match (self.shape, &self.field, sampler.of_balls) {
+                (Shape::Solid(solid), Some(field), _) => {
+                    let part = PartToSample {
+                        solid,
+                        field,
+                        offset: offset / self.unit,
+                        fitted,
+                    };
+                    let found = (sampler.sample)(&part).map_err(|source| {
+                        let part = index;
+                        MeshSceneError::Sample { part, source }
+                    })?;
+                    let frame = solid.frame();
+                    (found, Box::new(move |x| frame.outward(x)))
+                }
+                (Shape::Balls(part), _, Some(of_balls)) => {
+                    let (middle, _) = part.bounds();
+                    let found = of_balls(&BallsToWeigh {
+                        balls: about(middle, &part.balls),
+                        weights: part.weights.as_deref(),
+                        grid: self.grid,
+                        offset,
+                        fitted,
+                    });
+                    let back = move |x: [f64; 3]| [0, 1, 2].map(|axis| x[axis] + middle[axis]);
+                    (found, Box::new(back))
+                }
+                _ => return Err(MeshSceneError::BallFile { part: index }),
+            };
+        let radii = found.balls.iter().map(|ball| ball.radius * self.unit);
+        let (smallest_radius, radius) = radii
+            .clone()
+            .fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
+                (low.min(radius), high.max(radius))
+            });
+        let centers = found.balls.iter().map(|ball| place(ball.center)).collect();
+        let knots = Knots::with_weights(centers, radii.collect(), found.weights)?;
+        Ok(SampledPart {
+            knots: knots.with_skin_weights(found.skin_weights)?,
+            sampler: options.sampler,
+            balls: found.balls.len(),
+            radius,
+            smallest_radius,
+            per_axis: self.grid.per_axis(),
+            spacing: self.grid.spacing() * self.unit,
+            epsilon: self.epsilon(),
+            per_cell: found.per_cell,
+            inside_nodes: self.inside,
+            feature_size: self.feature_size,
+            weights: found.fit,
+            skin_weights: found.skin_fit,
+        })
+    }
+}
+
+/// Balls relative to a point.
+fn about(middle: [f64; 3], balls: &[Ball]) -> Vec<Ball> {
+    let moved = |ball: &Ball| Ball {
+        center: [0, 1, 2].map(|axis| ball.center[axis] - middle[axis]),
+        radius: ball.radius,
     };
-    let fitted = (options.weights == SampleWeights::Fitted)
-        .then(|| Bump::new(options.alpha))
-        .transpose()?
-        .map(|bump| weights::fit(field, &balls, bump, volume()));
-    // A ball without weight would only cost time.
-    let (balls, weights): (Vec<_>, Vec<f64>) = balls
-        .into_iter()
-        .enumerate()
-        .map(|(place, ball)| (ball, fitted.as_ref().map_or(1.0, |fit| fit.weights[place])))
-        .filter(|(_, weight)| *weight > 0.0)
-        .unzip();
-    Ok(SampledPart {
-        knots: knots(frame, &balls, Some(&weights))?,
-        balls: balls.len(),
-        radius,
-        per_axis: field.grid.per_axis(),
-        spacing,
-        epsilon: field.grid.epsilon() * frame.unit,
-        per_cell,
-        inside_nodes: field.inside().len(),
-        feature_size,
-        weights: fitted,
-    })
+    balls.iter().map(moved).collect()
 }
 
 impl MeshPair {
@@ -312,11 +384,19 @@ impl MeshPair {
         ANGSTROM * self.offset
     }
 
-    /// The defaults of options that are lengths, for what was not given.
+    /// Depth of the skin where the kernel is the product kernel; `None`: it is the cone.
+    pub fn skin(&self) -> Option<f64> {
+        Some(self.sampler.skin? * self.offset)
+    }
+
+    /// The defaults of options that follow from the sampling, for what was not given.
     pub fn defaults(&self, options: &mut DockOptions, given: GivenLengths) {
         options.kernel.offset = self.offset;
+        if !given.alpha {
+            options.kernel.alpha = self.sampler.alpha;
+        }
         if !given.resolution {
-            options.kernel.resolution = RESOLUTION * self.offset;
+            options.kernel.resolution = self.sampler.resolution * self.offset;
         }
         if !given.cluster_radius {
             options.ranking.cluster_radius = CLUSTER_RADIUS * self.offset;
@@ -324,11 +404,13 @@ impl MeshPair {
     }
 }
 
-/// Which lengths were given, beside the offset.
+/// Which options that follow from the sampling were given, beside the offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GivenLengths {
     /// The resolution.
     pub resolution: bool,
     /// The radius of clusters.
     pub cluster_radius: bool,
+    /// The exponent of the bump function.
+    pub alpha: bool,
 }

@@ -161,7 +161,7 @@ mod tests {
 
     /// Every option, with a value that is not its default.
     const GIVEN: &str = "--waters=keep --hetatm=drop --drop-residue=HEM --drop-residue=XK2 --hydrogens=keep --altloc=B --model=all \
-        --assembly=1 --min-plddt=50 --sample-grid=2^12 --sample-weights=unit --effects=contact --lambda=0.30000000000000004 --offset=1 \
+        --assembly=1 --min-plddt=50 --sample-grid=2^12 --sample-weights=unit --sampler=bi --effects=contact --lambda=0.30000000000000004 --offset=1 \
         --alpha=3 --resolution=6 --pass-length=15 --spacing=0.3333333333333333 --tolerance=1e-3 --core-weight=2 \
         --electrostatics-weight=0 --contact-weight=1e5 --fine-contact-weight=1 --atom-pair-weight=2 --relaxed-weight=0 \
         --unresolved-weight=1 --termini-weight=0 --ph=5.5 --restraint-weight=3 --antibody=whole --block-receptor=A:1-3 \

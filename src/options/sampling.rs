@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
+use crate::mesh::samplers::SamplerName;
+
 /// How meshes are sampled. Molecules are balls as they come.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = "Sampling (meshes)")]
@@ -23,6 +25,10 @@ pub struct SamplingOptions {
         hide_possible_values = true
     )]
     pub sample_weights: Option<SampleWeights>,
+    /// Of meshes: how a part becomes balls. lattice: balls of one radius; bi: those of Behandish and Ilieş' Algorithm 1,
+    /// which count by volume [default: lattice].
+    #[arg(long, value_name = "lattice|bi")]
+    pub sampler: Option<SamplerName>,
 }
 
 /// Maximum number of nodes an axis of a grid: beyond it the depths alone take a gibibyte.

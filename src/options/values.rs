@@ -93,7 +93,11 @@ pub fn duration(text: &str) -> Result<f64, String> {
         "ms" => 1e-3,
         "min" => 60.0,
         "h" => 3600.0,
-        other => return Err(format!("`{other}` is no unit of time; write us, ms, s, min or h")),
+        other => {
+            return Err(format!(
+                "`{other}` is no unit of time; write us, ms, s, min or h"
+            ));
+        }
     };
     above_zero(number.trim())
         .map(|value| value * unit)

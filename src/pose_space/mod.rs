@@ -15,7 +15,7 @@ mod voxel_filter;
 use axes::{axes_radius, axis_set};
 use equivalents::Equivalents;
 use knotdock_scoring::engine::CpuEngine;
-use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{covering_radius, rotation_set, set_name, spiral_set};
@@ -155,7 +155,7 @@ impl PoseSpace {
     }
 
     /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
-    pub fn other_copies(&self, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
+    pub fn other_copies(&self, scorer: &ExactSum, pose: &Pose) -> Option<f64> {
         ring::other_copies(self.symmetry()?, scorer, pose)
     }
 

@@ -2,7 +2,8 @@
 //! own (Dn).
 
 use super::refine::{AscentLimits, maximize};
-use knotdock_scoring::exact::{ExactScorer, PoseGradient};
+use knotdock_scoring::exact::PoseGradient;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::{RingAxis, Symmetry, conjugated, conjugated_gradient};
@@ -61,7 +62,7 @@ fn whole(
 }
 
 /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
-pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactScorer, pose: &Pose) -> Option<f64> {
+pub(super) fn other_copies(symmetry: Symmetry, scorer: &ExactSum, pose: &Pose) -> Option<f64> {
     let score = |(pose, pairs): (Pose, f64)| pairs * scorer.score_only(&pose);
     symmetry
         .has_beyond()
@@ -101,7 +102,7 @@ mod tests {
         let plan = Plan::new(&knots, &knots, engine).unwrap();
         let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
         let field = PotentialGrid::new(&plan, &spectra, &knots);
-        let scorer = ExactScorer::new(plan.kernel(), &knots, &knots).unwrap();
+        let scorer = ExactSum::of(&plan, &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
             scorer.score_only(pose) + other_copies(symmetry, &scorer, pose).unwrap_or(0.0)
         };

@@ -20,7 +20,7 @@ use crate::dock::scene::LengthUnit;
 use crate::pose_space::PoseSpace;
 use crate::progress::Progress;
 use crate::rank::candidates::Candidate;
-use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
@@ -30,7 +30,7 @@ use rayon::prelude::*;
 #[derive(Clone, Copy)]
 pub(crate) struct PoseScorer<'a> {
     /// The exact score.
-    pub scorer: &'a ExactScorer,
+    pub scorer: &'a ExactSum,
     /// Terms that rescore poses.
     pub rescorer: Option<&'a Rescorer>,
     /// Effects that are on.
@@ -240,12 +240,13 @@ mod tests {
     use crate::pose_space::refine::RefinedPose;
     use crate::progress::NoProgress;
     use crate::rank::candidates::candidates;
+    use knotdock_scoring::exact::ExactScorer;
     use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
     use knotdock_scoring::peaks::Peak;
     use knotdock_structures::Knots;
     use nalgebra::Vector3;
 
-    fn scorer() -> ExactScorer {
+    fn scorer() -> ExactSum {
         let options = KernelOptions {
             lambda: 10.0,
             offset: 2.2,
@@ -256,7 +257,7 @@ mod tests {
         };
         let ball = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
         let kernel = RankingKernel::new(options, 3.4, 3.4, 1.15).unwrap();
-        ExactScorer::new(&kernel, &ball, &ball).unwrap()
+        ExactScorer::new(&kernel, &ball, &ball).unwrap().into()
     }
 
     fn at(x: f64) -> Pose {

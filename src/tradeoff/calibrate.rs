@@ -153,6 +153,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
     Ok(Scene {
         unit: LengthUnit::Angstrom,
         angstrom: 1.0,
+        skin: None,
         receptor,
         ligand,
         terms,

@@ -12,6 +12,8 @@ pub struct Knots {
     pub radii: Vec<f64>,
     /// Dimensionless weights c_i.
     pub weights: Vec<f64>,
+    /// Weights of the same balls grown by the offset, for the product kernel; empty where `weights` serve them too.
+    pub skin_weights: Vec<f64>,
     /// Charges in units of the elementary charge e, one a knot; empty where the knots carry none (a mesh).
     pub charges: Vec<f64>,
     /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
@@ -104,6 +106,7 @@ impl Knots {
             centers,
             radii,
             weights,
+            skin_weights: Vec::new(),
             charges: Vec::new(),
             contact_types: Vec::new(),
             atom_kinds: Vec::new(),
@@ -124,6 +127,21 @@ impl Knots {
         let knots = Self {
             charges,
             contact_types,
+            ..self
+        };
+        knots.check()?;
+        Ok(knots)
+    }
+
+    /// The same knots with weights for the balls grown by the offset, one a knot, or none.
+    ///
+    /// Grown balls overlap more than the balls do: weights that add up to one in the solid add up to more in its skin.
+    ///
+    /// # Errors
+    /// [`KnotsError`] when there are weights but not one a knot, or one is not finite.
+    pub fn with_skin_weights(self, skin_weights: Vec<f64>) -> Result<Self, KnotsError> {
+        let knots = Self {
+            skin_weights,
             ..self
         };
         knots.check()?;
@@ -172,7 +190,15 @@ impl Knots {
                 return Err(KnotsError::Weight { index });
             }
         }
+        if let Some(index) = self
+            .skin_weights
+            .iter()
+            .position(|weight| !weight.is_finite())
+        {
+            return Err(KnotsError::Weight { index });
+        }
         let labels = [
+            ("skin weights", self.skin_weights.len()),
             ("charges", self.charges.len()),
             ("contact types", self.contact_types.len()),
             ("atom kinds", self.atom_kinds.len()),

@@ -10,6 +10,12 @@
 //! mmCIF files. With the feature `mesh` (default) it reads meshes and samples solids by balls. Without them [`Knots`],
 //! the volumes of their balls, [`Conformers`], [`neighbours`] and [`numeric`] remain.
 
+// No input may end in a panic; tests may.
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
+
 mod ball;
 #[cfg(feature = "mesh")]
 pub mod ball_file;

@@ -116,6 +116,21 @@ fn balls_of_a_mesh() {
     Scenario::new(mesh, sample).by_file().check();
 }
 
+/// A table of collisions, in place of another.
+#[test]
+fn a_table_of_collisions() {
+    let solids = |folder: &Path| {
+        fs::write(folder.join("a.csv"), "0,0,0,1\n").unwrap();
+        fs::write(folder.join("out.csv"), "an older table\n").unwrap();
+    };
+    Scenario::new(
+        solids,
+        "collide a.csv a.csv -o out.csv --force --quiet --compute distance",
+    )
+    .measured()
+    .check();
+}
+
 /// Of each pair the old or no run stands, or the new one; the table has a row for each pair.
 #[test]
 fn a_batch() {

@@ -3,11 +3,14 @@
 use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
 use knotdock::dock::scene::Scene;
-use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, RADIUS, RESOLUTION, sample_pair};
+use knotdock::mesh::samplers::lattice::{RADIUS, RESOLUTION};
+use knotdock::mesh::samplers::{SamplerName, bi};
+use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, sample_pair};
 use knotdock::options::{DockOptions, SampleGrid, SampleWeights};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::RankingKernel;
+use knotdock_scoring::kernel::low_pass::smooth_step_down;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::numeric::Bump;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -15,11 +18,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 fn sampled(pair: &Pair) -> MeshPair {
     let options = MeshOptions {
         per_axis: SampleGrid::default().per_axis,
+        sampler: SamplerName::default(),
         offset: None,
         weights: SampleWeights::Fitted,
         alpha: 2.0,
     };
-    sample_pair(&solid(&pair.receptor), &solid(&pair.ligand), &options).unwrap()
+    {
+        let solids = [solid(&pair.receptor), solid(&pair.ligand)];
+        sample_pair(solids.each_ref().map(Into::into), &options).unwrap()
+    }
 }
 
 fn scorer(meshes: &MeshPair) -> ExactScorer {
@@ -123,6 +130,57 @@ fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
             .sum()
     };
     let scores: Vec<f64> = (0..=60).map(|i| score(0.05 * f64::from(i) * r0)).collect();
+    check_gaps(&scores, [13, 31, 6]);
+}
+
+/// The same of the product kernel, from the profiles of its double skin: below zero under half an offset.
+#[test]
+fn double_skins_are_drawn_to_a_gap_of_one_offset() {
+    let (lambda, depth) = (9.0, 4.0);
+    // A body's profile in offsets: 1 - lambda up to CORE beyond its face, then 1 as deep as the skin.
+    let profile = |x: f64| match x {
+        _ if x < -depth || x >= bi::CORE + bi::SKIN => 0.0,
+        _ if x < bi::CORE => 1.0 - lambda,
+        _ => 1.0,
+    };
+    let step = 0.01;
+    let cells = |low: f64, high: f64| {
+        let count = ((high - low) / step).round() as i32;
+        (0..count).map(move |i| low + (f64::from(i) + 0.5) * step)
+    };
+    let sharp = |gap: f64| -> f64 {
+        let places = cells(-depth, depth);
+        -places
+            .map(|x| profile(x) * profile(gap - x) * step)
+            .sum::<f64>()
+    };
+    // All gaps at which the two overlap or touch: the low-pass reaches far.
+    let (low, high) = (-2.0 * depth, 2.0);
+    let sharp: Vec<(f64, f64)> = cells(low, high).map(|gap| (gap, sharp(gap))).collect();
+    // The low-pass across a face is that along one axis.
+    let filter = |x: f64| -> f64 {
+        let (stop, count) = (1.0 / RESOLUTION, 200);
+        let wave = |i: i32| {
+            let w = stop * (f64::from(i) + 0.5) / f64::from(count);
+            smooth_step_down(w, 0.5 * stop, stop) * (2.0 * std::f64::consts::PI * w * x).cos()
+        };
+        2.0 * stop / f64::from(count) * (0..count).map(wave).sum::<f64>()
+    };
+    let scores: Vec<f64> = (0..=60)
+        .map(|i| 0.05 * f64::from(i))
+        .map(|gap| {
+            sharp
+                .iter()
+                .map(|(at, value)| value * filter(gap - at) * step)
+                .sum()
+        })
+        .collect();
+    check_gaps(&scores, [14, 29, 9]);
+}
+
+/// Checks that scores at gaps from 0 in twentieths of an offset are best at one offset, above half of that from `from`
+/// to `to`, and below zero up to `below`.
+fn check_gaps(scores: &[f64], [from, to, below]: [usize; 3]) {
     let best = (0..scores.len())
         .max_by(|&a, &b| scores[a].total_cmp(&scores[b]))
         .unwrap();
@@ -132,10 +190,10 @@ fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
         0.05 * best as f64
     );
     for (i, &value) in scores.iter().enumerate() {
-        if (13..=31).contains(&i) {
+        if (from..=to).contains(&i) {
             assert!(value > 0.5 * scores[best], "{i}: {value}");
         }
-        if i <= 6 {
+        if i <= below {
             assert!(value < 0.0, "{i}: {value}");
         }
     }

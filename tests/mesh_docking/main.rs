@@ -9,5 +9,6 @@ mod landscape;
 mod scenes;
 
 mod assembled;
+mod fairness;
 mod refused;
 mod run;

@@ -106,11 +106,16 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--resolution", "0"], "above zero"),
         (["--alpha", "0"], "above zero"),
         (["--rotations", "0"], "between 1 and 10000000"),
+        (["--sampler", "voxels"], "no such sampler"),
     ] {
         says(&refused(&place, &[&meshes[..], &more].concat()), word);
     }
     let molecules = ["one.pdb", "one.pdb"];
-    for more in [["--sample-grid", "2^15"], ["--sample-weights", "unit"]] {
+    for more in [
+        ["--sample-grid", "2^15"],
+        ["--sample-weights", "unit"],
+        ["--sampler", "bi"],
+    ] {
         says(
             &refused(&place, &[&molecules[..], &more].concat()),
             "meshes",

@@ -102,10 +102,16 @@ fn quick(place: &Place, more: &[&str]) -> Value {
 
 #[test]
 fn threads_change_no_byte_and_a_run_repeats_itself() {
+    for sampler in ["lattice", "bi"] {
+        repeats_itself(&["--sampler", sampler, "--write-top", "2"]);
+    }
+}
+
+fn repeats_itself(more: &[&str]) {
     let pair = broken_block(0.05);
     let place = Place::of(&pair);
-    let first = quick(&place, &["-o", "one", "--threads", "1", "--write-top", "2"]);
-    quick(&place, &["-o", "two", "--threads", "2", "--write-top", "2"]);
+    let first = quick(&place, &[&["-o", "one", "--threads", "1"], more].concat());
+    quick(&place, &[&["-o", "two", "--threads", "2"], more].concat());
     dock(&place, &["--rerun", "one/run.json", "-o", "again"]);
     for name in ["poses.csv", "top/rank_0001.obj", "top/rank_0002.obj"] {
         let bytes = |run: &str| fs::read(place.path(run).join(name)).unwrap();
@@ -125,6 +131,11 @@ fn threads_change_no_byte_and_a_run_repeats_itself() {
     assert_eq!(record("one"), record("two"));
     assert_eq!(record("one"), record("again"));
     let run = &first["run"];
+    for side in ["receptor", "ligand"] {
+        let sampling = &run["inputs"][side]["sampling"];
+        assert_eq!(sampling["sampler"], more[1]);
+        assert_eq!(sampling["skin_weights"].is_null(), more[1] == "lattice");
+    }
     assert_eq!(run["plan"]["unit"], "file");
     assert_eq!(run["chains"], Value::Null);
     assert_eq!(run["inputs"]["receptor"]["atoms"], Value::Null);
@@ -137,9 +148,15 @@ fn threads_change_no_byte_and_a_run_repeats_itself() {
 /// By a power of two not a digit does.
 #[test]
 fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
+    for sampler in ["lattice", "bi"] {
+        only_lengths_scale(&["--sampler", sampler]);
+    }
+}
+
+fn only_lengths_scale(more: &[&str]) {
     let pair = broken_block(0.05);
     let place = Place::of(&pair);
-    quick(&place, &["-o", "plain"]);
+    quick(&place, &[&["-o", "plain"], more].concat());
     let (header, plain) = table(&place.path("plain/poses.csv"));
     for (factor, name) in [(1024.0, "large"), (1.0 / 1024.0 / 1024.0, "small")] {
         for part in ["receptor", "ligand"] {
@@ -159,7 +176,7 @@ fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
         let files = ["receptor", "ligand"].map(|part| format!("{part}_{name}.obj"));
         arguments[0] = &files[0];
         arguments[1] = &files[1];
-        dock(&place, &[&arguments[..], &["-o", name]].concat());
+        dock(&place, &[&arguments[..], &["-o", name], more].concat());
         let (_, scaled) = table(&place.path(name).join("poses.csv"));
         assert_eq!(plain.len(), scaled.len());
         for (plain, scaled) in plain.iter().zip(&scaled) {
@@ -214,4 +231,51 @@ fn assemblies_hold_both_parts() {
         String::from_utf8_lossy(&more.stderr)
     );
     assert!(place.path("more/rank_0002.obj").is_file());
+}
+
+/// `knotdock score` gives the table's score at the table's pose, and its ladder of modes comes as near as it says.
+#[test]
+fn a_pose_of_meshes_has_its_score_and_ladder() {
+    let place = Place::of(&broken_block(0.05));
+    for sampler in ["lattice", "bi"] {
+        let more = ["--sampler", sampler, "-o", sampler];
+        quick(&place, &more);
+        let (pose, score) =
+            scored_poses(&place.path(&format!("{sampler}/poses.csv"))).swap_remove(0);
+        let numbers: Vec<f64> = (pose.quaternion().into_iter())
+            .chain(pose.translation.iter().copied())
+            .collect();
+        let words: Vec<String> = numbers.iter().map(f64::to_string).collect();
+        let arguments = [
+            "score",
+            "--json",
+            "receptor.stl",
+            "ligand.stl",
+            "--sample-grid",
+            "20^3",
+        ];
+        let (pose, sampler) = (
+            format!("--pose={}", words.join(",")),
+            ["--sampler", sampler],
+        );
+        let output = place
+            .command(&[&arguments[..], &sampler, &[&pose]].concat())
+            .output()
+            .unwrap();
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{words}");
+        let scored: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let exact = scored["exact"].as_f64().unwrap();
+        assert!(
+            (exact - score).abs() < 1e-6 * score.abs(),
+            "{exact} {score}"
+        );
+        let last = scored["rows"].as_array().unwrap().last().unwrap();
+        assert!(last["error"].as_f64().unwrap() < 1e-3 * scored["scale"].as_f64().unwrap());
+        assert_eq!(scored["reached"], true);
+        assert_eq!(scored["offset_sensitivity"].is_null(), sampler[1] == "bi");
+        assert_eq!(scored["sampling"][1]["sampler"], sampler[1]);
+        let force = |of: &str| scored[of]["force"][0].as_f64().unwrap();
+        assert!((force("gradient") - force("gradient_modes")).abs() < 0.02 * exact.abs() / 0.05);
+    }
 }

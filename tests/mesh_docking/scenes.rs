@@ -1,6 +1,9 @@
 //! The pairs of parts as solids and as files, and how far a pose is from the right one.
 
-use super::parts::{HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole};
+use super::parts::{
+    HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole, saddle_block,
+    studded_plates,
+};
 use knotdock::options::SampleGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::{Solid, from_triangles};
@@ -46,6 +49,16 @@ pub fn torus() -> (Pair, f64) {
 /// The broken block, and its clearance.
 pub fn broken() -> (Pair, f64) {
     with_least_clearance(broken_block)
+}
+
+/// The block cut along a saddle, and its clearance.
+pub fn saddle() -> (Pair, f64) {
+    with_least_clearance(saddle_block)
+}
+
+/// The plates with studs, and their clearance.
+pub fn studs() -> (Pair, f64) {
+    with_least_clearance(studded_plates)
 }
 
 pub fn solid(part: &Part) -> Solid {

@@ -194,11 +194,10 @@ pub(crate) struct LigandFunctions {
 impl LigandFunctions {
     /// Those of shape: d_j v_b(s_j).
     fn of_shape(plan: &Plan, ligand: &Knots) -> Self {
-        let (_, size) = plan.basis().sizes(plan.axis());
+        let (_, size) = plan.shape_functions();
         let column = |b: usize| {
-            let value = |j: usize| plan.basis().ligand_value(plan.axis(), b, ligand.radii[j]);
             (0..ligand.len())
-                .map(|j| ligand.weights[j] * value(j))
+                .map(|j| plan.ligand_value(ligand, b, j))
                 .collect()
         };
         Self {
@@ -283,7 +282,7 @@ impl<T: Real> Receptor<T> {
         receptor: &Knots,
         fold: Quantity,
     ) -> Vec<Vec<Complex<T>>> {
-        let (receptor_size, ligand_size) = plan.basis().sizes(plan.axis());
+        let (receptor_size, ligand_size) = plan.shape_functions();
         let modes = &self.modes;
         let mut work = self.forward.workspace();
         let zero = Complex::new(T::zero(), T::zero());
@@ -292,9 +291,8 @@ impl<T: Real> Receptor<T> {
         for a in 0..receptor_size {
             let mut inside = Vec::new();
             let mut weights = Vec::new();
-            for (i, &radius) in receptor.radii.iter().enumerate() {
-                let value =
-                    plan.basis().receptor_value(plan.axis(), a, radius) * receptor.weights[i];
+            for i in 0..receptor.len() {
+                let value = plan.receptor_value(receptor, a, i);
                 if value != 0.0 {
                     inside.push(self.points[i]);
                     weights.push(T::of(value));

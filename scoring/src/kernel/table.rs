@@ -34,6 +34,15 @@ impl<const LANES: usize> Table<LANES> {
         }
     }
 
+    /// The table of some panels' coefficients, [panel][power][lane], which share [0, end] equally.
+    pub(crate) fn of(end: f64, coefficients: Vec<[[f64; LANES]; TERMS]>) -> Self {
+        Self {
+            end,
+            panels_per_unit: coefficients.len() as f64 / end,
+            coefficients,
+        }
+    }
+
     /// End of the range, beyond which the functions are 0.
     pub fn end(&self) -> f64 {
         self.end
@@ -54,6 +63,23 @@ impl<const LANES: usize> Table<LANES> {
             }
         }
         sum
+    }
+
+    /// All lanes at x >= 0, and their slopes.
+    pub fn value_and_slope(&self, x: f64) -> ([f64; LANES], [f64; LANES]) {
+        let scaled = x * self.panels_per_unit;
+        let (mut sum, mut slope) = ([0.0; LANES], [0.0; LANES]);
+        let Some(panel) = self.coefficients.get(scaled as usize) else {
+            return (sum, slope);
+        };
+        let u = 2.0 * (scaled - (scaled as usize) as f64) - 1.0;
+        for terms in panel.iter().rev() {
+            for lane in 0..LANES {
+                slope[lane] = slope[lane] * u + sum[lane];
+                sum[lane] = sum[lane] * u + terms[lane];
+            }
+        }
+        (sum, slope.map(|slope| 2.0 * self.panels_per_unit * slope))
     }
 }
 
@@ -83,8 +109,24 @@ impl PanelFit {
         half_width: f64,
         mut function: impl FnMut(f64) -> [f64; LANES],
     ) -> [[f64; LANES]; TERMS] {
-        let values: [[f64; LANES]; TERMS] =
-            std::array::from_fn(|node| function(middle + half_width * self.nodes[node]));
+        self.through(&self.at_nodes(middle, half_width, &mut function))
+    }
+
+    /// Something at the nodes of a panel.
+    pub(crate) fn at_nodes<V>(
+        &self,
+        middle: f64,
+        half_width: f64,
+        mut function: impl FnMut(f64) -> V,
+    ) -> [V; TERMS] {
+        std::array::from_fn(|node| function(middle + half_width * self.nodes[node]))
+    }
+
+    /// Coefficients [power][lane] of the polynomials that have these values at the nodes.
+    pub(crate) fn through<const LANES: usize>(
+        &self,
+        values: &[[f64; LANES]; TERMS],
+    ) -> [[f64; LANES]; TERMS] {
         std::array::from_fn(|power| {
             std::array::from_fn(|lane| {
                 (0..TERMS)

@@ -2,6 +2,7 @@
 
 use super::LiftedAxis;
 use super::nodes::{MAX_NODES, node_value, nodes_for};
+use crate::kernel::product::{Body, layer_factor};
 use crate::kernel::table::Table;
 use crate::kernel::{ProductKernel, RankingKernel};
 use crate::quantity::Quantity;
@@ -134,13 +135,15 @@ impl RadiusBasis {
     }
 
     /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a
-    /// radius, and the two bodies' transforms at their radii multiply. `None` for [`Self::Modes`], whose functions
-    /// stand for no radius.
+    /// radius, and the two bodies' transforms at their radii multiply. Of `layers` where grown balls have weights of
+    /// their own, else of the double skins. `None` for [`Self::Modes`], whose functions stand for no radius, and
+    /// where it is zero.
     pub fn product_coupling(
         &self,
         kernel: &ProductKernel,
         fold: Quantity,
         (a, b): (usize, usize),
+        layers: Option<(Body, Body)>,
         w_max: f64,
     ) -> Option<Table<1>> {
         let (Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand }) = self else {
@@ -148,11 +151,17 @@ impl RadiusBasis {
         };
         let (r, s) = (receptor[a], ligand[b]);
         let options = kernel.options();
+        if layers.is_some_and(|layers| layer_factor(fold, layers, options.lambda) == 0.0) {
+            return None;
+        }
         let support = r + s + 2.0 * options.offset;
         let fall = 1.0 / options.resolution - 1.0 / options.pass_length;
         let panel = (0.25 / support).min(0.1 * fall);
         Some(Table::fit(w_max, panel.max(w_max / 2000.0), |w| {
-            [kernel.coupling(fold, r, s, w)]
+            [match layers {
+                Some(layers) => kernel.layer_coupling(fold, layers, (r, s), w),
+                None => kernel.coupling(fold, r, s, w),
+            }]
         }))
     }
 }

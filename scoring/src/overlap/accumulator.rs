@@ -6,8 +6,9 @@ use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::AddAssign;
 
-/// Balls of a leaf that are handled together.
+/// Pairs that are handled together.
 const LANES: usize = 8;
+type Lane = [f64; LANES];
 
 /// A ball with the weight of its bump.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,12 +45,14 @@ impl AddAssign for Overlap {
 
 /// A running sum over pairs of balls, all in the receptor's frame. It allocates nothing.
 ///
-/// The same pairs in the same order give the same bits, one by one or by leaves of the same size.
+/// Pairs that meet wait until there are eight, which are then summed together. The same pairs in the same order give
+/// the same bits, whether they come one by one or by leaves.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'a> {
     kernel: &'a PairOverlap,
     about: Vector3<f64>,
     sum: Overlap,
+    waiting: Batch,
 }
 
 impl<'a> Accumulator<'a> {
@@ -59,55 +62,33 @@ impl<'a> Accumulator<'a> {
             kernel,
             about: Vector3::from(about),
             sum: Overlap::default(),
+            waiting: Batch::default(),
         }
     }
 
     /// Adds ball `a` of body A and ball `b` of body B, moved to its pose; whether they meet.
     #[inline]
     pub fn add(&mut self, a: &WeightedBall, b: &WeightedBall) -> bool {
-        let arm = Vector3::from(b.center) - Vector3::from(a.center);
-        let square = arm.norm_squared();
-        if !meet(a.radius, b.radius, square) {
-            return false;
+        let meets = self.waiting.push(a, b, &self.about);
+        if self.waiting.count == LANES {
+            self.flush();
         }
-        let [value, slope] = self.kernel.by_square(a.radius, b.radius, square);
-        let weight = a.weight * b.weight;
-        let force = arm * (-2.0 * weight * slope);
-        self.sum.energy += weight * value;
-        self.sum.force += force;
-        self.sum.torque += (Vector3::from(b.center) - self.about).cross(&force);
-        self.sum.pairs += 1;
-        true
+        meets
     }
 
     /// Adds ball `a` of body A with every ball of a leaf of body B, moved to its pose; how many of them it meets.
     pub fn add_leaf(&mut self, a: &WeightedBall, leaf: &[WeightedBall]) -> u64 {
-        let sum = self.leaf(a, leaf);
-        self.sum += sum;
-        sum.pairs
+        leaf.iter().map(|b| u64::from(self.add(a, b))).sum()
     }
 
     /// Adds ball `b` of body B, moved to its pose, with every ball of a leaf of body A; how many of them it meets.
     pub fn add_to_leaf(&mut self, leaf: &[WeightedBall], b: &WeightedBall) -> u64 {
-        let mut sum = self.leaf(b, leaf);
-        // The roles are exchanged: the force on the other body, along the same line.
-        sum.force = -sum.force;
-        sum.torque = -sum.torque;
-        self.sum += sum;
-        sum.pairs
-    }
-
-    fn leaf(&self, ball: &WeightedBall, leaf: &[WeightedBall]) -> Overlap {
-        Arch::new().dispatch(Leaf {
-            kernel: self.kernel,
-            about: self.about,
-            ball,
-            leaf,
-        })
+        leaf.iter().map(|a| u64::from(self.add(a, b))).sum()
     }
 
     /// The sum so far.
-    pub fn sum(&self) -> Overlap {
+    pub fn sum(&mut self) -> Overlap {
+        self.flush();
         self.sum
     }
 
@@ -115,106 +96,118 @@ impl<'a> Accumulator<'a> {
     pub fn merge(&mut self, other: Overlap) {
         self.sum += other;
     }
-}
 
-/// One ball and those of a leaf.
-struct Leaf<'a> {
-    kernel: &'a PairOverlap,
-    about: Vector3<f64>,
-    ball: &'a WeightedBall,
-    leaf: &'a [WeightedBall],
-}
-
-impl WithSimd for Leaf<'_> {
-    type Output = Overlap;
-
-    /// Overlap of the ball with those of the leaf: force on the leaf. Those that meet it are collected, without a
-    /// branch that would be a coin toss, and handled by eights.
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Overlap {
-        let mut sum = Overlap::default();
-        let mut met = Met::new();
-        for (index, other) in self.leaf.iter().enumerate() {
-            met.push(self.ball, other, index);
-            if met.count == LANES {
-                self.flush(simd, &mut met, &mut sum);
-            }
-        }
-        self.flush(simd, &mut met, &mut sum);
-        sum
+    fn flush(&mut self) {
+        self.sum += Arch::new().dispatch(Flush {
+            kernel: self.kernel,
+            batch: &self.waiting,
+        });
+        self.waiting.count = 0;
     }
 }
 
-impl Leaf<'_> {
-    /// Adds the pairs collected and forgets them.
+/// Up to eight pairs that meet.
+#[derive(Clone, Debug)]
+struct Batch {
+    /// Of B's ball from A's.
+    arms: [Lane; 3],
+    /// Of B's ball from the point that the torque is about.
+    levers: [Lane; 3],
+    squares: Lane,
+    radii: [Lane; 2],
+    weights: Lane,
+    count: usize,
+}
+
+impl Default for Batch {
+    fn default() -> Self {
+        let zero = [0.0; LANES];
+        Self {
+            arms: [zero; 3],
+            levers: [zero; 3],
+            squares: zero,
+            radii: [[1.0; LANES]; 2],
+            weights: zero,
+            count: 0,
+        }
+    }
+}
+
+impl Batch {
+    /// Writes a pair to the next place, which counts only if the balls meet: a branch would be a coin toss. There must
+    /// be room.
     #[inline(always)]
-    fn flush<S: Simd>(&self, simd: S, met: &mut Met, sum: &mut Overlap) {
-        let mut ratios = [0.0; LANES];
-        let mut scaled = [0.0; LANES];
-        let mut roots = [0.0; LANES];
-        let mut rests = [0.0; LANES];
+    fn push(&mut self, a: &WeightedBall, b: &WeightedBall, about: &Vector3<f64>) -> bool {
+        let next = self.count % LANES;
+        let mut square = 0.0;
+        for axis in 0..3 {
+            let arm = b.center[axis] - a.center[axis];
+            self.arms[axis][next] = arm;
+            self.levers[axis][next] = b.center[axis] - about[axis];
+            square += arm * arm;
+        }
+        self.squares[next] = square;
+        self.radii[0][next] = a.radius;
+        self.radii[1][next] = b.radius;
+        self.weights[next] = a.weight * b.weight;
+        let meets = meet(a.radius, b.radius, square);
+        self.count += usize::from(meets);
+        meets
+    }
+}
+
+/// The sum over a batch.
+struct Flush<'a> {
+    kernel: &'a PairOverlap,
+    batch: &'a Batch,
+}
+
+impl WithSimd for Flush<'_> {
+    type Output = Overlap;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Overlap {
+        let Self { kernel, batch } = self;
+        let (arms, levers) = (&batch.arms, &batch.levers);
+        let zero = [0.0; LANES];
+        let (mut small, mut large) = (zero, zero);
+        let (mut ratios, mut scaled, mut roots, mut rests) = (zero, zero, zero, zero);
         for lane in 0..LANES {
-            let radius = met.radii[lane];
-            let (small, large) = (radius.min(self.ball.radius), radius.max(self.ball.radius));
-            let place = Place::new(small, large, met.squares[lane]);
+            let [r, s] = [batch.radii[0][lane], batch.radii[1][lane]];
+            (small[lane], large[lane]) = (r.min(s), r.max(s));
+            let place = Place::new(small[lane], large[lane], batch.squares[lane]);
             ratios[lane] = place.ratio;
             scaled[lane] = place.square;
             roots[lane] = place.root;
             rests[lane] = place.rest;
         }
-        for lane in 0..met.count.min(LANES) {
-            let Some(other) = self.leaf.get(met.indices[lane]) else {
-                continue;
-            };
+        let mut sum = Overlap::default();
+        for lane in 0..batch.count.min(LANES) {
             let place = Place {
                 ratio: ratios[lane],
                 square: scaled[lane],
                 root: roots[lane],
                 rest: rests[lane],
             };
-            let radii = [
-                other.radius.min(self.ball.radius),
-                other.radius.max(self.ball.radius),
-            ];
-            let [value, slope] = self.kernel.placed(simd, radii, met.squares[lane], &place);
-            let weight = self.ball.weight * other.weight;
-            let arm = Vector3::from(other.center) - Vector3::from(self.ball.center);
-            let force = arm * (-2.0 * weight * slope);
+            let radii = [small[lane], large[lane]];
+            let [value, slope] = kernel.placed(simd, radii, batch.squares[lane], &place);
+            let weight = batch.weights[lane];
+            let push = -2.0 * weight * slope;
+            let (x, y, z) = (
+                push * arms[0][lane],
+                push * arms[1][lane],
+                push * arms[2][lane],
+            );
+            let (u, v, w) = (levers[0][lane], levers[1][lane], levers[2][lane]);
             sum.energy += weight * value;
-            sum.force += force;
-            sum.torque += (Vector3::from(other.center) - self.about).cross(&force);
+            sum.force[0] += x;
+            sum.force[1] += y;
+            sum.force[2] += z;
+            sum.torque[0] += v * z - w * y;
+            sum.torque[1] += w * x - u * z;
+            sum.torque[2] += u * y - v * x;
         }
-        sum.pairs += met.count as u64;
-        met.count = 0;
-    }
-}
-
-/// Balls of a leaf that meet the one.
-struct Met {
-    squares: [f64; LANES],
-    radii: [f64; LANES],
-    indices: [usize; LANES],
-    count: usize,
-}
-
-impl Met {
-    fn new() -> Self {
-        Self {
-            squares: [0.0; LANES],
-            radii: [1.0; LANES],
-            indices: [0; LANES],
-            count: 0,
-        }
-    }
-
-    /// Writes a ball to the next place, which counts only if it meets the one. There must be room.
-    #[inline(always)]
-    fn push(&mut self, ball: &WeightedBall, other: &WeightedBall, index: usize) {
-        let square = (Vector3::from(other.center) - Vector3::from(ball.center)).norm_squared();
-        let next = self.count % LANES;
-        self.squares[next] = square;
-        self.radii[next] = other.radius;
-        self.indices[next] = index;
-        self.count += usize::from(meet(ball.radius, other.radius, square));
+        sum.pairs = batch.count as u64;
+        sum
     }
 }

@@ -12,6 +12,28 @@
 //! [`pairs_nanoseconds`] and [`OverlapModes::nanoseconds`] say which is expected to cost less. Pairs are exact and cost
 //! what meets; modes cost the same at every pose, and a hit of deep bodies shows after a hundred of them.
 //!
+//! ```
+//! use knotdock_scoring::overlap::{Accumulator, OverlapModes, PairOverlap, WeightedBall, overlap_of_all};
+//! use knotdock_scoring::se3::Pose;
+//!
+//! let ball = |x: f64, radius| WeightedBall { center: [x, 0.0, 0.0], radius, weight: 1.0 };
+//! let (a, b) = ([ball(0.0, 2.0), ball(1.5, 1.0)], [ball(0.0, 1.0), ball(0.5, 0.25)]);
+//! let kernel = PairOverlap::new(2.0)?;
+//! let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [1.0, 0.5, 0.0]);
+//! // All pairs, with the torque about the origin.
+//! let pairs = overlap_of_all(&kernel, &a, &b, &pose, [0.0; 3]);
+//! // A traversal feeds the same sum.
+//! let mut sum = Accumulator::new(&kernel, [0.0; 3]);
+//! assert!(sum.add(&a[0], &WeightedBall { center: pose.apply(b[0].center), ..b[0] }));
+//! assert!(sum.sum().energy < pairs.energy);
+//! // The lowest 2000 modes, until they certify the hit.
+//! let modes = OverlapModes::new(&kernel, &a, &b, 2000)?;
+//! let hit = modes.start(&pose, &mut modes.workspace()).advance(|| false, true);
+//! assert!(hit.certifies_hit());
+//! assert!((hit.energy - pairs.energy).abs() <= hit.tail + hit.rounding);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Conventions
 //!
 //! The force is -dE/dt on body B, the torque minus the slope of E by a turn of B about a chosen point, both in A's

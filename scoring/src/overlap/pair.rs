@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// <psi_r, psi_s>(d) of any two radii, with its slope, for one exponent alpha.
 ///
-/// - alpha = 2: a table, built once in some 50 ms, and about 10 ns a value with its slope. Errors are below 1e-8 of the
+/// - alpha = 2: a table, built once in some 100 ms, and tens of nanoseconds a value with its slope. Errors are below 1e-8 of the
 ///   value at d = 0, and those of the slope below 1e-5 of that over the larger radius, for every ratio of radii.
 /// - alpha from 2 to 4: the same table where it holds 5e-7 ([`Self::error`]), built in some 300 ms.
 /// - alpha = infinity: the volume of the lens, in closed form.
@@ -66,6 +66,7 @@ impl PairOverlap {
         match &self.way {
             Way::Sharp => 1e-15,
             Way::Table(table) => table.error(),
+            Way::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
             Way::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
             Way::Quadrature(_) => 1e-9,
         }

@@ -25,8 +25,10 @@ struct Cell([[f64; TERMS]; TERMS]);
 /// s^2).
 ///
 /// The limit k -> 0, V psi(sqrt z), is part of the table. K is smooth in z at 0 for even exponents, so that the force,
-/// -2 (dE / d(d^2)) times the difference of centres, is exact there. Panels are equal in sqrt z: K changes fastest
-/// where the smaller ball touches the larger one from inside, at d = s - r, and for equal balls that is d = 0.
+/// -2 (dE / d(d^2)) times the difference of centres, is exact there.
+///
+/// Panels are equal in sqrt z. K changes fastest where the smaller ball touches the larger one from inside, at d = s -
+/// r. For equal balls that is d = 0.
 #[derive(Clone, Debug)]
 pub(super) struct PairTable {
     /// \[panel along the distance\]\[panel along the ratio\].
@@ -187,7 +189,10 @@ fn cell_at<S: Simd>(simd: S, cell: &[[f64; TERMS]; TERMS], u: f64, v: f64) -> [f
         totals[0] = simd.mul_add_e_f64s(sum, power, totals[0]);
         totals[1] = simd.mul_add_e_f64s(slope, power, totals[1]);
     }
-    totals.map(|total| simd.reduce_sum_f64s(total))
+    [
+        simd.reduce_sum_f64s(totals[0]),
+        simd.reduce_sum_f64s(totals[1]),
+    ]
 }
 
 /// z where a panel along the distance begins.

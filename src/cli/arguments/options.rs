@@ -27,13 +27,13 @@ impl Selection for OfDock {
     }
 }
 
-/// The options that say how a pose scores, and the threads: of `knotdock score`.
+/// The options that say how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
 #[derive(Debug)]
 pub struct OfScore;
 
 impl Selection for OfScore {
     fn has(option: &Definition) -> bool {
-        ["input", "kernel", "terms", "restraints"].contains(&option.subject())
+        ["input", "sampling", "kernel", "terms", "restraints"].contains(&option.subject())
             || option.name() == "threads"
     }
 }

@@ -14,10 +14,12 @@ use knotdock::output::records::manifest::InputEntry;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec};
+use knotdock_structures::sampling::weights::FittedWeights;
 
-use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::{Input, folders_of, label};
 use crate::cli::inputs::room::{room_to_read, room_to_sample};
+use crate::cli::inputs::shapes::{ShapeInput, is_shape};
+use crate::cli::inputs::solids::ball_file_of;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -25,8 +27,8 @@ use crate::cli::messages::failure::Failure;
 pub enum Bodies {
     /// Two molecules, which stays first.
     Molecules(Box<[Input; 2]>),
-    /// Two meshes, likewise.
-    Meshes(Box<[MeshInput; 2]>),
+    /// Two meshes or files of balls, likewise.
+    Meshes(Box<[ShapeInput; 2]>),
 }
 
 /// What was written of the first ranks.
@@ -43,10 +45,7 @@ const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 impl Bodies {
     /// Reads two bodies of one kind as the command line names them.
     pub fn read(receptor: &str, ligand: &str, options: &DockOptions) -> Result<Self, Failure> {
-        Self::of(
-            [InputSpec::parse(receptor)?, InputSpec::parse(ligand)?],
-            options,
-        )
+        Self::of([spec_of(receptor)?, spec_of(ligand)?], options)
     }
 
     /// Whether they are sampled on a grid.
@@ -71,7 +70,7 @@ impl Bodies {
 
     fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
-        let are_meshes = [receptor, ligand].map(|spec| is_mesh(&spec.path));
+        let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {
             refuse_without_effect(options, are_meshes[0])?;
         }
@@ -82,8 +81,8 @@ impl Bodies {
                 Ok(Self::Molecules(Box::new(molecules)))
             }
             [true, true] => Ok(Self::Meshes(Box::new([
-                MeshInput::read(receptor)?,
-                MeshInput::read(ligand)?,
+                ShapeInput::read(receptor)?,
+                ShapeInput::read(ligand)?,
             ]))),
             [first, _] => {
                 let (mesh, other) = if first {
@@ -118,10 +117,7 @@ impl Bodies {
             }
             Self::Meshes(inputs) => {
                 for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
-                    console.say(format!("{side}: {}", input.report));
-                    for warning in input.report.warnings() {
-                        console.warn(format!("{}: {warning}", input.record.path.display()));
-                    }
+                    input.describe(side, console);
                 }
             }
         }
@@ -150,24 +146,22 @@ impl Bodies {
             )
             .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                let sampling = MeshOptions {
-                    per_axis: options
-                        .sampling
-                        .sample_grid
-                        .get_or_insert_default()
-                        .per_axis,
-                    weights: *options.sampling.sample_weights.get_or_insert_default(),
-                    offset,
-                    alpha: options.kernel.alpha,
-                };
-                room_to_sample(sampling.per_axis, options.machine.memory)?;
-                let solids = inputs.each_ref().map(|input| &input.solid);
-                let sampling = Sampling::of(solids, &sampling)
-                    .map_err(|error| mesh_failure(&error, inputs))?;
-                sampling.pair.defaults(options, given);
-                console.say(sampling_text(&sampling.pair));
+                let sampling = sampled(inputs, options, (offset, given), console)?;
                 PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
             }
+        }
+    }
+
+    /// Samples meshes, as [`Self::plan`] does; `None` of molecules.
+    pub fn sampling(
+        &self,
+        options: &mut DockOptions,
+        (offset, given): (Option<f64>, GivenLengths),
+        console: Console,
+    ) -> Result<Option<Sampling>, Failure> {
+        match self {
+            Self::Molecules(_) => Ok(None),
+            Self::Meshes(inputs) => sampled(inputs, options, (offset, given), console).map(Some),
         }
     }
 
@@ -177,7 +171,7 @@ impl Bodies {
             Self::Molecules(inputs) => {
                 Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
             }
-            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(|input| &input.solid)),
+            Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(ShapeInput::shape)),
         }
     }
 
@@ -200,7 +194,7 @@ impl Bodies {
             Self::Meshes(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 Ok(WrittenBodies {
-                    names: write_assemblies(&receptor.mesh, &ligand.mesh, rows, folder)?,
+                    names: write_assemblies(receptor.surface(), ligand.surface(), rows, folder)?,
                     chains: None,
                 })
             }
@@ -224,7 +218,7 @@ impl Bodies {
     pub fn records(&self) -> [&InputRecord; 2] {
         match self {
             Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
-            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(ShapeInput::record),
         }
     }
 
@@ -232,6 +226,17 @@ impl Bodies {
     pub fn labels(&self) -> [String; 2] {
         self.records()
             .map(|record| label(&record.path, record.chains.as_deref()))
+    }
+}
+
+/// What a text names: of a file of balls, a link may stand behind a colon.
+pub fn spec_of(text: &str) -> Result<InputSpec, Failure> {
+    match ball_file_of(text) {
+        Some((path, group)) => Ok(InputSpec {
+            path,
+            chains: group.map(|group| vec![group]),
+        }),
+        None => Ok(InputSpec::parse(text)?),
     }
 }
 
@@ -253,11 +258,41 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
     Err(Failure::input(format!("--{long} is of {of}, and these are {these}")).remedy(remedy))
 }
 
+/// Meshes as balls. Options that follow from them are filled in, and what was made is said.
+fn sampled(
+    inputs: &[ShapeInput; 2],
+    options: &mut DockOptions,
+    (offset, given): (Option<f64>, GivenLengths),
+    console: Console,
+) -> Result<Sampling, Failure> {
+    let sampler = *options.sampling.sampler.get_or_insert_default();
+    if !given.alpha {
+        options.kernel.alpha = sampler.sampler().alpha;
+    }
+    let sampling = MeshOptions {
+        sampler,
+        per_axis: options
+            .sampling
+            .sample_grid
+            .get_or_insert_default()
+            .per_axis,
+        weights: *options.sampling.sample_weights.get_or_insert_default(),
+        offset,
+        alpha: options.kernel.alpha,
+    };
+    room_to_sample(sampling.per_axis, options.machine.memory)?;
+    let solids = inputs.each_ref().map(ShapeInput::shape);
+    let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
+    sampling.pair.defaults(options, given);
+    console.say(sampling_text(&sampling.pair));
+    Ok(sampling)
+}
+
 /// A failure that names the mesh at fault.
-fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
+fn mesh_failure(error: &MeshSceneError, inputs: &[ShapeInput; 2]) -> Failure {
     let failure = Failure::input(error).remedy(error.remedy());
     match error.part() {
-        Some(part) => failure.at(&inputs[part].record.path),
+        Some(part) => failure.at(&inputs[part].record().path),
         None => failure,
     }
 }
@@ -265,25 +300,33 @@ fn mesh_failure(error: &MeshSceneError, inputs: &[MeshInput; 2]) -> Failure {
 /// Report on the sampling of the meshes.
 fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
-        let weights = match &part.weights {
-            Some(fit) => format!(
-                "weights fitted (off one inside by {:.2} rms, integral {:.3} of the volume)",
+        let fitted = |fit: &FittedWeights| {
+            format!(
+                "off one inside by {:.2} rms, integral {:.3} of the volume",
                 fit.rms_fitted, fit.volume_fitted
+            )
+        };
+        let weights = match (&part.weights, &part.skin_weights) {
+            (Some(fit), None) => format!("weights fitted ({})", fitted(fit)),
+            (Some(fit), Some(skin)) => format!(
+                "weights fitted ({}; grown balls {})",
+                fitted(fit),
+                fitted(skin)
             ),
-            None => "weights of one".to_owned(),
+            (None, _) => "weights of one".to_owned(),
+        };
+        let (low, high) = (part.smallest_radius, part.radius);
+        let radii = match part.per_cell {
+            Some(k) => format!("radius {high:.4e}, one for {k} x {k} x {k} nodes"),
+            None => format!("radius {low:.4e} to {high:.4e}"),
         };
         format!(
-            "{} balls of radius {:.4e}, one for {k} x {k} x {k} nodes; eps {:.4e}, feature size {:.4e}; {weights}",
-            part.balls,
-            part.radius,
-            part.epsilon,
-            part.feature_size,
-            k = part.per_cell,
+            "{} balls of {radii}; eps {:.4e}, feature size {:.4e}; {weights}",
+            part.balls, part.epsilon, part.feature_size,
         )
     });
     format!(
-        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; all balls are of one \
-         radius, so the kernel is the cone",
-        pair.offset
+        "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; {}",
+        pair.offset, pair.sampler.makes
     )
 }

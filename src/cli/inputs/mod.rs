@@ -7,4 +7,5 @@ pub mod molecules;
 pub mod poses;
 pub mod request;
 pub mod room;
+pub mod shapes;
 pub mod solids;

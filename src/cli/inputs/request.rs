@@ -18,6 +18,17 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
 
+/// The offset, where it is given, and which further options are that follow from the meshes.
+pub fn lengths(given: &GivenOptions) -> (Option<f64>, GivenLengths) {
+    let offset = given.has("offset").then_some(given.options.kernel.offset);
+    let lengths = GivenLengths {
+        resolution: given.has("resolution"),
+        cluster_radius: given.has("cluster_radius"),
+        alpha: given.has("alpha"),
+    };
+    (offset, lengths)
+}
+
 /// A requested run, by options or by a run.json.
 pub struct Request {
     /// What stays and what moves.
@@ -39,14 +50,12 @@ impl Request {
         native: Option<NativeFiles>,
         given: GivenOptions,
     ) -> Result<Self, Failure> {
+        let (offset, lengths) = lengths(&given);
         Ok(Self {
             bodies: Bodies::read(receptor, ligand, &given.options)?,
             native,
-            offset: given.has("offset").then_some(given.options.kernel.offset),
-            given: GivenLengths {
-                resolution: given.has("resolution"),
-                cluster_radius: given.has("cluster_radius"),
-            },
+            offset,
+            given: lengths,
             options: given.options,
         })
     }
@@ -86,6 +95,7 @@ impl Request {
             given: GivenLengths {
                 resolution: true,
                 cluster_radius: true,
+                alpha: true,
             },
             options: run.options,
         })

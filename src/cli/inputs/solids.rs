@@ -11,7 +11,7 @@ use knotdock_structures::Ball;
 use knotdock_structures::ball_file::{self, BallFile};
 use knotdock_structures::ball_solid::{BallSolid, MeshSampling};
 use knotdock_structures::knots::KnotsError;
-use knotdock_structures::mesh::{Figure, Mesh};
+use knotdock_structures::mesh::Figure;
 use knotdock_structures::molecule::{InputSpec, Molecule};
 use serde_json::{Value, json};
 
@@ -53,8 +53,6 @@ pub struct SolidInput {
     pub kind: SolidKind,
     /// The solid.
     pub solid: BallSolid,
-    /// The surface, of a mesh.
-    pub mesh: Option<Mesh>,
     report: String,
     warnings: Vec<String>,
     sampling: Option<MeshSampling>,
@@ -103,7 +101,6 @@ impl SolidInput {
             report: balls_text(&file),
             warnings: switched_off(&file).into_iter().collect(),
             solid,
-            mesh: None,
             sampling: None,
         })
     }
@@ -111,9 +108,9 @@ impl SolidInput {
     fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Failure> {
         let MeshInput {
             record,
-            mesh,
             report,
             solid,
+            ..
         } = MeshInput::read(spec)?;
         let (solid, sampling) = BallSolid::from_mesh(&solid, per_axis).map_err(|error| {
             Failure::input(error).at(&spec.path).remedy(
@@ -138,7 +135,6 @@ impl SolidInput {
             ),
             warnings,
             solid,
-            mesh: Some(mesh),
             sampling: Some(sampling),
         })
     }
@@ -157,7 +153,6 @@ impl SolidInput {
             report: molecule.report.to_string(),
             warnings: Vec::new(),
             solid,
-            mesh: None,
             sampling: None,
         })
     }
@@ -194,7 +189,7 @@ impl SolidInput {
 }
 
 /// The file of balls that a text names, and the link picked of it.
-fn ball_file_of(text: &str) -> Option<(PathBuf, Option<String>)> {
+pub fn ball_file_of(text: &str) -> Option<(PathBuf, Option<String>)> {
     let whole = Path::new(text);
     if ball_file::is_ball_file(whole) {
         return Some((whole.to_owned(), None));

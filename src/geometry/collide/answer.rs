@@ -3,10 +3,9 @@
 use std::time::{Duration, Instant};
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::numeric::bump::AlphaError;
 use rayon::prelude::*;
 
-use super::contact::{Contact, Densities};
+use super::contact::{Contact, Densities, DensityError, Method};
 use super::scene::{Bounds, CollisionScene, Deadline, Found, Workspace};
 use super::shared_volume::SharedVolume;
 
@@ -49,26 +48,48 @@ pub struct Answer {
 pub struct Questions {
     scene: CollisionScene,
     densities: Option<Densities>,
+    ways: Ways,
     quantities: Quantities,
-    deadline: Option<Duration>,
+}
+
+/// How questions are answered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ways {
+    /// Trees, modes or both.
+    pub method: Method,
+    /// The most Fourier modes that are summed.
+    pub modes: usize,
+    /// Time for one pose.
+    pub deadline: Option<Duration>,
+}
+
+impl Default for Ways {
+    fn default() -> Self {
+        Self {
+            method: Method::Auto,
+            modes: 4096,
+            deadline: None,
+        }
+    }
 }
 
 impl Questions {
-    /// Prepares a scene. `deadline` bounds the time of one pose.
+    /// Prepares a scene.
     ///
     /// # Errors
-    /// [`AlphaError`] never happens for the exponent in use.
+    /// [`DensityError`] where the bodies have no density.
     pub fn new(
         scene: CollisionScene,
         quantities: Quantities,
-        deadline: Option<Duration>,
-    ) -> Result<Self, AlphaError> {
-        let densities = quantities.force.then(|| Densities::new(&scene, ALPHA));
+        ways: Ways,
+    ) -> Result<Self, DensityError> {
+        let needed = quantities.force || ways.method == Method::Modes;
+        let densities = needed.then(|| Densities::new(&scene, ALPHA, ways.method, ways.modes));
         Ok(Self {
             densities: densities.transpose()?,
             scene,
+            ways,
             quantities,
-            deadline,
         })
     }
 
@@ -80,15 +101,22 @@ impl Questions {
     /// Answers for one pose.
     pub fn answer(&self, pose: &Pose, work: &mut Workspace) -> Answer {
         let start = Instant::now();
-        let deadline = Deadline::after(self.deadline);
+        let deadline = Deadline::after(self.ways.deadline);
         let motion = self.scene.motion(pose);
-        let found = self.scene.verdict(&motion, deadline, work);
+        let densities = self.densities.as_ref();
+        let (found, mut modes) = match densities.filter(|_| self.ways.method == Method::Modes) {
+            Some(densities) => densities.verdict(&motion, deadline, work),
+            None => (self.scene.verdict(&motion, deadline, work), 0),
+        };
         let mut ball_pairs = found.ball_pairs;
-        let contact = self.densities.as_ref().map(|densities| {
-            let contact = densities.contact(&self.scene, &motion, &mut work.pairs);
-            ball_pairs += contact.ball_pairs;
-            contact
-        });
+        let contact = densities
+            .filter(|_| self.quantities.force)
+            .map(|densities| {
+                let contact = densities.contact(&self.scene, &motion, work);
+                ball_pairs += contact.ball_pairs;
+                modes += contact.modes;
+                contact
+            });
         let bounds = self.quantities.distance.then(|| {
             let bounds = self.scene.distance(&motion, deadline, work);
             ball_pairs += bounds.ball_pairs;
@@ -102,7 +130,7 @@ impl Questions {
             volume,
             contact,
             ball_pairs,
-            modes: 0,
+            modes,
             seconds: start.elapsed().as_secs_f64(),
         }
     }

@@ -31,6 +31,6 @@ pub mod shared_volume;
 #[cfg(test)]
 mod tests;
 
-pub use answer::{Answer, Quantities, Questions};
-pub use contact::Contact;
+pub use answer::{Answer, Quantities, Questions, Ways};
+pub use contact::{Contact, Method};
 pub use scene::{Bounds, Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};

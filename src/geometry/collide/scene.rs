@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use knotdock_scoring::overlap::ModesWorkspace;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::{
     BallHierarchy, BallSolid, Closest, ClosestSearch, Limits, MeetingPairs, Motion,
@@ -116,11 +117,12 @@ pub struct Bounds {
 }
 
 /// Buffers of one thread.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Workspace {
     pub(super) search: ClosestSearch,
     pub(super) pairs: MeetingPairs,
     pub(super) marks: [Vec<bool>; 2],
+    pub(super) modes: Option<ModesWorkspace>,
 }
 
 impl Workspace {

@@ -1,11 +1,14 @@
 //! A translation that parts two solids: an upper bound of their penetration depth.
 //!
-//! Body B moves along a line, away from A. At every place the deepest pair of outer balls known says how far B must go
-//! at least to part that pair. It goes there, and so on until no pair of outer balls meets. The shortest of several
-//! lines is taken: that of the deepest pair, that of the centres of mass, and the axes both ways.
+//! Two ways are tried, and the shorter result is taken. Any translation after which no outer balls meet is one.
 //!
-//! Each line ends, since every step leaves its pair behind for good: balls are convex, so that a line leaves each once.
-//! After many steps it ends beyond the balls about all of A and all of B.
+//! - **Pushes.** All pairs of outer balls that meet push along their centres, each by its depth. B goes along the sum
+//!   until the deepest pair is parted, again and again. This follows a curved way out of shallow contacts, and ends
+//!   nowhere where solids interlock. The line from the first to the last place is tried as well.
+//! - **Lines.** Body B moves along a line, away from A. At every place the deepest pair known says how far B must go at
+//!   least to part that pair. The lines are that of the deepest pair, that of the centres of mass, and the axes both
+//!   ways. Each ends, since balls are convex, so that a line leaves each pair once. After many steps it ends beyond the
+//!   balls about all of A and all of B.
 
 use knotdock_structures::ball_solid::{ClosestSearch, Limits, Motion};
 
@@ -15,6 +18,8 @@ use super::scene::{CollisionScene, Deadline, Workspace, unit};
 const STEPS: usize = 64;
 /// Pairs of balls looked at for one step, unless none that meets is found among them.
 const PAIRS_A_STEP: usize = 512;
+/// Pushes at most.
+const PUSHES: usize = 100;
 /// Share by which a step goes on, so that rounding does not leave it at the pair that it parts.
 const BEYOND: f64 = 1e-12;
 
@@ -29,8 +34,10 @@ impl CollisionScene {
         work: &mut Workspace,
     ) -> (f64, usize) {
         let mut pairs = 0;
-        let mut best = f64::INFINITY;
-        for direction in self.directions(motion, deepest) {
+        let pushed = self.pushed(motion, deadline, work, &mut pairs);
+        let mut best = pushed.map_or(f64::INFINITY, length);
+        let straight = pushed.map(unit);
+        for direction in straight.into_iter().chain(self.directions(motion, deepest)) {
             let end = self.beyond_all(motion, direction);
             let along = self.line(motion, direction, best.min(end), deadline, work, &mut pairs);
             best = best.min(along.unwrap_or(end));
@@ -39,6 +46,52 @@ impl CollisionScene {
             }
         }
         (best, pairs)
+    }
+
+    /// The translation that repeated pushes add up to; `None` where they do not part the bodies.
+    fn pushed(
+        &self,
+        motion: &Motion,
+        deadline: Deadline,
+        work: &mut Workspace,
+        pairs: &mut usize,
+    ) -> Option<[f64; 3]> {
+        let trees = self.trees();
+        let mut total = [0.0f64; 3];
+        for _ in 0..PUSHES {
+            let moved = motion.shifted(total);
+            let mut push = [0.0f64; 3];
+            let mut deepest: Option<(f64, [usize; 2])> = None;
+            work.pairs
+                .visit(trees, &moved, self.band(), |[i, j], ball, squared| {
+                    let other = &trees[0].balls()[i];
+                    let depth = other.radius + ball.radius + self.band() - squared.sqrt();
+                    let away = unit([0, 1, 2].map(|axis| ball.center[axis] - other.center[axis]));
+                    for axis in 0..3 {
+                        push[axis] += depth * away[axis];
+                    }
+                    if deepest.is_none_or(|(most, _)| depth > most) {
+                        deepest = Some((depth, [i, j]));
+                    }
+                    *pairs += 1;
+                    true
+                });
+            let Some((_, [i, j])) = deepest else {
+                return Some(total);
+            };
+            if deadline.has_come() {
+                return None;
+            }
+            let (a, b) = (trees[0].balls()[i], trees[1].balls()[j]);
+            let direction = unit(push);
+            let sum = a.radius + b.radius + self.band();
+            let step = exit(a.center, moved.apply(b.center), direction, sum);
+            let step = step.max(0.0) + BEYOND * (sum + length(total));
+            for axis in 0..3 {
+                total[axis] += step * direction[axis];
+            }
+        }
+        None
     }
 
     fn directions(&self, motion: &Motion, deepest: Option<[usize; 2]>) -> Vec<[f64; 3]> {
@@ -109,6 +162,10 @@ impl CollisionScene {
         }
         None
     }
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().fold(0.0f64, |sum, part| sum.hypot(*part))
 }
 
 /// How far a ball at `center` goes along a direction of length one until it is `sum` away from `from` and leaves.

@@ -1,13 +1,16 @@
 //! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
 //!
 //! A point of both solids lies in a ball of either, and these two meet. So only balls that meet one of the other body's
-//! count, and the volumes are those of [`ball_union::overlap`] over these.
+//! count, and the volumes are those of [`ball_union::overlap_by_lines`] over these.
 
 use knotdock_structures::ball_solid::Motion;
 use knotdock_structures::knots::Knots;
 use knotdock_structures::{Ball, ball_union};
 
 use super::scene::{CollisionScene, Workspace};
+
+/// Spacing of the lines that measure volumes, as a share of both eps: what these leave open needs no closer ones.
+const LINES: f64 = 0.25;
 
 /// A volume and how far the true one may be from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,7 +65,7 @@ impl CollisionScene {
         });
         match (first, second) {
             (Some(first), Some(second)) => {
-                let overlap = ball_union::overlap(&first, &second);
+                let overlap = ball_union::overlap_by_lines(&first, &second, LINES * self.band());
                 (overlap.shared.max(0.0), overlap.error)
             }
             _ => (0.0, 0.0),

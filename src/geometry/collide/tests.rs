@@ -5,7 +5,7 @@ use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{self, Solid};
 
-use super::contact::Densities;
+use super::contact::{Densities, Method};
 use super::impact::first_impact;
 use super::{Bounds, Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};
 
@@ -222,9 +222,9 @@ fn forces_are_slopes_of_the_energy() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 20);
     let other = solid(&[([0.7, 0.3, 0.9], false)], 20);
     let scene = CollisionScene::new([block, other], 0.0);
-    let densities = Densities::new(&scene, 2.0).unwrap();
+    let densities = Densities::new(&scene, 2.0, Method::Tree, 0).unwrap();
     let mut work = Workspace::new();
-    let mut contact = |pose: &Pose| densities.contact(&scene, &scene.motion(pose), &mut work.pairs);
+    let mut contact = |pose: &Pose| densities.contact(&scene, &scene.motion(pose), &mut work);
     let pose = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [0.9, 0.3, 0.2]);
     let here = contact(&pose);
     assert!(here.energy > 0.01);
@@ -260,6 +260,38 @@ fn forces_are_slopes_of_the_energy() {
             here.torque
         );
     }
+}
+
+/// Modes and pairs are two ways to one energy: within the bound, whichever is taken.
+#[test]
+fn modes_agree_with_pairs_and_certify_hits_only() {
+    let block = solid(&[([1.0, 0.6, 0.4], false)], 16);
+    let other = solid(&[([0.7, 0.3, 0.9], false)], 16);
+    let scene = CollisionScene::new([block, other], 0.0);
+    let by = |method| Densities::new(&scene, 2.0, method, 6000).unwrap();
+    let [pairs, modes] = [by(Method::Tree), by(Method::Modes)];
+    let mut work = Workspace::new();
+    let mut hits = 0;
+    for step in 0..100 {
+        let part = |by: f64| 2.0 * (f64::from(step) * by).fract() - 1.0;
+        let rotation = [part(0.8191), part(0.671), part(0.5497), part(0.4503)];
+        let pose = Pose::from_parts(rotation, [part(0.31), 0.7 * part(0.77), 0.7 * part(0.19)]);
+        let motion = scene.motion(&pose);
+        let exact = pairs.contact(&scene, &motion, &mut work);
+        let summed = modes.contact(&scene, &motion, &mut work);
+        assert!(
+            (exact.energy - summed.energy).abs() <= exact.bound + summed.bound,
+            "{step}"
+        );
+        let (found, _) = modes.verdict(&motion, Deadline::NEVER, &mut work);
+        assert_ne!(found.verdict, Verdict::Free);
+        if found.verdict == Verdict::Hit {
+            let by_tree = scene.verdict(&motion, Deadline::NEVER, &mut work);
+            assert_eq!(by_tree.verdict, Verdict::Hit, "{step}");
+            hits += 1;
+        }
+    }
+    assert!(hits > 20, "{hits}");
 }
 
 /// A ball that flies at another one: contact at the time of the closed form.

@@ -29,6 +29,12 @@ pub struct Body {
 }
 
 impl Body {
+    /// Centre and radius of each ball.
+    pub fn knots(&self) -> Vec<[f64; 4]> {
+        let balls = self.centers.iter().zip(&self.radii);
+        balls.map(|([x, y, z], r)| [*x, *y, *z, *r]).collect()
+    }
+
     /// Lengths of the bounding box of the balls.
     pub fn extent(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {

@@ -61,7 +61,7 @@ impl Cube {
     }
 
     fn grid(&self) -> Grid {
-        Grid::of_cube(self.half, self.per_axis)
+        Grid::of_edge(2.0 * self.half, self.per_axis)
     }
 
     /// Balls relative to the middle.

@@ -105,7 +105,7 @@ mod tests {
     /// What is left out meets only cells that lie in one of the balls taken.
     #[test]
     fn balls_left_out_add_nothing() {
-        let grid = Grid::of_cube(1.0, 70);
+        let grid = Grid::of_edge(2.0, 70);
         let mut cells = HeldCells::new(grid);
         let (mut taken, mut left) = (Vec::new(), Vec::new());
         for i in 1..3000u32 {

@@ -17,14 +17,32 @@ use crate::output::records::program::VERSION;
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::PoseRow;
 
+/// A surface as triangles.
+#[derive(Clone, Copy)]
+pub struct Surface<'a> {
+    /// Vertices, in the file's unit.
+    pub positions: &'a [[f64; 3]],
+    /// Corners of each triangle.
+    pub triangles: &'a [[u32; 3]],
+}
+
+impl<'a> From<&'a Mesh> for Surface<'a> {
+    fn from(mesh: &'a Mesh) -> Self {
+        Self {
+            positions: mesh.positions(),
+            triangles: mesh.triangles(),
+        }
+    }
+}
+
 /// Writes the assemblies of `rows` into a staging folder as `rank_0001.obj` ... and returns the names, in the order of the
 /// rows.
 ///
 /// # Errors
 /// [`FileError`] when the folder cannot be made, or a file is there or cannot be written.
 pub fn write_assemblies(
-    receptor: &Mesh,
-    ligand: &Mesh,
+    receptor: Surface,
+    ligand: Surface,
     rows: &[PoseRow],
     folder: &Path,
 ) -> Result<Vec<String>, FileError> {
@@ -44,8 +62,8 @@ pub fn write_assemblies(
 
 fn write_assembly(
     file: &mut dyn io::Write,
-    receptor: &Mesh,
-    ligand: &Mesh,
+    receptor: Surface,
+    ligand: Surface,
     row: &PoseRow,
 ) -> io::Result<()> {
     let [w, x, y, z] = row.pose.quaternion();
@@ -67,20 +85,20 @@ fn write_assembly(
 fn write_part(
     file: &mut dyn io::Write,
     name: &str,
-    mesh: &Mesh,
+    surface: Surface,
     pose: &Pose,
     before: usize,
 ) -> io::Result<usize> {
     writeln!(file, "g {name}")?;
-    for &position in mesh.positions() {
+    for &position in surface.positions {
         let [x, y, z] = pose.apply(position).map(number);
         writeln!(file, "v {x} {y} {z}")?;
     }
-    for triangle in mesh.triangles() {
+    for triangle in surface.triangles {
         let [a, b, c] = triangle.map(|corner| before + corner as usize + 1);
         writeln!(file, "f {a} {b} {c}")?;
     }
-    Ok(before + mesh.positions().len())
+    Ok(before + surface.positions.len())
 }
 
 #[cfg(test)]
@@ -106,7 +124,8 @@ mod tests {
             pose: Pose::from_parts([half, 0.0, 0.0, half], [10.0, 20.0, 1e-7]),
         };
         let folder = tempfile::tempdir().unwrap();
-        let names = write_assemblies(&mesh, &mesh, &[row], folder.path()).unwrap();
+        let names =
+            write_assemblies((&mesh).into(), (&mesh).into(), &[row], folder.path()).unwrap();
         assert_eq!(names, ["rank_0007.obj"]);
         let text = std::fs::read_to_string(folder.path().join(&names[0])).unwrap();
         let words = |start: &str| -> Vec<String> {

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use knotdock_structures::Knots;
+use knotdock_structures::{Ball, Knots};
 
 use crate::output::files::whole_file::{FileError, StagedFile};
 
@@ -53,6 +53,26 @@ pub fn write_mesh(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> {
         }
         Ok(())
     })
+}
+
+/// Vertices and triangles of the spheres of some balls, each as [`write_mesh`] writes it.
+pub fn spheres(balls: &[Ball]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let (vertices, triangles) = icosphere();
+    let (mut positions, mut corners) = (Vec::new(), Vec::new());
+    for ball in balls {
+        let first = positions.len() as u32;
+        positions.extend(
+            vertices
+                .iter()
+                .map(|vertex| [0, 1, 2].map(|axis| ball.center[axis] + ball.radius * vertex[axis])),
+        );
+        corners.extend(
+            triangles
+                .iter()
+                .map(|of| of.map(|corner| first + corner as u32)),
+        );
+    }
+    (positions, corners)
 }
 
 /// An icosahedron with its triangles cut in four and its vertices moved to the unit sphere: 42 vertices, 80 triangles.

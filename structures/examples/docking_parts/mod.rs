@@ -10,6 +10,8 @@
 //!   of a bagel, after G. Hart). Each half is its own image under half a turn about one axis, which is the same for
 //!   both.
 //! - **Broken block.** A block broken along four planes that meet in a point off its middle. No part has a symmetry.
+//! - **Saddle block.** A block cut along a smooth saddle. No part has a symmetry.
+//! - **Studded plates.** Two plates, one with two studs and a dent, the other with what fits. No part has a symmetry.
 
 use std::f64::consts::PI;
 
@@ -43,12 +45,14 @@ pub struct Pair {
     pub ligand_symmetry: Vec<HalfTurnAxis>,
 }
 
-/// All three, no two points of their parts nearer to one another than `clearance`.
+/// All five, no two points of their parts nearer to one another than `clearance`.
 pub fn pairs(clearance: f64) -> Vec<Pair> {
     vec![
         peg_and_hole(clearance),
         linked_torus(clearance),
         broken_block(clearance),
+        saddle_block(clearance),
+        studded_plates(clearance),
     ]
 }
 
@@ -198,6 +202,89 @@ pub fn broken_block(clearance: f64) -> Pair {
             &sheet(&|x, y| height(x, y) - half_gap),
         ),
         ligand: between(&sheet(&|x, y| height(x, y) + half_gap), &sheet(&|_, _| 1.0)),
+        receptor_symmetry: Vec::new(),
+        ligand_symmetry: Vec::new(),
+    }
+}
+
+/// A block of one by one, cut along z = .7 x y + .12 sin(5 x + 1) + .08 cos(4 y).
+pub fn saddle_block(clearance: f64) -> Pair {
+    let height =
+        |x: f64, y: f64| 0.7 * x * y + 0.12 * (5.0 * x + 1.0).sin() + 0.08 * (4.0 * y).cos();
+    cut_along("saddle", &height, [-0.45, 0.65], clearance)
+}
+
+/// Plates of one by one, about .2 and .5 thick, between them two studs and a dent.
+pub fn studded_plates(clearance: f64) -> Pair {
+    let studs = [
+        (-0.22, -0.12, 0.22, 0.14),
+        (0.2, 0.2, 0.16, 0.11),
+        (0.1, -0.3, -0.14, 0.1),
+    ];
+    let height = move |x: f64, y: f64| -> f64 {
+        let stud = |(u, v, high, wide): (f64, f64, f64, f64)| {
+            high * (-((x - u).powi(2) + (y - v).powi(2)) / (2.0 * wide * wide)).exp()
+        };
+        studs.into_iter().map(stud).sum()
+    };
+    cut_along("studs", &height, [-0.32, 0.5], clearance)
+}
+
+/// A block between two heights, cut along a sheet whose two sides are `clearance` from each other.
+fn cut_along(
+    name: &'static str,
+    height: &dyn Fn(f64, f64) -> f64,
+    [bottom, top]: [f64; 2],
+    clearance: f64,
+) -> Pair {
+    const SIDES: usize = 40;
+    let place = |i: usize| i as f64 / SIDES as f64 - 0.5;
+    let steepest = (0..=SIDES)
+        .flat_map(|i| (0..=SIDES).map(move |j| (place(i), place(j))))
+        .map(|(x, y)| {
+            let h = 1e-4;
+            let slope_x = (height(x + h, y) - height(x - h, y)) / (2.0 * h);
+            let slope_y = (height(x, y + h) - height(x, y - h)) / (2.0 * h);
+            slope_x.hypot(slope_y)
+        })
+        .fold(0.0, f64::max);
+    let half_gap = 0.5 * clearance * (1.0 + steepest * steepest).sqrt();
+    let sheet = |z: &dyn Fn(f64, f64) -> f64| -> Vec<[f64; 3]> {
+        (0..=SIDES)
+            .flat_map(|j| (0..=SIDES).map(move |i| (place(i), place(j))))
+            .map(|(x, y)| [x, y, z(x, y)])
+            .collect()
+    };
+    let between = |low: &[[f64; 3]], high: &[[f64; 3]]| {
+        let mut part = Part::default();
+        let row = SIDES + 1;
+        let around = |sheet: &[[f64; 3]]| -> Vec<[f64; 3]> {
+            let south = (0..SIDES).map(|i| i);
+            let east = (0..SIDES).map(|j| j * row + SIDES);
+            let north = (0..SIDES).map(|i| SIDES * row + SIDES - i);
+            let west = (0..SIDES).map(|j| (SIDES - j) * row);
+            let border = south.chain(east).chain(north).chain(west);
+            border.map(|index| sheet[index]).collect()
+        };
+        part.band(&around(low), &around(high));
+        for (sheet, upward) in [(low, false), (high, true)] {
+            for j in 0..SIDES {
+                for i in 0..SIDES {
+                    let at = j * row + i;
+                    let corners = [at, at + 1, at + row + 1, at + row];
+                    part.quad(corners.map(|index| sheet[index]), upward);
+                }
+            }
+        }
+        part
+    };
+    Pair {
+        name,
+        receptor: between(
+            &sheet(&|_, _| bottom),
+            &sheet(&|x, y| height(x, y) - half_gap),
+        ),
+        ligand: between(&sheet(&|x, y| height(x, y) + half_gap), &sheet(&|_, _| top)),
         receptor_symmetry: Vec::new(),
         ligand_symmetry: Vec::new(),
     }

@@ -29,11 +29,21 @@ impl Grid {
         }
     }
 
-    /// The grid of the cube from -`half` to `half` along each axis.
-    pub fn of_cube(half: f64, per_axis: usize) -> Self {
+    /// The grid of a cube of this edge about the origin, with `per_axis` nodes along each edge, at least two.
+    pub fn of_edge(edge: f64, per_axis: usize) -> Self {
         Self {
             per_axis: per_axis.max(2),
-            half,
+            half: 0.5 * edge,
+        }
+    }
+
+    /// The same nodes and more about them: at least `margin` on every side, in the solid's unit.
+    #[must_use]
+    pub fn padded(&self, margin: f64) -> Self {
+        let more = (margin / self.spacing()).ceil().max(0.0);
+        Self {
+            per_axis: self.per_axis + 2 * more as usize,
+            half: self.half + more * self.spacing(),
         }
     }
 

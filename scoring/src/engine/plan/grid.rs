@@ -186,7 +186,7 @@ pub(super) fn ranking_spacing(
 /// count, and the distance beyond which a pair stays below the tolerance.
 pub(super) fn product_kernel(
     options: EngineOptions,
-    band: Band,
+    (band, unit): (Band, f64),
     [r_low, s_low, r_high, s_high]: [f64; 4],
     chosen: Option<f64>,
 ) -> Result<(ProductKernel, f64, f64), PlanError> {
@@ -194,7 +194,7 @@ pub(super) fn product_kernel(
     // No grid is planned finer than an eighth of the smallest ball unasked.
     let finest = 4.0 / r_low.min(s_low);
     let w_max = chosen.map_or(finest, |spacing| 0.5 / spacing);
-    let kernel = ProductKernel::new(options.kernel, band, largest, w_max)?;
+    let kernel = ProductKernel::new(options.kernel, band, largest, w_max)?.in_unit(unit)?;
     let spacing = chosen.unwrap_or_else(|| match band {
         Band::LowPass => 0.5 * options.kernel.resolution,
         Band::Whole => {

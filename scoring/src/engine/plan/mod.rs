@@ -17,6 +17,7 @@ mod options;
 mod pair_kernel;
 mod radii;
 
+use crate::kernel::product::{Body, LAYERS};
 use crate::kernel::table::Table;
 use crate::kernel::{Band, RankingKernel};
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
@@ -49,6 +50,8 @@ pub struct Plan {
     axis: LiftedAxis,
     axis_error: f64,
     basis: RadiusBasis,
+    /// Whether grown balls have weights of their own, so that each function of the radius counts twice.
+    layered: bool,
     modes: Arc<ModeSet>,
     spacing: f64,
     fine: [usize; 3],
@@ -219,14 +222,24 @@ impl Plan {
         options: EngineOptions,
         band: Band,
     ) -> Result<Self, PlanError> {
-        Self::build(
-            receptor,
-            ligand,
-            options,
-            options.tolerance,
-            Some(band),
-            Vec::new(),
-        )
+        Self::product_in(receptor, ligand, options, band, 1.0)
+    }
+
+    /// As [`Plan::product`], with volumes in the cube of a length, `unit`: scores then do not depend on the unit of
+    /// lengths, and stay within single precision whatever it is.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn product_in(
+        receptor: &Knots,
+        ligand: &Knots,
+        options: EngineOptions,
+        band: Band,
+        unit: f64,
+    ) -> Result<Self, PlanError> {
+        let product = Some((band, unit));
+        let tolerance = options.tolerance;
+        Self::build(receptor, ligand, options, tolerance, product, Vec::new())
     }
 
     fn build(
@@ -234,9 +247,10 @@ impl Plan {
         ligand: &Knots,
         options: EngineOptions,
         kernel_tolerance: f64,
-        band: Option<Band>,
+        of_product: Option<(Band, f64)>,
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
+        let band = of_product.map(|(band, _)| band);
         check_bodies(receptor, ligand)?;
         check_terms(&terms, receptor, ligand)?;
         check_tolerance(options.tolerance)?;
@@ -258,7 +272,7 @@ impl Plan {
             })
             .collect();
         let chosen = checked_spacing(options.spacing)?;
-        let (pair, spacing, effective_reach) = match band {
+        let (pair, spacing, effective_reach) = match of_product {
             None => {
                 let widest = Widest::new(&kernel, widest);
                 let spacing = chosen
@@ -266,9 +280,9 @@ impl Plan {
                 let reach = longest_reach(&kernel, &effects, &widest, tolerance);
                 (PairKernel::Lifted, spacing, reach)
             }
-            Some(band) => {
+            Some(of_product) => {
                 let (product, spacing, reach) =
-                    product_kernel(options, band, radii.ends(), chosen)?;
+                    product_kernel(options, of_product, radii.ends(), chosen)?;
                 (PairKernel::Product(Box::new(product)), spacing, reach)
             }
         };
@@ -283,6 +297,10 @@ impl Plan {
             axis,
             axis_error,
             basis,
+            layered: band.is_some()
+                && [receptor, ligand]
+                    .iter()
+                    .any(|knots| !knots.skin_weights.is_empty()),
             modes,
             spacing,
             fine,
@@ -342,7 +360,42 @@ impl Plan {
             seen.dedup();
             seen.len()
         });
-        self.basis.sizes(&self.axis).1 + classes.sum::<usize>()
+        self.shape_functions().1 + classes.sum::<usize>()
+    }
+
+    /// Functions of shape on the receptor's and on the ligand's side: those of the radius, for each layer where grown
+    /// balls have weights of their own.
+    pub fn shape_functions(&self) -> (usize, usize) {
+        let (a, b) = self.basis.sizes(&self.axis);
+        let layers = if self.layered { LAYERS.len() } else { 1 };
+        (layers * a, layers * b)
+    }
+
+    /// The layer of a function of shape, of `size` functions of the radius, and that function.
+    fn layer(&self, function: usize, size: usize) -> (Option<Body>, usize) {
+        if !self.layered {
+            return (None, function);
+        }
+        (
+            LAYERS.get(function / size.max(1)).copied(),
+            function % size.max(1),
+        )
+    }
+
+    /// Weight of a receptor's knot times the value of a function of shape at its radius.
+    pub(crate) fn receptor_value(&self, receptor: &Knots, function: usize, knot: usize) -> f64 {
+        let (layer, a) = self.layer(function, self.basis.sizes(&self.axis).0);
+        let value = self
+            .basis
+            .receptor_value(&self.axis, a, receptor.radii[knot]);
+        value * weight(receptor, layer, knot)
+    }
+
+    /// The same of a ligand's knot.
+    pub(crate) fn ligand_value(&self, ligand: &Knots, function: usize, knot: usize) -> f64 {
+        let (layer, b) = self.layer(function, self.basis.sizes(&self.axis).1);
+        let value = self.basis.ligand_value(&self.axis, b, ligand.radii[knot]);
+        weight(ligand, layer, knot) * value
     }
 
     /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays,
@@ -354,8 +407,8 @@ impl Plan {
         }
     }
 
-    /// Radial spectrum that couples receptor function a with ligand function b of [`Plan::basis`] in a quantity, on all
-    /// modes kept; `None` where it is zero.
+    /// Radial spectrum that couples function a of the receptor's shape with function b of the ligand's in a quantity, on
+    /// all modes kept; `None` where it is zero.
     pub fn coupling(&self, fold: Quantity, (a, b): (usize, usize)) -> Option<Table<1>> {
         let w_max = self.modes.cut;
         match &self.pair {
@@ -364,8 +417,21 @@ impl Plan {
                     .coupling(&self.kernel, &self.axis, fold, (a, b), w_max)
             }
             PairKernel::Product(product) => {
-                self.basis.product_coupling(product, fold, (a, b), w_max)
+                let sizes = self.basis.sizes(&self.axis);
+                let ((of_a, a), (of_b, b)) = (self.layer(a, sizes.0), self.layer(b, sizes.1));
+                let layers = of_a.zip(of_b);
+                self.basis
+                    .product_coupling(product, fold, (a, b), layers, w_max)
             }
         }
     }
+}
+
+/// Weight of a knot in a layer.
+fn weight(knots: &Knots, layer: Option<Body>, knot: usize) -> f64 {
+    let own = match layer {
+        Some(Body::Grown) if !knots.skin_weights.is_empty() => &knots.skin_weights,
+        _ => &knots.weights,
+    };
+    own[knot]
 }

@@ -70,6 +70,9 @@ pub enum Body {
     DoubleSkin,
 }
 
+/// The functions of a body whose grown balls have weights of their own: one weight does not serve the double skin.
+pub const LAYERS: [Body; 2] = [Body::Solid, Body::Grown];
+
 /// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by
 /// the offset have none: they are taken along the lifted axis, which the product kernel lacks.
 pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
@@ -81,6 +84,19 @@ pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
         Quantity::Slice(_) => &[(Grown, Grown, 1.0)],
         Quantity::ScoreByOffset | Quantity::SliceByOffset(_) => &[],
     }
+}
+
+/// Factor of the product of two functions of [`LAYERS`] in a fold of the slices: [`factors`] written out.
+pub fn layer_factor(fold: Quantity, (a, b): (Body, Body), lambda: f64) -> f64 {
+    let share = |of: Body, layer: Body| match (of, layer) {
+        (Body::DoubleSkin, Body::Solid) => -lambda,
+        (Body::DoubleSkin, _) => 1.0,
+        _ => f64::from(u8::from(of == layer)),
+    };
+    let products = factors(fold).iter();
+    products
+        .map(|&(of_a, of_b, factor)| factor * share(of_a, a) * share(of_b, b))
+        .sum()
 }
 
 /// The product kernel of all pairs of radii up to a largest one.
@@ -95,6 +111,8 @@ pub struct ProductKernel {
     /// Integral from v to 1 of u psi(u) du.
     tail: Table<1>,
     w_max: f64,
+    /// Length whose cube volumes are given in.
+    unit: f64,
 }
 
 impl ProductKernel {
@@ -143,7 +161,21 @@ impl ProductKernel {
             transform,
             tail,
             w_max,
+            unit: 1.0,
         })
+    }
+
+    /// The same kernel with volumes in the cube of a length.
+    ///
+    /// # Errors
+    /// [`KernelError`] where that is no length.
+    pub fn in_unit(self, unit: f64) -> Result<Self, KernelError> {
+        if unit.is_finite() && unit > 0.0 {
+            return Ok(Self { unit, ..self });
+        }
+        let (name, bound) = ("unit of volumes", "above 0");
+        let value = unit;
+        Err(KernelError::Length { name, value, bound })
     }
 
     /// The options it was built from.
@@ -195,7 +227,7 @@ impl ProductKernel {
         }
     }
 
-    /// Transform of [`Self::density`] at frequency w, in Å^3; the low-pass is not in it.
+    /// Transform of [`Self::density`] at frequency w, in the unit of volumes; the low-pass is not in it.
     pub fn spectrum(&self, body: Body, radius: f64, w: f64) -> f64 {
         let ball = |radius: f64| {
             let q = radius * w;
@@ -204,7 +236,7 @@ impl ProductKernel {
             } else {
                 self.transform.value(q)[0]
             };
-            radius.powi(3) * unit
+            (radius / self.unit).powi(3) * unit
         };
         let grown = radius + self.options.offset;
         match body {
@@ -221,7 +253,21 @@ impl ProductKernel {
             .iter()
             .map(|&(a, b, factor)| factor * self.spectrum(a, r, w) * self.spectrum(b, s, w))
             .sum();
-        products * self.low_pass(w)
+        products * self.unit.powi(3) * self.low_pass(w)
+    }
+
+    /// As [`Self::coupling`], of one function of [`LAYERS`] a body.
+    pub fn layer_coupling(
+        &self,
+        fold: Quantity,
+        layers: (Body, Body),
+        (r, s): (f64, f64),
+        w: f64,
+    ) -> f64 {
+        let factor = layer_factor(fold, layers, self.options.lambda);
+        let (a, b) = layers;
+        let product = self.spectrum(a, r, w) * self.spectrum(b, s, w);
+        factor * product * self.unit.powi(3) * self.low_pass(w)
     }
 
     /// (psi_a * psi_b)(d) in Å^3 over all frequencies, by quadrature in space; the lens volume of two spheres at alpha
@@ -263,15 +309,20 @@ impl ProductKernel {
     pub fn value(&self, distance: f64, r: f64, s: f64) -> [f64; 4] {
         match self.band {
             Band::Whole => {
-                let (grown_r, grown_s) = (r + self.options.offset, s + self.options.offset);
-                self.with_score([
-                    self.overlap(distance, r, s),
-                    0.5 * (self.overlap(distance, grown_r, s) + self.overlap(distance, r, grown_s)),
-                    self.overlap(distance, grown_r, grown_s),
-                ])
+                let [plain, of_r, of_s, both] = self.layer_overlaps(distance, r, s);
+                self.with_score([plain, 0.5 * (of_r + of_s), both])
             }
             Band::LowPass => self.low_passed(&self.bands(r, s), distance),
         }
+    }
+
+    /// Overlaps of the balls at a distance: as they are, the first grown, the second grown, both grown; in the unit of
+    /// volumes, over all frequencies.
+    pub(super) fn layer_overlaps(&self, distance: f64, r: f64, s: f64) -> [f64; 4] {
+        let (grown_r, grown_s) = (r + self.options.offset, s + self.options.offset);
+        let volume = self.unit.powi(3);
+        [(r, s), (grown_r, s), (r, grown_s), (grown_r, grown_s)]
+            .map(|(a, b)| self.overlap(distance, a, b) / volume)
     }
 
     fn with_score(&self, slices: [f64; 3]) -> [f64; 4] {

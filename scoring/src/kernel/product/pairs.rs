@@ -1,11 +1,20 @@
 //! One pair of radii of the product kernel: its reach, its table over distance, and what its modes hold beyond a
 //! frequency.
 
+use super::LAYERS;
 use super::{Band, ProductKernel};
 use crate::kernel::radial_transform::sinc;
-use crate::kernel::table::Table;
+use crate::kernel::table::{PanelFit, Table};
 use crate::quantity::Quantity;
+use rayon::prelude::*;
 use std::f64::consts::PI;
+
+/// Waves a smallest radius at which a kernel without low-pass ends.
+const WAVES: f64 = 4.0;
+/// Most pairs of radii whose kernels are quadratures in space; of more they are sums over frequencies.
+const MAX_QUADRATURES: usize = 16;
+/// Panels of a table for each wave of the highest frequency: polynomials of degree 7 follow a quarter of a wave to 3e-8.
+const PANELS_A_WAVE: f64 = 0.25;
 
 /// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its peak is left there.
 const RINGS: f64 = 24.0;
@@ -18,6 +27,24 @@ impl ProductKernel {
             Band::Whole => plain,
             Band::LowPass => plain + RINGS * self.ring(),
         }
+    }
+
+    /// The kernel with all its frequencies, for some radii; `None` where it has them already.
+    ///
+    /// They end at four waves a smallest radius, beyond which a bump of exponent 2 to 8 has less than 1e-3 of itself.
+    pub fn without_low_pass(&self, radii: &[&[f64]]) -> Option<Self> {
+        if self.band == Band::Whole {
+            return None;
+        }
+        let radii = radii.iter().copied().flatten();
+        let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(low, high), &radius| {
+            (low.min(radius), high.max(radius))
+        });
+        let whole = Self::new(self.options, Band::Whole, high, WAVES / low).ok()?;
+        Some(Self {
+            unit: self.unit,
+            ..whole
+        })
     }
 
     /// Length over which the low-pass rings, Å.
@@ -70,6 +97,73 @@ impl ProductKernel {
         }
     }
 
+    /// Tables over distance of all pairs of a radius of `receptor` and one of `ligand`: `[receptor][ligand]`.
+    ///
+    /// Lanes are both balls as they are, the receptor's grown, the ligand's grown, both grown; in the unit of volumes.
+    ///
+    /// Under a low-pass they are sums over frequencies, whose waves all pairs share.
+    pub fn layer_tables(&self, receptor: &[f64], ligand: &[f64]) -> Vec<Vec<Table<4>>> {
+        match self.band {
+            // Quadratures are exact and slow.
+            Band::Whole if receptor.len() * ligand.len() <= MAX_QUADRATURES => {
+                rows(receptor, ligand, |r, s| {
+                    let panel = r.min(s) / (16.0 + self.bump.alpha().min(1e3));
+                    Table::fit(self.reach(r, s), panel, |d| self.layer_overlaps(d, r, s))
+                })
+            }
+            _ => self.layer_waves(receptor, ligand),
+        }
+    }
+
+    /// [`Self::layer_tables`] by frequencies up to the kernel's end, over the reach of the widest pair.
+    fn layer_waves(&self, receptor: &[f64], ligand: &[f64]) -> Vec<Vec<Table<4>>> {
+        let widest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
+        let end = self.reach(widest(receptor), widest(ligand));
+        let step = 1.0 / (4.0 * end);
+        let frequencies: Vec<f64> = (0..)
+            .map(|n| f64::from(n) * step)
+            .take_while(|&w| w < self.w_max)
+            .collect();
+        let spectra = |radii: &[f64]| -> Vec<Vec<[f64; 2]>> {
+            let of = |&r: &f64| {
+                let at = |&w: &f64| LAYERS.map(|layer| self.spectrum(layer, r, w));
+                frequencies.iter().map(at).collect()
+            };
+            radii.iter().map(of).collect()
+        };
+        let (a, b) = (spectra(receptor), spectra(ligand));
+        let measures: Vec<f64> = frequencies
+            .iter()
+            .map(|&w| 4.0 * PI * w * w * step * self.unit.powi(3) * self.low_pass(w))
+            .collect();
+        let panels = (end * self.w_max / PANELS_A_WAVE).ceil().max(1.0) as usize;
+        let width = end / panels as f64;
+        let fit = PanelFit::new();
+        // [panel][pair], then [pair][panel].
+        let by_panel: Vec<Vec<_>> = (0..panels)
+            .into_par_iter()
+            .map(|panel| {
+                let middle = width * (panel as f64 + 0.5);
+                let waves = fit.at_nodes(middle, 0.5 * width, |d| -> Vec<f64> {
+                    let wave = |(&w, measure): (&f64, &f64)| measure * sinc(2.0 * w * d);
+                    frequencies.iter().zip(&measures).map(wave).collect()
+                });
+                let of_pair = |(a, b): (&Vec<[f64; 2]>, &Vec<[f64; 2]>)| {
+                    fit.through(&waves.each_ref().map(|waves| layer_sums(waves, a, b)))
+                };
+                let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
+                pairs.map(of_pair).collect()
+            })
+            .collect();
+        (0..receptor.len())
+            .map(|i| {
+                let pairs = i * ligand.len()..(i + 1) * ligand.len();
+                let of_pair = |pair: usize| by_panel.iter().map(|panel| panel[pair]).collect();
+                pairs.map(|pair| Table::of(end, of_pair(pair))).collect()
+            })
+            .collect()
+    }
+
     /// Whether [`Self::pair_table`] follows the kernel: not that of sharp balls, which is cheap as it is.
     pub fn is_smooth(&self) -> bool {
         self.band == Band::LowPass || self.bump.alpha().is_finite()
@@ -85,6 +179,25 @@ impl ProductKernel {
             .map(|w| 4.0 * PI * w * w * self.coupling(Quantity::Score, r, s, w).abs() * step)
             .sum()
     }
+}
+
+/// Sums over frequencies of waves times two bodies' layers.
+fn layer_sums(waves: &[f64], a: &[[f64; 2]], b: &[[f64; 2]]) -> [f64; 4] {
+    let mut sums = [0.0; 4];
+    for ((wave, [solid, grown]), [other, other_grown]) in waves.iter().zip(a).zip(b) {
+        let (near, far) = (wave * solid, wave * grown);
+        sums[0] += near * other;
+        sums[1] += far * other;
+        sums[2] += near * other_grown;
+        sums[3] += far * other_grown;
+    }
+    sums
+}
+
+/// Something of all pairs of radii.
+fn rows<T>(receptor: &[f64], ligand: &[f64], of: impl Fn(f64, f64) -> T) -> Vec<Vec<T>> {
+    let row = |&r: &f64| ligand.iter().map(|&s| of(r, s)).collect();
+    receptor.iter().map(row).collect()
 }
 
 /// Largest value of the score kernel in a pair's table, and the distance beyond which it stays below `share` of that.

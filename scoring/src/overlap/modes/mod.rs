@@ -36,7 +36,7 @@ use std::f64::consts::PI;
 
 /// Nanoseconds a mode and ball of B, torque included: a quarter of it without. As measured (`overlap_costs_of_modes`),
 /// on the machine of [`super::pairs_nanoseconds`].
-const MODE_BALL: f64 = 0.6;
+const MODE_BALL: f64 = 1.2;
 
 /// Balls that no modes can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -268,8 +268,11 @@ impl Smoothing {
 
 /// Bound of |psi^(q)| / psi^(0) from q on, for a bump of any exponent with integral `volume`.
 ///
-/// A bump is a mean of balls of radius up to 1; that of a ball of radius rho is at most 4 pi rho^3 (1 + z) / z^3 with z
-/// = 2 pi rho q.
+/// A bump is a mean of sharp balls of radius up to 1. The transform of a ball of radius rho is at most
+///
+/// 4 pi rho^3 (1 + z) / z^3, z = 2 pi rho q.
+///
+/// It is largest for rho = 1.
 fn falling_bound(q: f64, volume: f64) -> f64 {
     let z = 2.0 * PI * q;
     (4.0 * PI * (1.0 + z) / (z * z * z) / volume).min(1.0)

@@ -12,11 +12,12 @@ use std::f64::consts::PI;
 const LANES: usize = 8;
 type Lane = [f64; LANES];
 
-/// Error of a value of the bump's transform: quadrature and table.
-const TRANSFORM_ERROR: f64 = 2e-12;
+/// Error of a value of the bump's transform: what [`RadialTransform`] is held to by its tests.
+const TRANSFORM_ERROR: f64 = 1e-10;
 
-/// Sums of one entry: re and im of sum a c cos, then of sum a c sin. With c the weight times the phase along y and z, the
-/// transform at +k is the first minus i times the second, at -k the first plus i times the second.
+/// Sums of one entry over balls: re and im of C = sum a c cos, then of S = sum a c sin.
+///
+/// The amplitude is a, and c the weight times the phase along y and z. The transform is C - i S at +k and C + i S at -k.
 pub(super) type Sums = [f64; 4];
 
 /// psi^ of the unit bump.

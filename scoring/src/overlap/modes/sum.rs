@@ -39,7 +39,7 @@ pub struct ModesOverlap {
     pub rounding: f64,
     /// -dE/dt of the sum so far: the force on body B.
     pub force: Vector3<f64>,
-    /// Minus the slope of the sum by a turn of B about the chosen point, in A's frame; 0 where none was asked for.
+    /// Minus the slope of the sum by a turn of B about the chosen point, in A's frame; 0 without such a point.
     pub torque: Vector3<f64>,
     /// Modes summed, conjugates counted.
     pub modes: usize,
@@ -77,7 +77,7 @@ impl<'a> ModesSum<'a> {
     ) -> Self {
         let middle = pose.rotation * modes.b.center + pose.translation;
         let place = middle - modes.a.center;
-        // A pose that is no number counts as apart.
+        // NaN counts as no meeting.
         let together = place.norm() < modes.reach;
         if together {
             let rotation = pose.rotation.to_rotation_matrix();
@@ -93,7 +93,7 @@ impl<'a> ModesSum<'a> {
             modes,
             work,
             about: about.map(|about| Vector3::from(about) - middle),
-            // Bodies that are apart have overlap 0, and their images may not.
+            // Bodies that do not meet have overlap 0. Their images may meet.
             next: if together {
                 0
             } else {
@@ -117,7 +117,7 @@ impl<'a> ModesSum<'a> {
         self.sum
     }
 
-    /// Adds block after block until all modes are in, `stop` says so (it is asked before each), or with `early` until a
+    /// Adds block after block until all modes are in, `stop` returns true (called before each block), or with `early` until a
     /// hit is certified. Call it again to go on.
     pub fn advance(&mut self, mut stop: impl FnMut() -> bool, early: bool) -> ModesOverlap {
         loop {

@@ -19,7 +19,7 @@ fn balls(count: usize, size: f64, numbers: &mut Numbers) -> Vec<WeightedBall> {
         .collect()
 }
 
-/// A random pose with the bodies' middles at most `reach` apart along an axis.
+/// A random pose: along each axis the bodies' middles differ by at most `reach`.
 fn pose(modes: &OverlapModes, reach: f64, numbers: &mut Numbers) -> Pose {
     let rotation =
         Pose::from_parts(std::array::from_fn(|_| numbers.next() - 0.5), [0.0; 3]).rotation;
@@ -65,6 +65,10 @@ fn energies_lie_within_their_bounds() {
                 );
                 assert!(!part.certifies_hit() || exact.pairs > 0);
                 if part.complete {
+                    // In pieces and at once, the same bits.
+                    let mut work = modes.workspace();
+                    let whole = modes.start(&pose, &mut work).advance(|| false, false);
+                    assert_eq!(whole, part);
                     worst = worst.max(error);
                     scale = scale.max(exact.energy);
                     hits += usize::from(part.certifies_hit());

@@ -1,0 +1,293 @@
+//! knotdock beside parry3d and coal: microseconds of a verdict, of a distance, and of force and torque.
+
+use crate::measured::{Spread, Times};
+use crate::peers::{CoalRow, Parry, coal, python};
+use crate::report::Figure;
+use crate::table::{Cell, Table};
+use crate::{Options, Setting, path};
+use knotdock::geometry::collide::contact::Densities;
+use knotdock::geometry::collide::{
+    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Workspace,
+};
+use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_structures::ball_solid::MeetingPairs;
+use std::error::Error;
+use std::fs;
+use std::time::Instant;
+
+/// Runs of each question; the fastest counts.
+const RUNS: usize = 3;
+/// Poses of a batch that are in memory at a time.
+const CHUNK: usize = 100_000;
+const PROGRAMS: [(&str, Colour); 3] = [
+    ("knotdock", [0x00, 0x72, 0xb2]),
+    ("parry3d", [0xe6, 0x9f, 0x00]),
+    ("coal", [0x00, 0x9e, 0x73]),
+];
+const QUESTIONS: [&str; 3] = ["verdict", "distance", "force and torque"];
+
+/// Times of the three questions.
+type Asked = [Times; 3];
+
+/// What the programs say, and how long it takes them.
+struct Answers {
+    /// knotdock's verdict of every pose.
+    verdicts: Vec<Verdict>,
+    /// Its bounds.
+    bounds: Vec<Bounds>,
+    ours: Asked,
+    parry: Asked,
+    coal: Option<Asked>,
+}
+
+/// The tables and the picture.
+pub fn figure(setting: &Setting, options: &Options) -> Result<Figure, Box<dyn Error>> {
+    let per_axis = 2f64.powf(f64::from(options.grid) / 3.0).round() as usize;
+    let start = Instant::now();
+    let questions = setting.questions(per_axis)?;
+    let scene = questions.scene();
+    println!(
+        "bunny on 2^{} nodes: {} inner balls, eps {:.3}% of its edge, made in {:.1} s",
+        options.grid,
+        scene.solids()[0].inner().len(),
+        100.0 * scene.solids()[0].epsilon() / setting.mesh.extent(),
+        start.elapsed().as_secs_f64()
+    );
+    let answers = answers(setting, options, scene)?;
+    Ok(Figure {
+        name: "collide",
+        tables: vec![
+            ("times", times(&answers, options.stride)),
+            ("batch", batch(setting, options, &questions)?),
+        ],
+        panels: panels(&answers),
+        columns: 2,
+    })
+}
+
+fn answers(
+    setting: &Setting,
+    options: &Options,
+    scene: &CollisionScene,
+) -> Result<Answers, Box<dyn Error>> {
+    let path = &setting.path;
+    let densities = Densities::new(scene, 2.0)?;
+    let (mut work, mut pairs) = (Workspace::new(), MeetingPairs::default());
+    let verdict = |pose: usize, work: &mut Workspace| {
+        scene.verdict(&scene.motion(&path[pose]), Deadline::NEVER, work)
+    };
+    let distance = |pose: usize, work: &mut Workspace| {
+        scene.distance(&scene.motion(&path[pose]), Deadline::NEVER, work)
+    };
+    let verdicts = (0..path.len()).map(|pose| verdict(pose, &mut work).verdict);
+    let verdicts = verdicts.collect();
+    let bounds = (0..path.len()).map(|pose| distance(pose, &mut work));
+    let bounds = bounds.collect();
+    let ours = [
+        Times::of(path.len(), 1, RUNS, |pose| verdict(pose, &mut work)),
+        Times::of(path.len(), 1, RUNS, |pose| distance(pose, &mut work)),
+        Times::of(path.len(), 1, RUNS, |pose| {
+            densities.contact(scene, &scene.motion(&path[pose]), &mut pairs)
+        }),
+    ];
+    let parry = Parry::new([&setting.mesh, &setting.mesh])?;
+    let parry_times = [
+        Times::of(path.len(), options.stride, RUNS, |i| parry.meet(&path[i])),
+        Times::of(path.len(), options.stride, RUNS, |i| {
+            parry.distance(&path[i])
+        }),
+        Times::of(path.len(), options.stride, RUNS, |i| {
+            parry.contact(&path[i])
+        }),
+    ];
+    let mut answers = Answers {
+        verdicts,
+        bounds,
+        ours,
+        parry: parry_times,
+        coal: None,
+    };
+    let mut wrong = 0;
+    for pose in (0..path.len()).step_by(options.stride) {
+        let apart = parry.distance(&path[pose])?;
+        wrong += usize::from(answers.contradicts(pose, parry.meet(&path[pose])?, apart));
+    }
+    let table = options.out.join("path.csv");
+    fs::write(&table, path::csv(path))?;
+    let python = options.python.clone().unwrap_or_else(python);
+    match coal(&python, &setting.file, &table, options.stride, RUNS) {
+        Err(reason) => println!("without coal: {reason}"),
+        Ok(rows) => {
+            for (row, pose) in rows.iter().zip((0..).step_by(options.stride)) {
+                wrong += usize::from(answers.contradicts(pose, row.meet, row.distance));
+            }
+            answers.coal = Some(coal_times(&rows, options.stride));
+        }
+    }
+    println!("answers that contradict parry3d's or coal's: {wrong}");
+    Ok(answers)
+}
+
+impl Answers {
+    /// Whether surfaces that meet, or are so far apart, contradict what knotdock says of a pose. Surfaces apart may
+    /// belong to solids of which one holds the other.
+    fn contradicts(&self, pose: usize, meet: bool, apart: f64) -> bool {
+        let (verdict, bounds) = (self.verdicts[pose], self.bounds[pose]);
+        let rounding = 1e-9 * (1.0 + apart);
+        match verdict {
+            Verdict::Free if meet => true,
+            Verdict::Free => apart < bounds.low - rounding || apart > bounds.high + rounding,
+            Verdict::Undecided => bounds.high < 0.0 || (meet && bounds.low > 0.0),
+            Verdict::Hit => bounds.low > 0.0,
+        }
+    }
+}
+
+fn coal_times(rows: &[CoalRow], stride: usize) -> Asked {
+    [0, 1, 2].map(|question| Times {
+        poses: (0..rows.len()).map(|row| row * stride).collect(),
+        micros: rows.iter().map(|row| row.micros[question]).collect(),
+    })
+}
+
+/// A row for each question and kind of pose.
+fn times(answers: &Answers, stride: usize) -> Table {
+    const KINDS: [(&str, Option<Verdict>); 4] = [
+        ("all", None),
+        ("free", Some(Verdict::Free)),
+        ("undecided", Some(Verdict::Undecided)),
+        ("hit", Some(Verdict::Hit)),
+    ];
+    let mut rows = Vec::new();
+    for (number, question) in QUESTIONS.into_iter().enumerate() {
+        for (kind, verdict) in KINDS {
+            let keep = |pose: usize| verdict.is_none_or(|kind| answers.verdicts[pose] == kind);
+            let kept = (0..answers.verdicts.len()).filter(|&pose| keep(pose));
+            let share = kept.count() as f64 / answers.verdicts.len() as f64;
+            let ours = answers.ours[number].spread(keep);
+            // The ratio is of the same poses.
+            let same = answers.ours[number].spread(|pose| pose % stride == 0 && keep(pose));
+            let parry = answers.parry[number].spread(keep);
+            let coal = answers.coal.as_ref();
+            let coal = coal.and_then(|times| times[number].spread(keep));
+            let ratio = |theirs: Option<Spread>| match (theirs, same) {
+                (Some(theirs), Some(ours)) => Cell::Number(theirs.median / ours.median),
+                _ => Cell::None,
+            };
+            let mut row = vec![
+                Cell::Text(question.to_owned()),
+                Cell::Text(kind.to_owned()),
+                Cell::Text(format!("{:.1}%", 100.0 * share)),
+            ];
+            for spread in [ours, parry, coal] {
+                row.extend(cells(spread));
+            }
+            row.extend([ratio(parry), ratio(coal)]);
+            rows.push(row);
+        }
+    }
+    Table {
+        header: vec![
+            "question",
+            "poses",
+            "share",
+            "knotdock: median (µs)",
+            "99%",
+            "worst",
+            "parry3d: median",
+            "99%",
+            "worst",
+            "coal: median",
+            "99%",
+            "worst",
+            "parry3d / knotdock",
+            "coal / knotdock",
+        ],
+        rows,
+    }
+}
+
+fn cells(spread: Option<Spread>) -> [Cell; 3] {
+    spread.map_or([Cell::None, Cell::None, Cell::None], |spread| {
+        [spread.median, spread.most, spread.worst].map(Cell::Number)
+    })
+}
+
+/// Poses a second of many verdicts, the path over and over.
+fn batch(
+    setting: &Setting,
+    options: &Options,
+    questions: &Questions,
+) -> Result<Table, Box<dyn Error>> {
+    let scene = questions.scene().clone();
+    let quantities = Quantities {
+        distance: false,
+        volume: false,
+        force: false,
+    };
+    let verdicts = Questions::new(scene, quantities, None)?;
+    let poses: Vec<_> = setting.path.iter().cycle().take(CHUNK).copied().collect();
+    let mut rows = Vec::new();
+    for (asked, questions) in [
+        ("verdict", &verdicts),
+        ("verdict, force, torque", questions),
+    ] {
+        for threads in [1, 2] {
+            let pool = rayon::ThreadPoolBuilder::new();
+            let pool = pool.num_threads(threads).build()?;
+            let start = Instant::now();
+            let mut done = 0;
+            while done < options.batch {
+                let chunk = &poses[..CHUNK.min(options.batch - done)];
+                done += pool.install(|| questions.answers(chunk)).len();
+            }
+            let seconds = start.elapsed().as_secs_f64();
+            rows.push(vec![
+                Cell::Text(asked.to_owned()),
+                Cell::Text(threads.to_string()),
+                Cell::Text(done.to_string()),
+                Cell::Number(seconds),
+                Cell::Number(done as f64 / seconds),
+            ]);
+        }
+    }
+    Ok(Table {
+        header: vec!["answers", "threads", "poses", "seconds", "poses a second"],
+        rows,
+    })
+}
+
+/// For each of the first two questions, the share of poses that take longer than a time.
+fn panels(answers: &Answers) -> Vec<Panel> {
+    let asked = [
+        Some(&answers.ours),
+        Some(&answers.parry),
+        answers.coal.as_ref(),
+    ];
+    let panel = |question: usize| {
+        let series = asked.into_iter().zip(PROGRAMS);
+        let series = series.filter_map(|(asked, (name, colour))| {
+            let mut micros = asked?[question].micros.clone();
+            micros.sort_by(f64::total_cmp);
+            let count = micros.len();
+            let step = count.div_ceil(200).max(1);
+            let points = (0..count).step_by(step);
+            Some(Series {
+                name: name.to_owned(),
+                colour,
+                style: Style::Line,
+                labels: Vec::new(),
+                points: points
+                    .map(|rank| [micros[rank], 1.0 - rank as f64 / count as f64])
+                    .collect(),
+            })
+        });
+        Panel {
+            title: format!("Poses that take longer: {}", QUESTIONS[question]),
+            across: Axis::ten("wall time of one pose, µs"),
+            up: Axis::ten("share of the path"),
+            series: series.collect(),
+        }
+    };
+    vec![panel(0), panel(1)]
+}
