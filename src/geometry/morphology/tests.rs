@@ -135,7 +135,7 @@ fn one_pose_moves_the_solid() {
         in_cube([x - 1.0, y, z - 2.0], 1.0)
     };
     check(&product(&solid, &[pose], &OPTIONS).unwrap(), 1.0, 1.0, inside);
-    check(&quotient(&solid, &[pose], &OPTIONS).unwrap(), 1.0, 2.0, inside);
+    check(&quotient(&solid, &[pose], &OPTIONS).unwrap(), 1.0, 2.5, inside);
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! Connected regions of the space that a union of balls leaves free, in a padded box about it.
 //!
-//! Free nodes of the grid are joined to neighbours, along edges and diagonals, where the whole way is free: seen at points
-//! between which the distance to the balls leaves no room for one. A wall thinner than the spacing therefore separates. A gap narrower
-//! than the spacing may be missed, so that the count belongs to the grid.
+//! Free nodes of the grid are joined to neighbours, along edges and diagonals, where the whole way is free: seen at
+//! points between which the distance to the balls leaves no room for one. So a wall thinner than the spacing separates,
+//! down to a hundredth of it. A gap narrower than the spacing may be missed: the count belongs to the grid.
 
 use knotdock_structures::sampling::ball_tree::BallTree;
 
 use crate::geometry::ball_field::BallField;
 
-/// Halvings of an edge at most: what is then still in doubt counts as closed.
+/// Halvings of an edge at most: between points so near, all of them free, nothing counts as closed.
 const HALVINGS: u32 = 6;
 
 /// Steps to the neighbours of a node, one of each opposite two: along edges and diagonals, so that some step leads away
@@ -87,10 +87,8 @@ fn is_free(tree: &BallTree, a: [f64; 3], b: [f64; 3], length: f64, halvings: u32
     if distance >= half {
         return true;
     }
-    distance > 0.0
-        && halvings > 0
-        && is_free(tree, a, middle, half, halvings - 1)
-        && is_free(tree, middle, b, half, halvings - 1)
+    let is_free = |from, to| is_free(tree, from, to, half, halvings - 1);
+    distance > 0.0 && (halvings == 0 || is_free(a, middle) && is_free(middle, b))
 }
 
 /// Sets of numbers that are joined two by two; the least number of a set stands for it.
