@@ -37,8 +37,8 @@ mod ways_measured;
 mod whole;
 
 use clap::Parser;
-use scene::Scene;
 use knotdock::geometry::gap::spectrum::Kernel;
+use scene::Scene;
 use std::error::Error;
 use std::fs;
 use std::io;

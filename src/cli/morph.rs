@@ -111,7 +111,12 @@ struct Common {
     #[command(flatten)]
     solids: SolidArguments,
     /// Nodes of the grid on which complements are sampled by balls, as 2^15 or 32768.
-    #[arg(long, value_name = "M", default_value = "2^15", help_heading = "Solids")]
+    #[arg(
+        long,
+        value_name = "M",
+        default_value = "2^15",
+        help_heading = "Solids"
+    )]
     complement_grid: SampleGrid,
     #[command(flatten)]
     machine: MachineOptions,
@@ -232,7 +237,12 @@ fn result(
         (Operation::Difference(_), [a, b, ..]) => difference(a, b, options),
         (Operation::Product(_), [a, ..]) => product(a, poses, options),
         (Operation::Quotient(_), [a, ..]) => quotient(a, poses, options),
-        (Operation::Sweep { step, tolerance, .. }, [a, ..]) => {
+        (
+            Operation::Sweep {
+                step, tolerance, ..
+            },
+            [a, ..],
+        ) => {
             let (low, high) = a.bounds();
             let edges = (0..3).map(|axis| high[axis] - low[axis]);
             let sweeping = SweepOptions {

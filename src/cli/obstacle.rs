@@ -53,7 +53,12 @@ pub struct Obstacle {
     rotations: Option<usize>,
     /// Length added to each radius, another slice of the lifted obstacle: a clearance, or, below zero, an overlap that
     /// is allowed.
-    #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     offset: f64,
     /// Write no ball that lies in another one; without it the table holds a ball for each pair.
     #[arg(long)]
@@ -89,7 +94,10 @@ impl Obstacle {
             return Err(Failure::input("--offset is not a finite number")
                 .remedy("give a length in the unit of the files"));
         }
-        let allowed = self.machine.memory.or_else(crate::cli::arguments::memory::default_limit);
+        let allowed = self
+            .machine
+            .memory
+            .or_else(crate::cli::arguments::memory::default_limit);
         let turned = match &self.rotation {
             Some(text) => rotation(text)?,
             None => Pose::identity(),
@@ -210,8 +218,13 @@ impl Obstacle {
             range(|found| found.volumes.inner.0),
             range(|found| found.volumes.outer.0),
         ));
-        let caged = rows.iter().filter(|(_, found)| found.regions[0] > 1).count();
-        console.say(format!("  {caged} rotations leave more than one free region about the inner balls"));
+        let caged = rows
+            .iter()
+            .filter(|(_, found)| found.regions[0] > 1)
+            .count();
+        console.say(format!(
+            "  {caged} rotations leave more than one free region about the inner balls"
+        ));
         let objects = rows.iter().map(|(quaternion, found)| {
             let mut object = found.object();
             object["quaternion"] = json!(quaternion);
@@ -238,8 +251,10 @@ fn gap(
     console: Console,
 ) -> Result<Vec<GapWay>, Failure> {
     if per_axis > MAX_GAP_GRID {
-        return Err(Failure::input(format!("--gap-grid {per_axis} is more than {MAX_GAP_GRID}"))
-            .remedy(format!("give at most {MAX_GAP_GRID}")));
+        return Err(
+            Failure::input(format!("--gap-grid {per_axis} is more than {MAX_GAP_GRID}"))
+                .remedy(format!("give at most {MAX_GAP_GRID}")),
+        );
     }
     let per_axis = per_axis.max(16).next_multiple_of(4);
     // The mirror image of -R B is R B.
@@ -256,9 +271,11 @@ fn gap(
     ));
     for way in &ways {
         let modes = way.modes.map_or("-".to_owned(), |modes| modes.to_string());
-        let apart = way.hausdorff.map_or("-".to_owned(), |apart| format!("{apart:.4e}"));
+        let farthest = way
+            .hausdorff
+            .map_or("-".to_owned(), |error| format!("{error:.4e}"));
         console.say(format!(
-            "  {:<28}{modes:>10}{:>13.4e}{:>13.2e}{apart:>13}",
+            "  {:<28}{modes:>10}{:>13.4e}{:>13.2e}{farthest:>13}",
             way.name, way.seconds, way.residual
         ));
     }

@@ -82,14 +82,20 @@ const MAX_POSES: usize = 10_000_000;
 impl PoseOutput {
     fn write(&self, poses: &[Pose], console: Console) -> Result<(), Failure> {
         write_list(&self.output, poses)?.place()?;
-        console.say(format!("Wrote {} poses to {}", poses.len(), self.output.display()));
+        console.say(format!(
+            "Wrote {} poses to {}",
+            poses.len(),
+            self.output.display()
+        ));
         Ok(())
     }
 
     fn check(&self, count: usize) -> Result<(), Failure> {
         if count > MAX_POSES {
-            return Err(Failure::input(format!("{count} poses are more than {MAX_POSES}"))
-                .remedy(format!("take at most {MAX_POSES}")));
+            return Err(
+                Failure::input(format!("{count} poses are more than {MAX_POSES}"))
+                    .remedy(format!("take at most {MAX_POSES}")),
+            );
         }
         check_output(&self.output, std::iter::empty::<&Path>(), self.force)
     }
@@ -102,12 +108,12 @@ impl Se3 {
             Question::Distance { first, second } => {
                 let [p, q] = [pose(first)?, pose(second)?];
                 let shift = (q.translation - p.translation).norm();
-                let (turn, apart) = (angle(&p, &q), distance(&p, &q));
+                let (turn, length) = (angle(&p, &q), distance(&p, &q));
                 console.say(format!(
-                    "Distance {apart:?}: angle {turn:?} radians ({:?} degrees), shift {shift:?}",
+                    "Distance {length:?}: angle {turn:?} radians ({:?} degrees), shift {shift:?}",
                     turn.to_degrees()
                 ));
-                console.result(&json!({ "distance": apart, "angle": turn, "shift": shift }))
+                console.result(&json!({ "distance": length, "angle": turn, "shift": shift }))
             }
             Question::Interpolate {
                 first,

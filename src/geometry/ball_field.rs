@@ -80,16 +80,20 @@ impl BallField {
         let nx = grid.shape[0];
         let step = grid.spacing * (1.0 + 1e-9);
         let mut depth = vec![0.0f32; grid.nodes()];
-        depth.par_chunks_mut(nx).enumerate().for_each(|(row, depths)| {
-            let [_, y, z] = grid.numbers(row * nx);
-            // No step along the row adds more than its length to the distance.
-            let mut most = f64::INFINITY;
-            for (x, depth) in depths.iter_mut().enumerate() {
-                let distance = tree.distance_within(grid.place([x, y, z]), f64::NEG_INFINITY, most);
-                most = distance + step;
-                *depth = -distance as f32;
-            }
-        });
+        depth
+            .par_chunks_mut(nx)
+            .enumerate()
+            .for_each(|(row, depths)| {
+                let [_, y, z] = grid.numbers(row * nx);
+                // No step along the row adds more than its length to the distance.
+                let mut most = f64::INFINITY;
+                for (x, depth) in depths.iter_mut().enumerate() {
+                    let distance =
+                        tree.distance_within(grid.place([x, y, z]), f64::NEG_INFINITY, most);
+                    most = distance + step;
+                    *depth = -distance as f32;
+                }
+            });
         Self { grid, depth }
     }
 

@@ -19,7 +19,13 @@ pub fn surface(field: &BallField, origin: [f64; 3]) -> Surface {
         .map(|depth| -depth / grid.spacing as f32)
         .collect();
     let mut nets = SurfaceNetsBuffer::default();
-    surface_nets(&distances, &shape, [0; 3], size.map(|count| count - 1), &mut nets);
+    surface_nets(
+        &distances,
+        &shape,
+        [0; 3],
+        size.map(|count| count - 1),
+        &mut nets,
+    );
     let place = |position: &[f32; 3]| {
         [0, 1, 2].map(|axis| {
             let number = f64::from(position[axis]);

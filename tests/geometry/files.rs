@@ -20,12 +20,27 @@ fn the_obstacle_of_two_balls_is_a_ball_in_every_format() {
     let found = object(
         folder.path(),
         &[
-            "obstacle", "large.csv", "small.csv", "--reduce", "-o", "o.csv", "--surface", "o.stl",
-            "--volume-grid", "o.mrc", "--picture", "o.svg", "--cells", "32",
+            "obstacle",
+            "large.csv",
+            "small.csv",
+            "--reduce",
+            "-o",
+            "o.csv",
+            "--surface",
+            "o.stl",
+            "--volume-grid",
+            "o.mrc",
+            "--picture",
+            "o.svg",
+            "--cells",
+            "32",
         ],
     );
     for set in ["inner", "outer"] {
-        assert!((volume(&found, set) / ball(2.5) - 1.0).abs() < 5e-3, "{found}");
+        assert!(
+            (volume(&found, set) / ball(2.5) - 1.0).abs() < 5e-3,
+            "{found}"
+        );
         assert_eq!(found[set]["free_regions"], 1);
     }
     assert_eq!(found["epsilon"], 0.0);
@@ -45,19 +60,43 @@ fn the_obstacle_of_two_balls_is_a_ball_in_every_format() {
 fn a_ball_in_a_hollow_is_caged() {
     let folder = folder();
     fs::write(folder.path().join("tiny.csv"), "x,y,z,r\n0,0,0,0.3\n").unwrap();
-    let found = object(folder.path(), &["obstacle", "shell.csv", "tiny.csv", "--cells", "32"]);
+    let found = object(
+        folder.path(),
+        &["obstacle", "shell.csv", "tiny.csv", "--cells", "32"],
+    );
     assert_eq!(found["outer"]["free_regions"], 2);
     let rows = object(
         folder.path(),
-        &["obstacle", "shell.csv", "tiny.csv", "--cells", "24", "--rotations", "4", "-o", "t.csv"],
+        &[
+            "obstacle",
+            "shell.csv",
+            "tiny.csv",
+            "--cells",
+            "24",
+            "--rotations",
+            "4",
+            "-o",
+            "t.csv",
+        ],
     );
     assert_eq!(rows["rotations"].as_array().unwrap().len(), 4);
     let table = fs::read_to_string(folder.path().join("t.csv")).unwrap();
-    assert!(table.lines().skip(1).all(|row| row.ends_with(",2,2")), "{table}");
+    assert!(
+        table.lines().skip(1).all(|row| row.ends_with(",2,2")),
+        "{table}"
+    );
     // A clearance larger than the hollow leaves the outside alone.
     let found = object(
         folder.path(),
-        &["obstacle", "shell.csv", "tiny.csv", "--cells", "32", "--offset", "0.6"],
+        &[
+            "obstacle",
+            "shell.csv",
+            "tiny.csv",
+            "--cells",
+            "32",
+            "--offset",
+            "0.6",
+        ],
     );
     assert_eq!(found["inner"]["free_regions"], 1);
 }
@@ -65,8 +104,15 @@ fn a_ball_in_a_hollow_is_caged() {
 #[test]
 fn without_reduction_every_pair_is_written() {
     let folder = folder();
-    for (options, rows) in [(&["-o", "all.csv"][..], 600), (&["-o", "few.csv", "--reduce"], 1)] {
-        let command = [&["obstacle", "shell.csv", "large.csv", "--cells", "16"], options].concat();
+    for (options, rows) in [
+        (&["-o", "all.csv"][..], 600),
+        (&["-o", "few.csv", "--reduce"], 1),
+    ] {
+        let command = [
+            &["obstacle", "shell.csv", "large.csv", "--cells", "16"],
+            options,
+        ]
+        .concat();
         object(folder.path(), &command);
         let table = fs::read_to_string(folder.path().join(options[1])).unwrap();
         assert!(table.lines().count() > rows, "{options:?}");
@@ -87,14 +133,29 @@ fn operations_bracket_what_is_known() {
         (format!("open large.csv small.csv {grid}"), ball(2.0)),
         (format!("close large.csv small.csv {grid}"), ball(2.0)),
         ("offset large.csv --distance 0.5".to_owned(), ball(2.5)),
-        (format!("offset large.csv --distance -0.5 {grid}"), ball(1.5)),
-        ("sweep small.csv --path line.csv --step 0.1".to_owned(), ball(0.5) + 3.0 * PI * 0.25),
-        ("product small.csv --poses line.csv".to_owned(), 2.0 * ball(0.5)),
-        (format!("quotient large.csv --poses line.csv {grid}"), PI * (8.0 + 3.0) / 12.0),
+        (
+            format!("offset large.csv --distance -0.5 {grid}"),
+            ball(1.5),
+        ),
+        (
+            "sweep small.csv --path line.csv --step 0.1".to_owned(),
+            ball(0.5) + 3.0 * PI * 0.25,
+        ),
+        (
+            "product small.csv --poses line.csv".to_owned(),
+            2.0 * ball(0.5),
+        ),
+        (
+            format!("quotient large.csv --poses line.csv {grid}"),
+            PI * (8.0 + 3.0) / 12.0,
+        ),
     ] {
         let found = run(&command);
         let [low, high] = ["inner", "outer"].map(|set| volume(&found, set));
-        assert!(low <= 1.005 * exact && 0.995 * exact <= high, "{command}: {low} {exact} {high}");
+        assert!(
+            low <= 1.005 * exact && 0.995 * exact <= high,
+            "{command}: {low} {exact} {high}"
+        );
         assert!(found["operation"].is_string());
     }
 }
@@ -108,16 +169,38 @@ fn poses_are_measured_and_written() {
     assert!((found["distance"].as_f64().unwrap() - exact).abs() < 1e-12);
     object(
         folder.path(),
-        &["se3", "interpolate", "1,0,0,0,0,0,0", half, "--steps", "4", "-o", "path.csv"],
+        &[
+            "se3",
+            "interpolate",
+            "1,0,0,0,0,0,0",
+            half,
+            "--steps",
+            "4",
+            "-o",
+            "path.csv",
+        ],
     );
     object(
         folder.path(),
-        &["se3", "ball", "-1,0,0,0,-2,0,0", "--radius", "0.1", "--count", "20", "-o", "ball.csv"],
+        &[
+            "se3",
+            "ball",
+            "-1,0,0,0,-2,0,0",
+            "--radius",
+            "0.1",
+            "--count",
+            "20",
+            "-o",
+            "ball.csv",
+        ],
     );
     for (name, rows) in [("path.csv", 5), ("ball.csv", 20)] {
         let table = fs::read_to_string(folder.path().join(name)).unwrap();
         assert_eq!(table.lines().count(), rows + 1);
-        object(folder.path(), &["morph", "product", "small.csv", "--poses", name]);
+        object(
+            folder.path(),
+            &["morph", "product", "small.csv", "--poses", name],
+        );
     }
     assert!(run(folder.path(), &["se3", "--help"]).status.success());
 }
@@ -129,8 +212,18 @@ fn results_are_the_same_on_any_number_of_threads() {
     let written = |threads: &str| {
         let name = format!("{threads}.csv");
         let command = [
-            "morph", "difference", "shell.csv", "small.csv", "--set", "outer", "--complement-grid",
-            "2^12", "-j", threads, "-o", &name,
+            "morph",
+            "difference",
+            "shell.csv",
+            "small.csv",
+            "--set",
+            "outer",
+            "--complement-grid",
+            "2^12",
+            "-j",
+            threads,
+            "-o",
+            &name,
         ];
         object(folder.path(), &command);
         fs::read(folder.path().join(name)).unwrap()

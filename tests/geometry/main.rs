@@ -35,9 +35,16 @@ fn folder() -> tempfile::TempDir {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 600.0;
         let angle = 2.399_963_229_728_653 * f64::from(i);
         let across = (1.0 - z * z).sqrt();
-        shell += &format!("{},{},{z},0.2\n", across * angle.cos(), across * angle.sin());
+        shell += &format!(
+            "{},{},{z},0.2\n",
+            across * angle.cos(),
+            across * angle.sin()
+        );
     }
     write("shell.csv", &shell);
-    write("line.csv", "qw,qx,qy,qz,tx,ty,tz\n1,0,0,0,0,0,0\n1,0,0,0,3,0,0\n");
+    write(
+        "line.csv",
+        "qw,qx,qy,qz,tx,ty,tz\n1,0,0,0,0,0,0\n1,0,0,0,3,0,0\n",
+    );
     folder
 }

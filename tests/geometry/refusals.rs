@@ -9,7 +9,10 @@ fn bad_input_is_refused_with_a_remedy() {
     let folder = folder();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("empty.csv", "qw,qx,qy,qz,tx,ty,tz\n");
-    write("broken.csv", "qw,qx,qy,qz,tx,ty,tz\n1,0,0,0,0,0,0\n1,0,0,0,0,x,0\n");
+    write(
+        "broken.csv",
+        "qw,qx,qy,qz,tx,ty,tz\n1,0,0,0,0,0,0\n1,0,0,0,0,x,0\n",
+    );
     write("there.csv", "mine");
     let before = fs::read_dir(folder.path()).unwrap().count();
     for (command, said) in [
@@ -17,20 +20,32 @@ fn bad_input_is_refused_with_a_remedy() {
         ("obstacle large.csv small.csv --rotation 1,0,0", "four"),
         ("obstacle large.csv small.csv --rotation 0,0,0,0", "length"),
         ("obstacle large.csv small.csv --offset nan", "finite"),
-        ("obstacle large.csv small.csv --surface o.off", ".obj, .stl or .ply"),
+        (
+            "obstacle large.csv small.csv --surface o.off",
+            ".obj, .stl or .ply",
+        ),
         ("obstacle large.csv small.csv --volume-grid o.vti", ".nrrd"),
         ("obstacle large.csv small.csv --picture o.png", ".svg"),
         ("obstacle large.csv small.csv -o there.csv", "--force"),
         ("obstacle large.csv small.csv -o large.csv --force", "read"),
         ("obstacle large.csv small.csv --cells 100000", "512"),
-        ("obstacle large.csv small.csv -o a.csv --surface nowhere/a.obj", "nowhere"),
+        (
+            "obstacle large.csv small.csv -o a.csv --surface nowhere/a.obj",
+            "nowhere",
+        ),
         ("morph sweep small.csv --path empty.csv", "no poses"),
         ("morph product small.csv --poses broken.csv", "line 3"),
         ("morph offset small.csv --distance inf", "finite"),
-        ("morph difference large.csv small.csv -o a.csv --surface a.csv", "--surface"),
+        (
+            "morph difference large.csv small.csv -o a.csv --surface a.csv",
+            "--surface",
+        ),
         ("se3 distance 1,0,0,0,0,0 1,0,0,0,0,0,0", "seven"),
         ("se3 ball 1,0,0,0,0,0,0 --radius -1 -o b.csv", "--radius"),
-        ("se3 ball 1,0,0,0,0,0,0 --radius 1 --count 99999999999 -o b.csv", "at most"),
+        (
+            "se3 ball 1,0,0,0,0,0,0 --radius 1 --count 99999999999 -o b.csv",
+            "at most",
+        ),
     ] {
         let words: Vec<&str> = command.split(' ').collect();
         let output = run(folder.path(), &words);
@@ -42,7 +57,10 @@ fn bad_input_is_refused_with_a_remedy() {
         assert!(object["error"]["message"].is_string(), "{command}");
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before);
-    assert_eq!(fs::read_to_string(folder.path().join("there.csv")).unwrap(), "mine");
+    assert_eq!(
+        fs::read_to_string(folder.path().join("there.csv")).unwrap(),
+        "mine"
+    );
 }
 
 /// The pairs are counted before any of them is made.
@@ -57,6 +75,9 @@ fn memory_is_refused_before_the_work() {
         let output = run(folder.path(), &words);
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains("--memory") && error.contains("--grid"), "{error}");
+        assert!(
+            error.contains("--memory") && error.contains("--grid"),
+            "{error}"
+        );
     }
 }

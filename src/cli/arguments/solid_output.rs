@@ -70,10 +70,15 @@ fn unknown(option: &str, path: &Path, endings: &str) -> Failure {
 impl SolidOutput {
     /// Checks, before any work, that the files to write are none of those `read`, and can be made.
     pub fn check(&self, read: &[&Path], allowed: Option<u64>) -> Result<(), Failure> {
-        let files: Vec<&PathBuf> = [&self.output, &self.surface, &self.volume_grid, &self.picture]
-            .into_iter()
-            .flatten()
-            .collect();
+        let files: Vec<&PathBuf> = [
+            &self.output,
+            &self.surface,
+            &self.volume_grid,
+            &self.picture,
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
         for (index, file) in files.iter().enumerate() {
             if files[..index].iter().any(|other| is_same(other, file)) {
                 return Err(Failure::input("the same file is named twice")
@@ -90,17 +95,25 @@ impl SolidOutput {
         if let Some(path) = &self.volume_grid
             && VolumeFormat::of(path).is_none()
         {
-            return Err(unknown("volume-grid", path, ".mrc, .map, .ccp4, .nrrd or .vtk"));
+            return Err(unknown(
+                "volume-grid",
+                path,
+                ".mrc, .map, .ccp4, .nrrd or .vtk",
+            ));
         }
         if let Some(path) = &self.picture
-            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+            && !path
+                .extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
             && !is_stream(path)
         {
             return Err(unknown("picture", path, ".svg"));
         }
         if self.cells > MAX_CELLS {
-            return Err(Failure::input(format!("--cells {} is more than {MAX_CELLS}", self.cells))
-                .remedy(format!("give at most {MAX_CELLS}")));
+            return Err(
+                Failure::input(format!("--cells {} is more than {MAX_CELLS}", self.cells))
+                    .remedy(format!("give at most {MAX_CELLS}")),
+            );
         }
         let needed = BYTES_A_NODE * (self.cells as u64 + 6).pow(3);
         match allowed {
@@ -125,10 +138,14 @@ impl SolidOutput {
     pub fn write(&self, solid: &Bracket, table: Option<Knots>) -> Result<Vec<String>, Failure> {
         let balls = self.chosen(solid);
         let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
-        let wants_any = self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
+        let wants_any =
+            self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
         if balls.is_empty() && wants_any {
-            return Err(Failure::other("no ball of the result is left to write")
-                .remedy("sample on a finer --grid and --complement-grid, or write the other --set"));
+            return Err(
+                Failure::other("no ball of the result is left to write").remedy(
+                    "sample on a finer --grid and --complement-grid, or write the other --set",
+                ),
+            );
         }
         if let Some(path) = &self.output {
             let knots = match table {
@@ -211,7 +228,12 @@ impl Volumes {
     /// Reports them under the name of the result.
     pub fn describe(&self, name: &str, solid: &Bracket, console: Console) {
         let set = |balls: &[Ball], (value, error): (f64, f64)| {
-            format!("{} balls, volume {} ± {}", balls.len(), Figure(value), Figure(error))
+            format!(
+                "{} balls, volume {} ± {}",
+                balls.len(),
+                Figure(value),
+                Figure(error)
+            )
         };
         console.say(format!(
             "\n{name}:\n  inner: {}\n  outer: {}",
@@ -224,15 +246,14 @@ impl Volumes {
                 Figure(solid.epsilon)
             )
         } else {
-            "  No point is known to be inside; a finer --grid and --complement-grid may find one".to_owned()
+            "  No point is known to be inside; a finer --grid and --complement-grid may find one"
+                .to_owned()
         });
     }
 
     /// The result for JSON.
     pub fn object(&self, solid: &Bracket) -> Value {
-        let set = |balls: &[Ball], (value, error): (f64, f64)| {
-            json!({ "balls": balls.len(), "volume": value, "volume_error": error })
-        };
+        let set = |balls: &[Ball], (value, error): (f64, f64)| json!({ "balls": balls.len(), "volume": value, "volume_error": error });
         json!({
             "inner": set(&solid.inner, self.inner),
             "outer": set(&solid.outer, self.outer),

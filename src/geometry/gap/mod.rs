@@ -21,8 +21,8 @@ pub mod ways;
 
 use std::time::Instant;
 
-use knotdock_scoring::kernel::product::{Band, ProductKernel};
 use knotdock_scoring::kernel::KernelOptions;
+use knotdock_scoring::kernel::product::{Band, ProductKernel};
 use knotdock_scoring::transform::modes::place;
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_structures::sampling::Ball;
@@ -41,7 +41,7 @@ use ways::{PlanningError, Points, direct, fast_3d, plan_3d};
 const CHECKED: usize = 24;
 /// Pairs of balls that are summed for the reference at most.
 const MAX_PAIRS: usize = 4_000_000;
-/// Error of NDFT and NFFT that is asked for, as a share of the value at frequency zero.
+/// Error of NDFT and NFFT that is allowed, as a share of the value at frequency zero.
 const TOLERANCE: f64 = 1e-6;
 
 /// One way, with its time and its error.
@@ -111,7 +111,10 @@ pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<
     let fft_seconds = start.elapsed().as_secs_f64();
     let peak = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let residual = |values: &[f64]| {
-        let errors = points.iter().zip(&exact).map(|(&at, exact)| (values[at] - exact).abs());
+        let errors = points
+            .iter()
+            .zip(&exact)
+            .map(|(&at, exact)| (values[at] - exact).abs());
         errors.fold(0.0, f64::max) / peak
     };
     let all = (per_axis - 1).pow(3);
@@ -150,7 +153,11 @@ pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<
         let mut small = truncation.buffers();
         // With both spectra known: the modes kept, multiplied and transformed back on the least grid that holds them.
         let start = Instant::now();
-        truncation.multiply(&scene.grid, spectra.each_ref().map(Vec::as_slice), &mut small);
+        truncation.multiply(
+            &scene.grid,
+            spectra.each_ref().map(Vec::as_slice),
+            &mut small,
+        );
         truncation.inverse(&mut small);
         let seconds = start.elapsed().as_secs_f64();
         let mut kept = vec![Complex64::default(); product.len()];
@@ -193,7 +200,11 @@ impl Scene {
     fn translation(&self, point: usize) -> [f64; 3] {
         let n = self.grid.per_axis;
         [point / (n * n), point / n % n, point % n].map(|number| {
-            let signed = if number >= n / 2 { number as f64 - n as f64 } else { number as f64 };
+            let signed = if number >= n / 2 {
+                number as f64 - n as f64
+            } else {
+                number as f64
+            };
             signed * self.edge / n as f64
         })
     }
@@ -314,7 +325,9 @@ impl Scene {
         let [a, b] = [balls(&self.bodies[0], 1.0), balls(&self.bodies[1], -1.0)];
         let tree = BallTree::new(&reduced_sum(&PairSums::new(&a, &b, 0.0)));
         let points = 0..self.grid.per_axis.pow(3);
-        points.map(|point| tree.contains(self.translation(point))).collect()
+        points
+            .map(|point| tree.contains(self.translation(point)))
+            .collect()
     }
 
     /// How far a blocked point lies from those whose value exceeds `level`, at most; `None` where none does.

@@ -82,7 +82,9 @@ impl Cube {
 pub fn needed_in(cube: &Cube, balls: impl Iterator<Item = Ball>) -> Vec<Ball> {
     let mut cells = HeldCells::new(cube.grid());
     let by = cube.center.map(|part| -part);
-    balls.filter(|ball| cells.takes(&shifted(ball, by))).collect()
+    balls
+        .filter(|ball| cells.takes(&shifted(ball, by)))
+        .collect()
 }
 
 /// The distance to a union of balls at the nodes of a grid; infinite without balls. Up to `enough` it says no more than

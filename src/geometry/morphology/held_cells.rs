@@ -94,7 +94,13 @@ impl HeldCells {
 fn mask(from: usize, to: usize, word: usize) -> u64 {
     let low = from.saturating_sub(64 * word).min(64);
     let high = to.saturating_sub(64 * word).min(64);
-    let below = |count: usize| if count >= 64 { u64::MAX } else { (1 << count) - 1 };
+    let below = |count: usize| {
+        if count >= 64 {
+            u64::MAX
+        } else {
+            (1 << count) - 1
+        }
+    };
     below(high) & !below(low)
 }
 
@@ -119,7 +125,12 @@ mod tests {
                 false => left.push(ball),
             }
         }
-        assert!(left.len() > 500 && taken.len() > 100, "{} {}", left.len(), taken.len());
+        assert!(
+            left.len() > 500 && taken.len() > 100,
+            "{} {}",
+            left.len(),
+            taken.len()
+        );
         for ball in &left {
             for number in 0..200 {
                 let z = 1.0 - (2.0 * f64::from(number) + 1.0) / 200.0;

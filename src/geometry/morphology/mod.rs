@@ -31,7 +31,9 @@ use difference::difference;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MorphologyError {
     /// More balls come about than memory has room for.
-    #[error("{balls} balls come about, which need {needed} bytes of memory, and {allowed} are allowed")]
+    #[error(
+        "{balls} balls come about, which need {needed} bytes of memory, and {allowed} are allowed"
+    )]
     Memory {
         /// Balls before any is dropped.
         balls: u64,

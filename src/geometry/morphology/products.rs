@@ -84,7 +84,9 @@ pub fn quotient(
             outer: outside,
             epsilon: 0.0,
         };
-        let moved = poses.iter().flat_map(|pose| outside.moved(pose).about(origin).outer);
+        let moved = poses
+            .iter()
+            .flat_map(|pose| outside.moved(pose).about(origin).outer);
         let balls = needed_in(&result, moved);
         options.room_for(balls.len() as u64).map(|()| balls)
     };

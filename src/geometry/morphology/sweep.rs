@@ -50,7 +50,9 @@ fn samples(path: &[Pose], reach: f64, step: f64) -> Samples {
             if let Some(last) = found.steps.last_mut() {
                 *last = (last.0.max(one.0), last.1.max(one.1));
             }
-            found.poses.push(interpolated(&pair[0], &pair[1], number as f64 / count));
+            found
+                .poses
+                .push(interpolated(&pair[0], &pair[1], number as f64 / count));
             found.steps.push(one);
         }
     }

@@ -55,18 +55,29 @@ fn check(found: &Bracket, exact: f64, width: f64, is_in: impl Fn([f64; 3]) -> bo
         let place = [0, 1, 2].map(|axis| low[axis] + share[axis] * (high[axis] - low[axis]));
         let point = [0, 1, 2].map(|axis| place[axis] + found.origin[axis]);
         let is_in = is_in(point);
-        assert!(is_in || inner.distance(place, f64::NEG_INFINITY) > -1e-9, "{point:?}");
-        assert!(!is_in || outer.distance(place, f64::NEG_INFINITY) < 1e-9, "{point:?}");
+        assert!(
+            is_in || inner.distance(place, f64::NEG_INFINITY) > -1e-9,
+            "{point:?}"
+        );
+        assert!(
+            !is_in || outer.distance(place, f64::NEG_INFINITY) < 1e-9,
+            "{point:?}"
+        );
     }
     let [(low, low_error), (high, high_error)] = [&found.inner, &found.outer].map(|b| volume(b));
-    assert!(low - 4.0 * low_error <= exact && exact <= high + 4.0 * high_error, "{low} {exact} {high}");
+    assert!(
+        low - 4.0 * low_error <= exact && exact <= high + 4.0 * high_error,
+        "{low} {exact} {high}"
+    );
     assert!(high - low <= width * exact, "{low} {exact} {high}");
 }
 
 #[test]
 fn a_cube_less_a_ball_is_a_smaller_cube() {
     let found = difference(&cube([7.0, 0.0, -2.0], 1.0), &Bracket::ball(0.2), &OPTIONS).unwrap();
-    check(&found, 0.216, 4.0, |[x, y, z]| in_cube([x - 7.0, y, z + 2.0], 0.6));
+    check(&found, 0.216, 4.0, |[x, y, z]| {
+        in_cube([x - 7.0, y, z + 2.0], 0.6)
+    });
     assert!(found.epsilon < 0.6, "{}", found.epsilon);
     let shrunk = offset(&cube([7.0, 0.0, -2.0], 1.0), -0.2, &OPTIONS).unwrap();
     assert_eq!(shrunk, found);
@@ -75,7 +86,9 @@ fn a_cube_less_a_ball_is_a_smaller_cube() {
 #[test]
 fn a_cube_less_a_cube_is_a_cube() {
     let found = difference(&cube([1.0; 3], 1.0), &cube([0.5; 3], 0.4), &OPTIONS).unwrap();
-    check(&found, 0.216, 4.0, |point| in_cube(point.map(|x| x - 0.5), 0.6));
+    check(&found, 0.216, 4.0, |point| {
+        in_cube(point.map(|x| x - 0.5), 0.6)
+    });
 }
 
 #[test]
@@ -88,7 +101,9 @@ fn nothing_is_left_of_a_cube_less_a_larger_one() {
 fn opening_a_ball_leaves_it_and_opening_a_cube_rounds_it() {
     let ball = |center: [f64; 3], radius: f64| Bracket::exact(vec![Ball { center, radius }]);
     let found = opened(&ball([3.0; 3], 1.0), &ball([0.1; 3], 0.4), &OPTIONS).unwrap();
-    check(&found, 4.0 / 3.0 * PI, 1.2, |point| norm(point.map(|x| x - 3.0)) <= 1.0);
+    check(&found, 4.0 / 3.0 * PI, 1.2, |point| {
+        norm(point.map(|x| x - 3.0)) <= 1.0
+    });
     let found = opened(&cube([0.0; 3], 1.0), &Bracket::ball(0.25), &OPTIONS).unwrap();
     let (l, r) = (0.5f64, 0.25f64);
     let exact = l.powi(3) + 6.0 * l * l * r + 3.0 * PI * l * r * r + 4.0 / 3.0 * PI * r.powi(3);
@@ -111,7 +126,12 @@ fn closing_fills_a_gap() {
             radius: 0.12,
         }
     });
-    let found = closed(&Bracket::exact(shell.collect()), &Bracket::ball(0.45), &OPTIONS).unwrap();
+    let found = closed(
+        &Bracket::exact(shell.collect()),
+        &Bracket::ball(0.45),
+        &OPTIONS,
+    )
+    .unwrap();
     let tree = BallTree::new(&found.inner);
     assert!(tree.contains([0.0; 3]) && tree.contains([0.2, -0.1, 0.15]));
 }
@@ -134,8 +154,18 @@ fn one_pose_moves_the_solid() {
         let [x, y, z] = pose.inverse().apply(point);
         in_cube([x - 1.0, y, z - 2.0], 1.0)
     };
-    check(&product(&solid, &[pose], &OPTIONS).unwrap(), 1.0, 1.0, inside);
-    check(&quotient(&solid, &[pose], &OPTIONS).unwrap(), 1.0, 2.5, inside);
+    check(
+        &product(&solid, &[pose], &OPTIONS).unwrap(),
+        1.0,
+        1.0,
+        inside,
+    );
+    check(
+        &quotient(&solid, &[pose], &OPTIONS).unwrap(),
+        1.0,
+        2.5,
+        inside,
+    );
 }
 
 #[test]
@@ -147,21 +177,34 @@ fn two_balls_share_a_lens() {
     let poses = [0.0, 0.6].map(|x| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]));
     // Weisstein, "Sphere-Sphere Intersection", MathWorld, eq. 18.
     let exact = PI * (4.0 + 0.6) * (2.0 - 0.6f64).powi(2) / 12.0;
-    check(&quotient(&solid, &poses, &OPTIONS).unwrap(), exact, 1.4, |[x, y, z]| {
-        norm([x - 1e4, y, z]) <= 1.0 && norm([x - 1e4 - 0.6, y, z]) <= 1.0
-    });
+    check(
+        &quotient(&solid, &poses, &OPTIONS).unwrap(),
+        exact,
+        1.4,
+        |[x, y, z]| norm([x - 1e4, y, z]) <= 1.0 && norm([x - 1e4 - 0.6, y, z]) <= 1.0,
+    );
     let far = [0.0, 9.0].map(|x| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]));
     assert!(quotient(&solid, &far, &OPTIONS).unwrap().outer.is_empty());
 }
 
 #[test]
 fn a_ball_on_a_line_sweeps_a_capsule_and_on_a_circle_a_ring() {
-    let ball = |x: f64| Bracket::exact(vec![Ball { center: [x, 0.0, 0.0], radius: 0.5 }]);
-    let options = SweepOptions { step: 0.05, tolerance: 0.0 };
+    let ball = |x: f64| {
+        Bracket::exact(vec![Ball {
+            center: [x, 0.0, 0.0],
+            radius: 0.5,
+        }])
+    };
+    let options = SweepOptions {
+        step: 0.05,
+        tolerance: 0.0,
+    };
     let line = [0.0, 2.0].map(|x| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]));
     let found = sweep(&ball(0.0), &line, &options, &OPTIONS).unwrap();
     let exact = PI * 0.25 * 2.0 + 4.0 / 3.0 * PI * 0.125;
-    check(&found, exact, 0.15, |[x, y, z]| norm([x - x.clamp(0.0, 2.0), y, z]) <= 0.5);
+    check(&found, exact, 0.15, |[x, y, z]| {
+        norm([x - x.clamp(0.0, 2.0), y, z]) <= 0.5
+    });
     assert!((found.epsilon - 0.025).abs() < 1e-12);
     let turn = |quarter: i32| {
         let half = f64::from(quarter) * 0.25 * PI;
@@ -178,11 +221,19 @@ fn a_ball_on_a_line_sweeps_a_capsule_and_on_a_circle_a_ring() {
 #[test]
 fn tolerances_hold_every_pose_of_the_geodesic_ball() {
     use crate::geometry::motion::tolerance::geodesic_ball;
-    let solid = Bracket::exact(vec![Ball { center: [3.0, 0.0, 0.0], radius: 0.5 }]);
+    let solid = Bracket::exact(vec![Ball {
+        center: [3.0, 0.0, 0.0],
+        radius: 0.5,
+    }]);
     let pose = Pose::from_parts([0.9, 0.1, 0.2, -0.3], [1.0, 2.0, 3.0]);
-    let options = SweepOptions { step: 1.0, tolerance: 0.2 };
+    let options = SweepOptions {
+        step: 1.0,
+        tolerance: 0.2,
+    };
     let found = sweep(&solid, &[pose], &options, &OPTIONS).unwrap();
-    let [only] = found.outer.as_slice() else { panic!() };
+    let [only] = found.outer.as_slice() else {
+        panic!()
+    };
     assert!((only.radius - 0.5 - 0.2 * 5.5f64.sqrt()).abs() < 1e-12);
     assert!((found.inner[0].radius - 0.7).abs() < 1e-12);
     for varied in geodesic_ball(&pose, 0.2, 500) {
@@ -193,7 +244,10 @@ fn tolerances_hold_every_pose_of_the_geodesic_ball() {
 
 #[test]
 fn too_many_balls_are_refused_before_they_are_made() {
-    let options = MorphologyOptions { memory: Some(1 << 20), ..OPTIONS };
+    let options = MorphologyOptions {
+        memory: Some(1 << 20),
+        ..OPTIONS
+    };
     let solid = cube([0.0; 3], 1.0);
     assert!(matches!(
         dilated(&solid, &solid, &options),

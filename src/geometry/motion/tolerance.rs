@@ -9,7 +9,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// points spread evenly for any count.
 const RATIO: f64 = 1.112_775_684_278_705_5;
 
-/// `count` poses within `radius` of `center`, the first of which is the centre: the same on every machine, spread evenly
+/// `count` poses within `radius` of `center`, the centre first. They are the same on every machine. They spread evenly
 /// over the ball of tangent vectors (sqrt(2) w, v) that are no longer than the radius, |w| <= pi.
 pub fn geodesic_ball(center: &Pose, radius: f64, count: usize) -> Vec<Pose> {
     let mut poses = Vec::with_capacity(count);
@@ -50,7 +50,9 @@ mod tests {
             let shares: Vec<f64> = shares.collect();
             assert!(shares.iter().all(|&share| share <= 1.0 + 1e-9));
             // In six dimensions half of the volume lies beyond 0.89 of the radius.
-            let beyond = shares.iter().filter(|&&share| share > 0.5f64.powf(1.0 / 6.0));
+            let beyond = shares
+                .iter()
+                .filter(|&&share| share > 0.5f64.powf(1.0 / 6.0));
             let beyond = beyond.count();
             assert!((900..1100).contains(&beyond), "{beyond}");
         }

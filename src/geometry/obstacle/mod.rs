@@ -99,7 +99,12 @@ mod tests {
         };
         let (a, b) = (cloud(60, 1.0), cloud(40, 1.7));
         let rotation = Pose::from_parts([0.9, -0.2, 0.3, 0.1], [0.0; 3]);
-        let found = obstacle(&Bracket::exact(a.clone()), &Bracket::exact(b.clone()), &rotation, 0.0);
+        let found = obstacle(
+            &Bracket::exact(a.clone()),
+            &Bracket::exact(b.clone()),
+            &rotation,
+            0.0,
+        );
         let tree = BallTree::new(&found.inner);
         let mut inside = 0;
         for i in 0..4000 {

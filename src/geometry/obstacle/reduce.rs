@@ -131,7 +131,12 @@ mod tests {
         let sums = PairSums::new(&a, &b, 0.0);
         let all: Vec<Ball> = sums.iter().collect();
         let kept = reduced_sum(&sums);
-        assert!(kept.len() < all.len() / 2, "{} of {}", kept.len(), all.len());
+        assert!(
+            kept.len() < all.len() / 2,
+            "{} of {}",
+            kept.len(),
+            all.len()
+        );
         for ball in &all {
             let slack = ball.grown(-1e-14);
             assert!(kept.iter().any(|other| other.holds(&slack)));

@@ -62,7 +62,13 @@ pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
             }
             let axes = step.iter().filter(|&&part| part != 0).count();
             let length = grid.spacing * (axes as f64).sqrt();
-            if is_free(tree, grid.place(numbers), grid.place(next), length, HALVINGS) {
+            if is_free(
+                tree,
+                grid.place(numbers),
+                grid.place(next),
+                length,
+                HALVINGS,
+            ) {
                 sets.join(node, other);
             }
         }
@@ -72,9 +78,7 @@ pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
         sizes[sets.find(node)] += 1;
     }
     let found = sizes.iter().enumerate().filter(|(_, nodes)| **nodes > 0);
-    let mut regions: Vec<Region> = found
-        .map(|(node, &nodes)| Region { node, nodes })
-        .collect();
+    let mut regions: Vec<Region> = found.map(|(node, &nodes)| Region { node, nodes }).collect();
     regions.sort_by(|a, b| b.nodes.cmp(&a.nodes).then(a.node.cmp(&b.node)));
     regions
 }
@@ -142,7 +146,7 @@ mod tests {
             .collect()
     }
 
-    /// Of a shell the inside is free and apart from the outside, even where its wall is thinner than a cell.
+    /// Of a shell the inside is free and does not reach the outside, even where its wall is thinner than a cell.
     #[test]
     fn a_shell_leaves_two_regions_and_a_solid_one() {
         assert_eq!(count(&shell(0.1), 40), 2);

@@ -62,7 +62,9 @@ pub fn write_ball_picture(
         draw_slices(svg, &outer, &view, HELD);
         draw_slices(svg, &inner, &view, SLICED);
     });
-    panel(&mut svg, 1, &shown_balls(outer.len()), |svg| draw_balls(svg, &outer, &view));
+    panel(&mut svg, 1, &shown_balls(outer.len()), |svg| {
+        draw_balls(svg, &outer, &view)
+    });
     let text = svg.finish();
     StagedFile::write(path, |file| file.write_all(text.as_bytes()))
 }
@@ -122,7 +124,9 @@ fn picture(solid: &Solid, balls: &[Ball]) -> String {
     panel(&mut svg, 2, title, |svg| {
         draw_slice(svg, solid, balls, &view);
     });
-    panel(&mut svg, 3, &shown_balls(balls.len()), |svg| draw_balls(svg, balls, &view));
+    panel(&mut svg, 3, &shown_balls(balls.len()), |svg| {
+        draw_balls(svg, balls, &view)
+    });
     svg.finish()
 }
 

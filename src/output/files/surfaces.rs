@@ -79,7 +79,10 @@ fn write_stl(
             let place = positions.get(corner as usize).copied().unwrap_or_default();
             nalgebra::Vector3::from(place)
         });
-        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let normal = (b - a)
+            .cross(&(c - a))
+            .try_normalize(0.0)
+            .unwrap_or_default();
         for vector in [normal, a, b, c] {
             for part in vector.iter() {
                 file.write_all(&(*part as f32).to_le_bytes())?;
@@ -132,7 +135,11 @@ mod tests {
             staged.place().unwrap();
             let (mesh, report) = knotdock_structures::mesh::read(&path).unwrap();
             assert!(report.is_sound() && report.triangles == 4, "{name}");
-            assert!((mesh.volume() - 1.0).abs() < 1e-6, "{name}: {}", mesh.volume());
+            assert!(
+                (mesh.volume() - 1.0).abs() < 1e-6,
+                "{name}: {}",
+                mesh.volume()
+            );
         }
         assert_eq!(SurfaceFormat::of(Path::new("a.off")), None);
     }

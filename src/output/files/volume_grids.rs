@@ -125,7 +125,12 @@ fn write_mrc(grid: &VolumeGrid, file: &mut dyn Write) -> io::Result<()> {
     header.bytes(54, &[0x44, 0x44, 0, 0]);
     header.bytes(55, &(variance.sqrt() as f32).to_le_bytes());
     header.bytes(56, &1i32.to_le_bytes());
-    let label: Vec<u8> = grid.title.bytes().chain(std::iter::repeat(b' ')).take(80).collect();
+    let label: Vec<u8> = grid
+        .title
+        .bytes()
+        .chain(std::iter::repeat(b' '))
+        .take(80)
+        .collect();
     header.bytes(57, &label);
     file.write_all(&header.0)?;
     for value in grid.values {
@@ -193,7 +198,10 @@ mod tests {
         let float = |number: usize| f32::from_le_bytes(word(number));
         assert_eq!([1, 2, 3, 4, 8, 9, 10].map(integer), [2, 3, 4, 2, 2, 3, 4]);
         assert_eq!([11, 12, 13, 14].map(float), [0.5, 0.75, 1.0, 90.0]);
-        assert_eq!([17, 18, 19, 23, 24, 28].map(integer), [1, 2, 3, 1, 0, 20140]);
+        assert_eq!(
+            [17, 18, 19, 23, 24, 28].map(integer),
+            [1, 2, 3, 1, 0, 20140]
+        );
         assert_eq!([20, 21, 22].map(float), [-3.0, 20.0, 8.5]);
         assert_eq!([50, 51, 52].map(float), [1.5, -2.0, 1e6]);
         assert_eq!((&word(53), word(54)), (b"MAP ", [0x44, 0x44, 0, 0]));
@@ -213,7 +221,11 @@ mod tests {
 
         let vtk = written(VolumeFormat::Vtk);
         let line = b"LOOKUP_TABLE default\n";
-        let start = vtk.windows(line.len()).position(|part| part == line).unwrap() + line.len();
+        let start = vtk
+            .windows(line.len())
+            .position(|part| part == line)
+            .unwrap()
+            + line.len();
         let header = std::str::from_utf8(&vtk[..start]).unwrap();
         assert!(header.contains("\nDIMENSIONS 2 3 4\n") && header.contains("\nPOINT_DATA 24\n"));
         assert_eq!(vtk.len() - start, 4 * 24 + 1);

@@ -66,7 +66,11 @@ pub fn write_list(path: &Path, poses: &[Pose]) -> Result<StagedFile, FileError> 
         writeln!(file, "qw,qx,qy,qz,tx,ty,tz")?;
         for pose in poses {
             let ([w, i, j, k], t) = (pose.quaternion(), pose.translation);
-            writeln!(file, "{w:?},{i:?},{j:?},{k:?},{:?},{:?},{:?}", t.x, t.y, t.z)?;
+            writeln!(
+                file,
+                "{w:?},{i:?},{j:?},{k:?},{:?},{:?},{:?}",
+                t.x, t.y, t.z
+            )?;
         }
         Ok(())
     })

@@ -102,9 +102,7 @@ impl BallTree {
         if node.second == 0 {
             let first = node.first as usize;
             let balls = &self.balls[first..first + node.count as usize];
-            return balls
-                .iter()
-                .any(|other| other.holds(ball) && counts(other));
+            return balls.iter().any(|other| other.holds(ball) && counts(other));
         }
         let halves =
             [at + 1, node.second as usize].map(|half| (half, self.nodes[half].bound(ball.center)));
@@ -225,8 +223,7 @@ mod tests {
         for ball in &balls {
             let larger = balls.iter().any(|other| {
                 let first = other.radius > ball.radius
-                    || other.radius == ball.radius
-                        && compare(other.center, ball.center).is_lt();
+                    || other.radius == ball.radius && compare(other.center, ball.center).is_lt();
                 first && other.holds(ball)
             });
             assert_eq!(tree.holds_before(ball), larger);
