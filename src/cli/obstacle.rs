@@ -180,7 +180,10 @@ impl Obstacle {
         };
         Found {
             volumes: Volumes::of(&solid),
-            regions: [regions(&solid.inner), regions(&solid.outer)],
+            regions: match solid.is_exact() {
+                true => [regions(&solid.inner); 2],
+                false => [regions(&solid.inner), regions(&solid.outer)],
+            },
             solid,
         }
     }

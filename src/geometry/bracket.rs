@@ -1,8 +1,13 @@
 //! A solid between two sets of balls.
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Knots;
 use knotdock_structures::ball_solid::BallSolid;
+use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::sampling::Ball;
+use knotdock_structures::sampling::grid::Grid;
+
+use super::morphology::held_cells::HeldCells;
 
 /// A solid S between balls: S(inner) in S in S(outer). The same holds for the result of every operation here.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +49,11 @@ impl Bracket {
     pub fn ball(radius: f64) -> Self {
         let center = [0.0; 3];
         Self::exact(vec![Ball { center, radius }])
+    }
+
+    /// Whether inner and outer balls are the same, and the solid is their union.
+    pub fn is_exact(&self) -> bool {
+        self.inner == self.outer
     }
 
     /// The box around the outer balls: its lowest and highest corner, relative to the origin.
@@ -112,10 +122,21 @@ pub fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
     })
 }
 
+/// Nodes an axis of the grid by which balls deep in a union are left out of its volume.
+const VOLUME_GRID: usize = 64;
+
 /// Volume of the union of balls and its error, in the cube of their unit; zero without balls.
 pub fn volume(balls: &[Ball]) -> (f64, f64) {
-    use knotdock_structures::{Knots, ball_union::union_volume};
-    let (centers, radii) = balls.iter().map(|ball| (ball.center, ball.radius)).unzip();
+    let (low, high) = bounds(balls);
+    let middle = [0, 1, 2].map(|axis| -0.5 * (low[axis] + high[axis]));
+    let edge = (0..3)
+        .map(|axis| high[axis] - low[axis])
+        .fold(0.0, f64::max);
+    let mut cells = HeldCells::new(Grid::of_edge(edge, VOLUME_GRID));
+    let mut largest_first: Vec<Ball> = balls.iter().map(|ball| shifted(ball, middle)).collect();
+    largest_first.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let needed = largest_first.iter().filter(|ball| cells.takes(ball));
+    let (centers, radii) = needed.map(|ball| (ball.center, ball.radius)).unzip();
     match Knots::new(centers, radii) {
         Ok(knots) => {
             let volume = union_volume(&knots);

@@ -219,10 +219,12 @@ pub struct Volumes {
 impl Volumes {
     /// Measures both.
     pub fn of(solid: &Bracket) -> Self {
-        Self {
-            inner: volume(&solid.inner),
-            outer: volume(&solid.outer),
-        }
+        let inner = volume(&solid.inner);
+        let outer = match solid.is_exact() {
+            true => inner,
+            false => volume(&solid.outer),
+        };
+        Self { inner, outer }
     }
 
     /// Reports them under the name of the result.

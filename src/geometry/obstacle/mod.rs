@@ -43,10 +43,16 @@ pub fn mirrored(solid: &Bracket, rotation: &Pose) -> Bracket {
 
 /// A + B, reduced, with `offset` added to each radius.
 pub fn sum(first: &Bracket, second: &Bracket, offset: f64) -> Bracket {
+    let inner = reduce::reduced_sum(&PairSums::new(&first.inner, &second.inner, offset));
+    // Unions of balls are known exactly: one set is enough.
+    let outer = match first.is_exact() && second.is_exact() {
+        true => inner.clone(),
+        false => reduce::reduced_sum(&PairSums::new(&first.outer, &second.outer, offset)),
+    };
     Bracket {
         origin: [0, 1, 2].map(|axis| first.origin[axis] + second.origin[axis]),
-        inner: reduce::reduced_sum(&PairSums::new(&first.inner, &second.inner, offset)),
-        outer: reduce::reduced_sum(&PairSums::new(&first.outer, &second.outer, offset)),
+        inner,
+        outer,
         epsilon: first.epsilon + second.epsilon,
     }
 }
