@@ -12,6 +12,7 @@ use knotdock_structures::sampling::skeletal_density::share;
 use rayon::prelude::*;
 
 use crate::geometry::bracket::{bounds, shifted};
+use crate::geometry::obstacle::reduce::reduced;
 use crate::plot::svg::{Colour, Svg};
 
 use crate::output::files::whole_file::{FileError, StagedFile};
@@ -59,14 +60,26 @@ pub fn write_ball_picture(
     let mut svg = Svg::new(2.0 * PANEL, PANEL + 24.0);
     let title = "slice of outer balls (grey) and inner balls (orange)";
     panel(&mut svg, 0, title, |svg| {
-        draw_slices(svg, &outer, &view, HELD);
-        draw_slices(svg, &inner, &view, SLICED);
+        draw_slices(svg, &sliced(&outer, &view), &view, HELD);
+        draw_slices(svg, &sliced(&inner, &view), &view, SLICED);
     });
     panel(&mut svg, 1, &shown_balls(outer.len()), |svg| {
         draw_balls(svg, &outer, &view)
     });
     let text = svg.finish();
     StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The circles in which the slice meets balls, as balls on it, without those in another one.
+fn sliced(balls: &[Ball], view: &View) -> Vec<Ball> {
+    let [.., toward] = view.axes;
+    reduced(balls.iter().filter_map(|ball| {
+        let mut center = ball.center;
+        let squared = ball.radius * ball.radius - center[toward] * center[toward];
+        center[toward] = 0.0;
+        let radius = squared.max(0.0).sqrt();
+        (radius > 0.0).then_some(Ball { center, radius })
+    }))
 }
 
 /// The axes and the scale of the picture.
