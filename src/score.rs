@@ -5,6 +5,7 @@ use crate::dock::scene::Scene;
 use crate::error::SearchError;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
@@ -334,7 +335,7 @@ fn exact_sensitivity(
         for radius in &mut ligand.radii {
             *radius += by;
         }
-        ExactSum::of(plan, receptor, &ligand).map(|scorer| scorer.score(pose))
+        ExactScorer::new(plan.kernel(), receptor, &ligand).map(|scorer| scorer.score(pose))
     };
     let (more, less) = (grown(h)?, grown(-h)?);
     let slope = |a: f64, b: f64| (a - b) / (2.0 * h);

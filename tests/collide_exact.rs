@@ -45,7 +45,7 @@ fn poses(parry: &Parry, size: f64, count: usize) -> Vec<Pose> {
             rotation,
             translation: reach * away,
         };
-        if index % 2 == 0 {
+        if index.is_multiple_of(2) {
             return at(0.6 * size * (1.0 + number(index, 5)));
         }
         // Toward the other until the surfaces are close.

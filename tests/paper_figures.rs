@@ -1,6 +1,6 @@
 //! What `cargo bench --bench paper_figures` times is the same thing by every way: whole and truncated correlations,
-//! one configuration, a body's spectrum from a grid and from its balls, and Minkowski sums of balls and of a grid's
-//! nodes. Nothing is timed here.
+//! one configuration, and a body's spectrum from a grid and from its balls. Minkowski sums of balls cover those of a
+//! grid's nodes. Nothing is timed here.
 
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
@@ -296,13 +296,13 @@ fn streamed_sums_are_the_written_ones() {
     let centers = |balls: &[Knot]| -> Vec<Node> { balls.iter().copied().map(center).collect() };
     let nodes = sum(&centers(&first), &centers(&second));
     for place in [[0.0; 3], [0.3, -0.2, 0.1], [2.0, 1.0, -3.0]] {
-        let apart = |center: Node| (Vector3::from(center) - Vector3::from(place)).norm();
-        let gaps = balls.iter().map(|ball| apart(center(*ball)) - ball[3]);
+        let to = |center: Node| (Vector3::from(center) - Vector3::from(place)).norm();
+        let gaps = balls.iter().map(|ball| to(center(*ball)) - ball[3]);
         let gap = gap_of_balls(&first, &second, place);
         assert!((gap - gaps.fold(f64::INFINITY, f64::min)).abs() < 1e-14);
         let least = nodes
             .iter()
-            .map(|node| apart(*node))
+            .map(|node| to(*node))
             .fold(f64::INFINITY, f64::min);
         let gap = gap_of_nodes(&centers(&first), &centers(&second), place);
         assert!((gap - least).abs() < 1e-14);

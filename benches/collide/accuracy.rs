@@ -1,17 +1,15 @@
 //! What accuracy costs: the path with bunnies of 2^9 to 2^21 nodes.
 
-use crate::Setting;
 use crate::measured::Times;
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use knotdock::geometry::collide::contact::Densities;
+use crate::{Setting, densities};
 use knotdock::geometry::collide::{Deadline, Verdict, Workspace};
 use knotdock::plot::chart::{Axis, Panel, Series, Style};
-use knotdock_structures::ball_solid::MeetingPairs;
 use std::error::Error;
 use std::time::Instant;
 
-/// Poses of the path to one that is asked about.
+/// Every how manieth pose of the path is taken.
 const STRIDE: usize = 5;
 /// Runs of each question; the fastest counts.
 const RUNS: usize = 3;
@@ -52,12 +50,12 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let questions = setting.questions(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
     let making = start.elapsed().as_secs_f64();
     let scene = questions.scene();
-    let densities = Densities::new(scene, 2.0)?;
-    let (mut work, mut pairs) = (Workspace::new(), MeetingPairs::default());
+    let densities = densities(scene)?;
+    let mut work = Workspace::new();
     let path = &setting.path;
     let motion = |pose: usize| scene.motion(&path[pose]);
-    let asked = (0..path.len()).step_by(STRIDE);
-    let verdicts = asked.clone().map(|pose| {
+    let taken = (0..path.len()).step_by(STRIDE);
+    let verdicts = taken.clone().map(|pose| {
         scene
             .verdict(&motion(pose), Deadline::NEVER, &mut work)
             .verdict
@@ -65,7 +63,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let undecided = verdicts
         .filter(|verdict| *verdict == Verdict::Undecided)
         .count();
-    let mut bands: Vec<f64> = asked
+    let mut bands: Vec<f64> = taken
         .clone()
         .map(|pose| {
             let bounds = scene.distance(&motion(pose), Deadline::NEVER, &mut work);
@@ -80,7 +78,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
         scene.distance(&motion(pose), Deadline::NEVER, &mut work)
     });
     let force = Times::of(path.len(), STRIDE, RUNS, |pose| {
-        densities.contact(scene, &motion(pose), &mut pairs)
+        densities.contact(scene, &motion(pose), &mut work)
     });
     let spreads = [&verdict, &distance, &force].map(|times| times.spread(|_| true));
     let solid = &scene.solids()[0];
@@ -89,7 +87,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
         epsilon: solid.epsilon() / setting.mesh.extent(),
         balls: solid.inner().len(),
         making,
-        undecided: undecided as f64 / asked.len() as f64,
+        undecided: undecided as f64 / taken.len() as f64,
         band: bands[bands.len() / 2] / setting.mesh.extent(),
         micros: spreads.map(|spread| spread.map_or(f64::NAN, |spread| spread.median)),
         most: spreads[0].map_or(f64::NAN, |spread| spread.most),

@@ -25,7 +25,8 @@ mod table;
 mod versus;
 
 use clap::Parser;
-use knotdock::geometry::collide::{CollisionScene, Quantities, Questions};
+use knotdock::geometry::collide::contact::{Densities, DensityError};
+use knotdock::geometry::collide::{CollisionScene, Quantities, Questions, Ways};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{Mesh, Solid, read};
@@ -52,7 +53,7 @@ pub struct Options {
     /// Poses of the path.
     #[arg(long, default_value_t = path::POSES)]
     poses: usize,
-    /// Poses of the path to one that the other libraries are asked about.
+    /// Every how manieth pose the other libraries get.
     #[arg(long, default_value_t = 20)]
     stride: usize,
     /// Poses of the batch.
@@ -99,8 +100,14 @@ impl Setting {
             volume: false,
             force: true,
         };
-        Ok(Questions::new(scene, quantities, None)?)
+        Ok(Questions::new(scene, quantities, Ways::default())?)
     }
+}
+
+/// The densities that the default ways take.
+fn densities(scene: &CollisionScene) -> Result<Densities, DensityError> {
+    let ways = Ways::default();
+    Densities::new(scene, 2.0, ways.method, ways.modes)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Microseconds of each pose asked, by number.
+/// Microseconds of poses, by number.
 #[derive(Clone, Debug, Default)]
 pub struct Times {
     /// Numbers of the poses.

@@ -4,13 +4,11 @@ use crate::measured::{Spread, Times};
 use crate::peers::{CoalRow, Parry, coal, python};
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use crate::{Options, Setting, path};
-use knotdock::geometry::collide::contact::Densities;
+use crate::{Options, Setting, densities, path};
 use knotdock::geometry::collide::{
-    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Workspace,
+    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Ways, Workspace,
 };
 use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
-use knotdock_structures::ball_solid::MeetingPairs;
 use std::error::Error;
 use std::fs;
 use std::time::Instant;
@@ -27,7 +25,7 @@ const PROGRAMS: [(&str, Colour); 3] = [
 const QUESTIONS: [&str; 3] = ["verdict", "distance", "force and torque"];
 
 /// Times of the three questions.
-type Asked = [Times; 3];
+type AllTimes = [Times; 3];
 
 /// What the programs say, and how long it takes them.
 struct Answers {
@@ -35,9 +33,9 @@ struct Answers {
     verdicts: Vec<Verdict>,
     /// Its bounds.
     bounds: Vec<Bounds>,
-    ours: Asked,
-    parry: Asked,
-    coal: Option<Asked>,
+    ours: AllTimes,
+    parry: AllTimes,
+    coal: Option<AllTimes>,
 }
 
 /// The tables and the picture.
@@ -71,8 +69,8 @@ fn answers(
     scene: &CollisionScene,
 ) -> Result<Answers, Box<dyn Error>> {
     let path = &setting.path;
-    let densities = Densities::new(scene, 2.0)?;
-    let (mut work, mut pairs) = (Workspace::new(), MeetingPairs::default());
+    let densities = densities(scene)?;
+    let mut work = Workspace::new();
     let verdict = |pose: usize, work: &mut Workspace| {
         scene.verdict(&scene.motion(&path[pose]), Deadline::NEVER, work)
     };
@@ -87,7 +85,7 @@ fn answers(
         Times::of(path.len(), 1, RUNS, |pose| verdict(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| distance(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| {
-            densities.contact(scene, &scene.motion(&path[pose]), &mut pairs)
+            densities.contact(scene, &scene.motion(&path[pose]), &mut work)
         }),
     ];
     let parry = Parry::new([&setting.mesh, &setting.mesh])?;
@@ -109,8 +107,8 @@ fn answers(
     };
     let mut wrong = 0;
     for pose in (0..path.len()).step_by(options.stride) {
-        let apart = parry.distance(&path[pose])?;
-        wrong += usize::from(answers.contradicts(pose, parry.meet(&path[pose])?, apart));
+        let gap = parry.distance(&path[pose])?;
+        wrong += usize::from(answers.contradicts(pose, parry.meet(&path[pose])?, gap));
     }
     let table = options.out.join("path.csv");
     fs::write(&table, path::csv(path))?;
@@ -129,21 +127,21 @@ fn answers(
 }
 
 impl Answers {
-    /// Whether surfaces that meet, or are so far apart, contradict what knotdock says of a pose. Surfaces apart may
+    /// Whether surfaces that meet, or have such a gap, contradict what knotdock says of a pose. Surfaces with a gap may
     /// belong to solids of which one holds the other.
-    fn contradicts(&self, pose: usize, meet: bool, apart: f64) -> bool {
+    fn contradicts(&self, pose: usize, meet: bool, gap: f64) -> bool {
         let (verdict, bounds) = (self.verdicts[pose], self.bounds[pose]);
-        let rounding = 1e-9 * (1.0 + apart);
+        let rounding = 1e-9 * (1.0 + gap);
         match verdict {
             Verdict::Free if meet => true,
-            Verdict::Free => apart < bounds.low - rounding || apart > bounds.high + rounding,
+            Verdict::Free => gap < bounds.low - rounding || gap > bounds.high + rounding,
             Verdict::Undecided => bounds.high < 0.0 || (meet && bounds.low > 0.0),
             Verdict::Hit => bounds.low > 0.0,
         }
     }
 }
 
-fn coal_times(rows: &[CoalRow], stride: usize) -> Asked {
+fn coal_times(rows: &[CoalRow], stride: usize) -> AllTimes {
     [0, 1, 2].map(|question| Times {
         poses: (0..rows.len()).map(|row| row * stride).collect(),
         micros: rows.iter().map(|row| row.micros[question]).collect(),
@@ -225,10 +223,10 @@ fn batch(
         volume: false,
         force: false,
     };
-    let verdicts = Questions::new(scene, quantities, None)?;
+    let verdicts = Questions::new(scene, quantities, Ways::default())?;
     let poses: Vec<_> = setting.path.iter().cycle().take(CHUNK).copied().collect();
     let mut rows = Vec::new();
-    for (asked, questions) in [
+    for (what, questions) in [
         ("verdict", &verdicts),
         ("verdict, force, torque", questions),
     ] {
@@ -243,7 +241,7 @@ fn batch(
             }
             let seconds = start.elapsed().as_secs_f64();
             rows.push(vec![
-                Cell::Text(asked.to_owned()),
+                Cell::Text(what.to_owned()),
                 Cell::Text(threads.to_string()),
                 Cell::Text(done.to_string()),
                 Cell::Number(seconds),
@@ -259,15 +257,15 @@ fn batch(
 
 /// For each of the first two questions, the share of poses that take longer than a time.
 fn panels(answers: &Answers) -> Vec<Panel> {
-    let asked = [
+    let all = [
         Some(&answers.ours),
         Some(&answers.parry),
         answers.coal.as_ref(),
     ];
     let panel = |question: usize| {
-        let series = asked.into_iter().zip(PROGRAMS);
-        let series = series.filter_map(|(asked, (name, colour))| {
-            let mut micros = asked?[question].micros.clone();
+        let series = all.into_iter().zip(PROGRAMS);
+        let series = series.filter_map(|(times, (name, colour))| {
+            let mut micros = times?[question].micros.clone();
             micros.sort_by(f64::total_cmp);
             let count = micros.len();
             let step = count.div_ceil(200).max(1);

@@ -2,7 +2,7 @@
 //!
 //! A solid is a set of balls, or the nodes of a uniform grid inside it. The sum of n1 and n2 of them has n1 n2. It is
 //! written to memory, or streamed: each is computed, used and forgotten. What uses them here is the gap at a place, the
-//! question that an obstacle is asked.
+//! distance to an obstacle.
 
 /// Centre and radius of a ball: x, y, z, r.
 pub type Knot = [f64; 4];

@@ -9,6 +9,7 @@ mod landscape;
 mod scenes;
 
 mod assembled;
+mod balls;
 mod fairness;
 mod refused;
 mod run;

@@ -56,7 +56,10 @@ impl ShapeInput {
             spheres: spheres(&file.balls),
             part: BallPart {
                 balls: file.balls,
-                weights: file.weights,
+                // Weights of one are what `knotdock sample` writes where none were fitted.
+                weights: file
+                    .weights
+                    .filter(|weights| weights.iter().any(|&weight| weight != 1.0)),
             },
         }))
     }

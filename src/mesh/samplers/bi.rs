@@ -7,7 +7,7 @@
 //! -<F_A, F_B>. The balls are those of A3 at mu = 0.25, and f has weights fitted to the solid.
 //!
 //! **Two sets of weights.** f(S + B0) has the same balls, grown by the depth of the skin. Grown balls overlap more, so
-//! that weights fitted to S would add up to several times one in its skin (3 to 8 times one, measured on a block).
+//! that weights fitted to S add up to several times one in its skin (8 times one, measured on a block).
 //! They are fitted a second time, to the grown solid.
 //!
 //! **Radii** are rounded to [`CLASSES`] equal steps before the fit, which takes up what that moves. Each function of
