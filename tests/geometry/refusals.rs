@@ -38,7 +38,7 @@ fn bad_input_is_refused_with_a_remedy() {
         ("morph offset small.csv --distance inf", "finite"),
         (
             "morph difference large.csv small.csv -o a.csv --surface a.csv",
-            "--surface",
+            "named twice",
         ),
         ("se3 distance 1,0,0,0,0,0 1,0,0,0,0,0,0", "seven"),
         ("se3 ball 1,0,0,0,0,0,0 --radius -1 -o b.csv", "--radius"),

@@ -65,6 +65,11 @@ impl Expansion {
         self.radial.len()
     }
 
+    /// Whether there are no functions.
+    pub fn is_empty(&self) -> bool {
+        self.radial.is_empty()
+    }
+
     /// The Fourier series along the radius with the fewest modes that keep the tolerance; with `MAX_ORDER` where none
     /// do.
     pub fn series(task: &Task) -> Self {
