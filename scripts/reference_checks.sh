@@ -32,5 +32,5 @@ done
 # The full set of files, five times as many, goes without --few.
 "$(python gemmi)" scripts/checks/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
 "$(python gemmi)" scripts/checks/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few
-# The 1,000 poses a pair that docs/collision.md reports go without --poses.
+# The full set, 1,000 poses of each pair of solids, goes without --poses.
 "$(python solids)" scripts/checks/check_solids.py "$target/debug/knotdock" structures/examples/bunny.obj --poses 100
