@@ -10,7 +10,7 @@
 //! that weights fitted to S add up to several times one in its skin (8 times one, measured on a block).
 //! They are fitted a second time, to the grown solid.
 //!
-//! **Radii** are rounded to [`CLASSES`] equal steps before the fit, which takes up what that moves. Each function of
+//! **Radii** are rounded to 24 equal steps before the fit, which takes up what that moves. Each function of
 //! the lifted axis then stands for one radius, exactly.
 //!
 //! # Lengths
