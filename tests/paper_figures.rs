@@ -2,38 +2,28 @@
 //! one configuration, and a body's spectrum from a grid and from its balls. Minkowski sums of balls cover those of a
 //! grid's nodes. Nothing is timed here.
 
-#[path = "../benches/paper_figures/correlation.rs"]
-#[allow(dead_code)] // The figures use more of it.
-mod correlation;
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
 #[path = "../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)]
 mod docking_parts;
-#[path = "../benches/paper_figures/lifted.rs"]
-mod lifted;
 #[path = "../benches/paper_figures/minkowski.rs"]
 mod minkowski;
 #[path = "../benches/paper_figures/scene.rs"]
 #[allow(dead_code)]
 mod scene;
-#[path = "../benches/paper_figures/spectrum.rs"]
-#[allow(dead_code)]
-mod spectrum;
-#[path = "../benches/paper_figures/ways.rs"]
-#[allow(dead_code)]
-mod ways;
 
-use correlation::Grid;
+use knotdock::geometry::gap::expansion::{Expansion, Task};
+use knotdock::geometry::gap::grid::Grid;
+use knotdock::geometry::gap::spectrum::{self, Body, FrequencyBox, Kernel, exact};
+use knotdock::geometry::gap::ways;
 use knotdock_scoring::transform::truncation::{Selection, Tail};
 use knotdock_scoring::truncated::RotationSpectrum;
 use knotdock_structures::mesh::{Mesh, from_triangles};
-use lifted::{Expansion, Task};
 use minkowski::{Knot, Node, gap_of_balls, gap_of_nodes};
 use nalgebra::Vector3;
 use num_complex::Complex64;
 use scene::{Scene, sampled};
-use spectrum::{Body, FrequencyBox, Kernel, exact};
 
 const EDGE: f64 = 2.0;
 

@@ -5,10 +5,10 @@
 
 use crate::report::{Figure, grid_name};
 use crate::scene::Scene;
-use crate::spectrum::Kernel;
 use crate::table::{Cell, Table};
 use crate::timing::timed;
 use crate::ways_measured::{Measured, OfGrid, measure};
+use knotdock::geometry::gap::spectrum::Kernel;
 use knotdock::plot::chart::Colour;
 use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;

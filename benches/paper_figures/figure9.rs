@@ -2,14 +2,14 @@
 //!
 //! A new rotation needs a new spectrum of the peg's balls before that; its time is shown as well.
 
-use crate::lifted::{Expansion, Task};
 use crate::report::{Figure, colour_of_grid, grid_name};
 use crate::scene::Scene;
-use crate::spectrum::{FrequencyBox, Kernel};
 use crate::table::{Cell, Table};
 use crate::timing::least;
-use crate::ways::{Points, fast_3d, plan_3d};
 use crate::whole::Whole;
+use knotdock::geometry::gap::expansion::{Expansion, Task};
+use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel};
+use knotdock::geometry::gap::ways::{Points, fast_3d, plan_3d};
 use knotdock::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::RotationSpectrum;

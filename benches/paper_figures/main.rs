@@ -18,7 +18,6 @@
 //!
 //! Everything timed runs on one thread in double precision; times are processor time, the least of several runs.
 
-mod correlation;
 mod crossing;
 #[path = "../../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // Only the peg is used.
@@ -28,21 +27,18 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
-mod lifted;
 mod minkowski;
 mod report;
 mod scene;
 mod sections;
-mod spectrum;
 mod table;
 mod timing;
-mod ways;
 mod ways_measured;
 mod whole;
 
 use clap::Parser;
+use knotdock::geometry::gap::spectrum::Kernel;
 use scene::Scene;
-use spectrum::Kernel;
 use std::error::Error;
 use std::fs;
 use std::io;

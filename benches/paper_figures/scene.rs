@@ -7,7 +7,7 @@
 
 use crate::docking_parts::peg_and_hole;
 use crate::minkowski::Node;
-use crate::spectrum::Body;
+use knotdock::geometry::gap::spectrum::Body;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
 use knotdock_structures::sampling::{Method, SetName, knots, sample};

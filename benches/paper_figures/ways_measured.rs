@@ -1,12 +1,14 @@
 //! A body's spectrum at its m' lowest frequencies: what each way takes, with no larger an error than the grid's.
 
-use crate::correlation::Grid;
 use crate::crossing::crossing;
-use crate::lifted::{Expansion, Task};
 use crate::scene::Scene;
-use crate::spectrum::{FrequencyBox, Kernel, exact};
 use crate::timing::least;
-use crate::ways::{Points, direct, direct_share, fast_3d, fast_4d, plan_3d, plan_4d};
+use knotdock::geometry::gap::expansion::{Expansion, Task};
+use knotdock::geometry::gap::grid::Grid;
+use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel, exact};
+use knotdock::geometry::gap::ways::{
+    Points, direct, direct_share, fast_3d, fast_4d, plan_3d, plan_4d,
+};
 use num_complex::Complex64;
 use std::error::Error;
 

@@ -1,10 +1,10 @@
 //! The correlation of two bodies at one grid size, the time of each of its steps, and what leaving out modes does to
 //! it.
 
-use crate::correlation::Grid;
 use crate::scene::Scene;
-use crate::spectrum::Kernel;
 use crate::timing::least;
+use knotdock::geometry::gap::grid::Grid;
+use knotdock::geometry::gap::spectrum::Kernel;
 use knotdock_scoring::transform::truncation::Selection;
 use num_complex::Complex64;
 use std::hint::black_box;

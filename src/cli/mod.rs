@@ -12,8 +12,11 @@ mod export;
 mod inputs;
 mod inspect;
 mod messages;
+mod morph;
+mod obstacle;
 mod sample;
 mod score;
+mod se3;
 mod tradeoff;
 
 use std::borrow::Cow;
@@ -56,6 +59,9 @@ enum Command {
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
+    Obstacle(Box<obstacle::Obstacle>),
+    Morph(Box<morph::Morph>),
+    Se3(se3::Se3),
     Sample(sample::Sample),
     Collide(Box<collide::Collide>),
     Tradeoff(Box<tradeoff::TradeoffCommand>),
@@ -94,6 +100,9 @@ pub fn main() -> ExitCode {
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
+        Command::Obstacle(command) => command.run(console),
+        Command::Morph(command) => command.run(console),
+        Command::Se3(command) => command.run(console),
         Command::Sample(command) => command.run(console),
         Command::Collide(command) => command.run(console),
         Command::Tradeoff(command) => command.run(console),

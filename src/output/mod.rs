@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `dock` | `poses.csv`, `top/rank_0001.pdb` (of meshes `.obj`) ..., `run.json` |
 //! | `sample` | `knots.csv`, balls as a mesh, as pseudo-atoms or in a picture |
+//! | `obstacle`, `morph` | balls, a surface, a volume grid, a picture |
+//! | `se3` | a list of poses |
 //! | `tradeoff` | `tradeoff.csv`, `tradeoff.json` and a picture |
 //! | `batch` | `results.csv`, and the tables of pairs that it reads |
 //!

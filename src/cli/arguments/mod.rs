@@ -7,3 +7,4 @@ pub mod options;
 pub mod output_file;
 pub mod program;
 pub mod ranks;
+pub mod solid_output;

@@ -6,6 +6,6 @@ pub mod meshes;
 pub mod molecules;
 pub mod poses;
 pub mod request;
-mod room;
+pub mod room;
 pub mod shapes;
 pub mod solids;

@@ -95,6 +95,18 @@ fn standard_input() -> io::Result<Vec<u8>> {
     Ok(text)
 }
 
+/// A rotation from four numbers, as a pose without translation.
+pub fn rotation(text: &str) -> Result<Pose, Failure> {
+    let parts = text.split(',').count();
+    if parts != 4 {
+        return Err(
+            Failure::input(format!("--rotation has {parts} numbers, not four"))
+                .remedy("give a unit quaternion, the scalar part first: qw,qx,qy,qz"),
+        );
+    }
+    pose(&format!("{text},0,0,0"))
+}
+
 /// A pose from seven numbers.
 pub fn pose(text: &str) -> Result<Pose, Failure> {
     let refused = |message: String, remedy: &str| Failure::input(message).remedy(remedy);

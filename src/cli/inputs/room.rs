@@ -6,6 +6,7 @@
 use std::fs;
 
 use knotdock::dock::memory::size::{as_size, named};
+use knotdock::geometry::obstacle::reduce::BYTES_REDUCED;
 use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::messages::failure::Failure;
@@ -37,6 +38,21 @@ pub fn room_to_sample(per_axis: usize, allowed: Option<u64>) -> Result<(), Failu
     let nodes = (per_axis as u64).saturating_pow(3);
     let failure = refused("sampling", NODE_SAMPLED.saturating_mul(nodes), allowed);
     failure.map_or(Ok(()), Err)
+}
+
+/// Refuses so many balls of a sum that memory has no room for, if none lay in another one.
+pub fn room_for_balls(balls: u64, allowed: Option<u64>) -> Result<(), Failure> {
+    let needed = BYTES_REDUCED.saturating_mul(balls);
+    let Some(allowed) = allowed.filter(|&allowed| needed > allowed.max(ALWAYS)) else {
+        return Ok(());
+    };
+    let least = as_size(named(needed));
+    let error = format!(
+        "{balls} pairs of balls need up to {needed} bytes of memory, and {allowed} are allowed"
+    );
+    Err(Failure::input(error).remedy(format!(
+        "use a coarser --grid, or allow at least --memory {least}"
+    )))
 }
 
 /// The refusal of work that takes more than is allowed, and more than always is.

@@ -17,4 +17,6 @@ pub mod sample_picture;
 pub mod staging;
 mod staging_error;
 mod staging_folder;
+pub mod surfaces;
+pub mod volume_grids;
 pub mod whole_file;

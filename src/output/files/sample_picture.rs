@@ -11,6 +11,8 @@ use knotdock_structures::sampling::grid::ON_SURFACE;
 use knotdock_structures::sampling::skeletal_density::share;
 use rayon::prelude::*;
 
+use crate::geometry::bracket::{bounds, shifted};
+use crate::geometry::obstacle::reduce::reduced;
 use crate::plot::svg::{Colour, Svg};
 
 use crate::output::files::whole_file::{FileError, StagedFile};
@@ -27,6 +29,7 @@ const SHOWN: usize = 3000;
 /// How a ball looks that the slice meets, and one from outside.
 const SLICED: &str =
     "fill=\"#d06020\" fill-opacity=\"0.12\" stroke=\"#a04010\" stroke-width=\"0.5\"";
+const HELD: &str = "fill=\"#d8d8d8\"";
 const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\"";
 
 /// Writes the picture of `balls` (in the solid's unit) beside the fields of `solid`.
@@ -36,6 +39,47 @@ const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\""
 pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<StagedFile, FileError> {
     let text = picture(solid, balls);
     StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Writes the picture of a solid between two sets of balls: the slices of both, and the outer balls from outside.
+///
+/// # Errors
+/// [`FileError`] when the file cannot be made or written.
+pub fn write_ball_picture(
+    inner: &[Ball],
+    outer: &[Ball],
+    path: &Path,
+) -> Result<StagedFile, FileError> {
+    let (low, high) = bounds(outer);
+    let middle = [0, 1, 2].map(|axis| -0.5 * (low[axis] + high[axis]));
+    let view = View::of_box([0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis])));
+    let [inner, outer] = [inner, outer].map(|balls| {
+        let balls = balls.iter().map(|ball| shifted(ball, middle));
+        balls.collect::<Vec<Ball>>()
+    });
+    let mut svg = Svg::new(2.0 * PANEL, PANEL + 24.0);
+    let title = "slice of outer balls (grey) and inner balls (orange)";
+    panel(&mut svg, 0, title, |svg| {
+        draw_slices(svg, &sliced(&outer, &view), &view, HELD);
+        draw_slices(svg, &sliced(&inner, &view), &view, SLICED);
+    });
+    panel(&mut svg, 1, &shown_balls(outer.len()), |svg| {
+        draw_balls(svg, &outer, &view)
+    });
+    let text = svg.finish();
+    StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The circles in which the slice meets balls, as balls on it, without those in another one.
+fn sliced(balls: &[Ball], view: &View) -> Vec<Ball> {
+    let [.., toward] = view.axes;
+    reduced(balls.iter().filter_map(|ball| {
+        let mut center = ball.center;
+        let squared = ball.radius * ball.radius - center[toward] * center[toward];
+        center[toward] = 0.0;
+        let radius = squared.max(0.0).sqrt();
+        (radius > 0.0).then_some(Ball { center, radius })
+    }))
 }
 
 /// The axes and the scale of the picture.
@@ -50,7 +94,11 @@ struct View {
 
 impl View {
     fn of(solid: &Solid) -> Self {
-        let half = solid.half_sides();
+        Self::of_box(solid.half_sides())
+    }
+
+    /// The view of a box about the origin, across its shortest edge.
+    fn of_box(half: [f64; 3]) -> Self {
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| half[b].total_cmp(&half[a]));
         let toward = order[2];
@@ -89,13 +137,19 @@ fn picture(solid: &Solid, balls: &[Ball]) -> String {
     panel(&mut svg, 2, title, |svg| {
         draw_slice(svg, solid, balls, &view);
     });
-    let title = if balls.len() > SHOWN {
-        format!("the {SHOWN} largest of {} balls", balls.len())
-    } else {
-        format!("{} balls", balls.len())
-    };
-    panel(&mut svg, 3, &title, |svg| draw_balls(svg, balls, &view));
+    panel(&mut svg, 3, &shown_balls(balls.len()), |svg| {
+        draw_balls(svg, balls, &view)
+    });
     svg.finish()
+}
+
+/// What is said of balls shown from outside.
+fn shown_balls(count: usize) -> String {
+    if count > SHOWN {
+        format!("the {SHOWN} largest of {count} balls")
+    } else {
+        format!("{count} balls")
+    }
 }
 
 /// Draws a panel above its title.
@@ -166,17 +220,22 @@ fn draw_density(svg: &mut Svg, fields: &[(f64, f64)]) {
 
 /// Draws the circles and the outline in which the slice meets balls and mesh.
 fn draw_slice(svg: &mut Svg, solid: &Solid, balls: &[Ball], view: &View) {
+    draw_slices(svg, balls, view, SLICED);
+    let segments = outline(solid, view.axes);
+    let placed = segments.map(|ends| ends.map(|end| view.place(end)));
+    svg.segments(placed, "fill=\"none\" stroke=\"black\" stroke-width=\"1\"");
+}
+
+/// Draws the circles in which the slice meets balls.
+fn draw_slices(svg: &mut Svg, balls: &[Ball], view: &View, style: &str) {
     let [.., toward] = view.axes;
     for ball in balls {
         let off = ball.center[toward];
         let squared = ball.radius * ball.radius - off * off;
         if squared > 0.0 {
-            svg.circle(view.center(ball), view.scale * squared.sqrt(), SLICED);
+            svg.circle(view.center(ball), view.scale * squared.sqrt(), style);
         }
     }
-    let segments = outline(solid, view.axes);
-    let placed = segments.map(|ends| ends.map(|end| view.place(end)));
-    svg.segments(placed, "fill=\"none\" stroke=\"black\" stroke-width=\"1\"");
 }
 
 /// Draws the largest balls from outside, the nearest to the viewer last.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
 
+use crate::output::files::whole_file::{FileError, StagedFile};
 use crate::output::tables::cells::unquoted_row;
 use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::poses_reader::{PlacementColumns, PoseTableError};
@@ -54,6 +55,25 @@ pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, PoseTableError> 
         let pose = placed.pose(path, at(), &record, of)?;
         poses.push(pose);
     }
+}
+
+/// Writes a list, with a header; numbers read back to the same double.
+///
+/// # Errors
+/// [`FileError`] when the file cannot be made or written.
+pub fn write_list(path: &Path, poses: &[Pose]) -> Result<StagedFile, FileError> {
+    StagedFile::write(path, |file| {
+        writeln!(file, "qw,qx,qy,qz,tx,ty,tz")?;
+        for pose in poses {
+            let ([w, i, j, k], t) = (pose.quaternion(), pose.translation);
+            writeln!(
+                file,
+                "{w:?},{i:?},{j:?},{k:?},{:?},{:?},{:?}",
+                t.x, t.y, t.z
+            )?;
+        }
+        Ok(())
+    })
 }
 
 #[cfg(test)]

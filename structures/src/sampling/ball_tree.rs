@@ -72,6 +72,50 @@ impl BallTree {
         best
     }
 
+    /// As [`Self::distance`], never more than `at_most`, which spares the search for what lies farther.
+    pub fn distance_within(&self, point: [f64; 3], enough: f64, at_most: f64) -> f64 {
+        let mut best = at_most;
+        if let Some(root) = self.nodes.first() {
+            self.search(0, root.bound(point), point, enough, &mut best);
+        }
+        best
+    }
+
+    /// Whether one ball of the tree holds all of `ball`, itself included.
+    pub fn holds(&self, ball: &Ball) -> bool {
+        !self.nodes.is_empty() && self.search_holder(0, ball, |_| true)
+    }
+
+    /// Whether a ball of the tree that comes before `ball` holds all of it. The larger comes first, then the one of
+    /// the lesser centre, so that of several equal in all but rounding one is always held by none.
+    pub fn holds_before(&self, ball: &Ball) -> bool {
+        !self.nodes.is_empty()
+            && self.search_holder(0, ball, |other| {
+                let order = (other.radius.total_cmp(&ball.radius).reverse())
+                    .then_with(|| compare(other.center, ball.center));
+                order.is_lt()
+            })
+    }
+
+    fn search_holder(&self, at: usize, ball: &Ball, counts: impl Fn(&Ball) -> bool + Copy) -> bool {
+        let node = &self.nodes[at];
+        if node.second == 0 {
+            let first = node.first as usize;
+            let balls = &self.balls[first..first + node.count as usize];
+            return balls.iter().any(|other| other.holds(ball) && counts(other));
+        }
+        let halves =
+            [at + 1, node.second as usize].map(|half| (half, self.nodes[half].bound(ball.center)));
+        let [a, b] = if halves[1].1 < halves[0].1 {
+            [halves[1], halves[0]]
+        } else {
+            halves
+        };
+        // A holder is as deep about the centre as the ball is large.
+        (a.1 <= -ball.radius && self.search_holder(a.0, ball, counts))
+            || (b.1 <= -ball.radius && self.search_holder(b.0, ball, counts))
+    }
+
     fn search(&self, at: usize, bound: f64, point: [f64; 3], enough: f64, best: &mut f64) {
         // The root's bound may be below `best` although nothing in it is; a bound equal to it cannot better it.
         if bound >= *best {
@@ -102,6 +146,13 @@ impl BallTree {
     pub fn contains(&self, point: [f64; 3]) -> bool {
         self.distance(point, 0.0) <= 0.0
     }
+}
+
+/// Order of points by x, then y, then z.
+fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
+    (a[0].total_cmp(&b[0]))
+        .then(a[1].total_cmp(&b[1]))
+        .then(a[2].total_cmp(&b[2]))
 }
 
 fn build(balls: &mut [Ball], first: usize, nodes: &mut Vec<Node>) {
@@ -145,4 +196,56 @@ fn build(balls: &mut [Ball], first: usize, nodes: &mut Vec<Node>) {
     build(left, first, nodes);
     nodes[place].second = nodes.len() as u32;
     build(right, first + middle, nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn jumbled(count: u32) -> Vec<Ball> {
+        (1..=count)
+            .map(|i| {
+                let part = |step: f64| (f64::from(i) * step).fract();
+                Ball {
+                    center: [part(0.8191), part(0.6710), part(0.5497)],
+                    radius: 0.02 + 0.3 * part(0.4503).powi(3),
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn balls_are_held_as_trying_all_says() {
+        let mut balls = jumbled(700);
+        // Copies hold each other: one of them is held by none before it.
+        balls.extend_from_within(..50);
+        let tree = BallTree::new(&balls);
+        for ball in &balls {
+            let larger = balls.iter().any(|other| {
+                let first = other.radius > ball.radius
+                    || other.radius == ball.radius && compare(other.center, ball.center).is_lt();
+                first && other.holds(ball)
+            });
+            assert_eq!(tree.holds_before(ball), larger);
+            assert!(tree.holds(ball));
+            assert!(!tree.holds(&ball.grown(0.4)));
+        }
+        assert!(!BallTree::new(&[]).holds(&balls[0]));
+    }
+
+    #[test]
+    fn a_bounded_distance_is_the_distance_or_the_bound() {
+        let balls = jumbled(300);
+        let tree = BallTree::new(&balls);
+        for place in jumbled(100) {
+            let point = place.center.map(|part| 2.0 * part - 0.5);
+            let exact = tree.distance(point, f64::NEG_INFINITY);
+            for at_most in [-0.2, 0.0, 0.1, 1.0] {
+                let found = tree.distance_within(point, f64::NEG_INFINITY, at_most);
+                assert_eq!(found, exact.min(at_most));
+                let early = tree.distance_within(point, 0.05, at_most);
+                assert!(early == exact.min(at_most) || (exact..=0.05).contains(&early));
+            }
+        }
+    }
 }

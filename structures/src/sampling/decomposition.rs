@@ -105,6 +105,14 @@ pub(crate) fn decompose_in_order(
     })
 }
 
+/// Step 1 on the grid of any depth, the largest balls first: every node inside lies in one of the balls, and no ball
+/// reaches out of the solid.
+pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
+    let nodes = field.inside();
+    let radii: Vec<f64> = nodes.iter().map(|&node| field.depth[node]).collect();
+    take_nodes(field, &nodes, &radii, mu)
+}
+
 /// Step 1 on the grid.
 fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) -> Vec<Ball> {
     let mut queue: Vec<usize> = (0..nodes.len()).collect();

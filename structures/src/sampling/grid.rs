@@ -178,6 +178,28 @@ impl DepthField {
         Self { grid, depth }
     }
 
+    /// The depth that a function gives, rows in parallel.
+    ///
+    /// `depth_within(point, most)` is the depth at a point, or `most` if it is more than that: the depths of two points
+    /// differ by the length between them at most, so that each bounds the next one.
+    pub fn of_depth(grid: Grid, depth_within: impl Fn([f64; 3], f64) -> f64 + Sync) -> Self {
+        let n = grid.per_axis();
+        let h = grid.spacing();
+        let rounding = grid.half() * 1e-12;
+        let mut depth = vec![0.0; grid.nodes()];
+        depth
+            .par_chunks_mut(n)
+            .enumerate()
+            .for_each(|(row, depths)| {
+                let mut most = f64::INFINITY;
+                for (x, depth) in depths.iter_mut().enumerate() {
+                    *depth = depth_within(grid.node(row * n + x), most);
+                    most = *depth + h + rounding;
+                }
+            });
+        Self { grid, depth }
+    }
+
     /// The nodes strictly inside, X, in rising order.
     pub fn inside(&self) -> Vec<usize> {
         (0..self.depth.len())

@@ -10,7 +10,7 @@
 //!
 //! A is computed beforehand for every |w| of a box, as in the paper, and costs no time here.
 
-use crate::spectrum::{Body, FrequencyBox, Kernel, exact, phase, square};
+use super::spectrum::{Body, FrequencyBox, Kernel, exact, phase, square};
 use knotdock_scoring::kernel::low_pass::smooth_step_down;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -63,6 +63,11 @@ impl Expansion {
     /// Number of functions: modes along the fourth axis, or the rank.
     pub fn len(&self) -> usize {
         self.radial.len()
+    }
+
+    /// Whether there are no functions.
+    pub fn is_empty(&self) -> bool {
+        self.radial.is_empty()
     }
 
     /// The Fourier series along the radius with the fewest modes that keep the tolerance; with `MAX_ORDER` where none

@@ -9,7 +9,7 @@
 //! The engine's own uniform grid scores a double skin in a box that it chooses. Here the box has exactly m points, as
 //! in the paper, and every step is separate so that it can be timed.
 
-use crate::spectrum::{Body, Kernel};
+use super::spectrum::{Body, Kernel};
 use knotdock_scoring::transform::fast_size;
 use knotdock_scoring::transform::modes::{ModeSet, place};
 use knotdock_scoring::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};

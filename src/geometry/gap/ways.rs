@@ -7,8 +7,8 @@
 //!
 //! All end with the product with the kernel and the sum over the functions of the radius, and give the same numbers.
 
-use crate::lifted::Expansion;
-use crate::spectrum::{Body, FrequencyBox};
+use super::expansion::Expansion;
+use super::spectrum::{Body, FrequencyBox};
 use knotdock_scoring::transform::direct;
 use knotdock_scoring::transform::nufft::{
     Plan, PlanError, SortedPoints, TransformError, Workspace,

@@ -1,0 +1,265 @@
+//! Files of a solid that was computed: balls, surface, volume grid, picture.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
+use knotdock::geometry::bracket::{shifted, volume};
+use knotdock::geometry::{Bracket, surface::surface};
+use knotdock::options::values::at_least_one;
+use knotdock::output::files::balls::write_table;
+use knotdock::output::files::sample_picture::write_ball_picture;
+use knotdock::output::files::surfaces::{SurfaceFormat, write_surface};
+use knotdock::output::files::volume_grids::{VolumeFormat, VolumeGrid, write_volume};
+use knotdock::output::files::whole_file::{StagedFile, is_stream};
+use knotdock_structures::mesh::Figure;
+use knotdock_structures::sampling::ball_tree::BallTree;
+use knotdock_structures::{Ball, Knots};
+use serde_json::{Value, json};
+
+use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+/// What to write of a solid.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Output")]
+pub struct SolidOutput {
+    /// The table of balls to write, with columns x, y, z, r and weight.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub output: Option<PathBuf>,
+    /// The surface to write, by surface nets on a grid: .obj, .stl or .ply.
+    #[arg(long, value_name = "FILE")]
+    pub surface: Option<PathBuf>,
+    /// The volume grid to write: the depth at each node, above zero inside: .mrc, .map, .ccp4, .nrrd or .vtk.
+    #[arg(long, value_name = "FILE")]
+    pub volume_grid: Option<PathBuf>,
+    /// The picture to write: a slice of inner and outer balls, and the outer balls from outside.
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
+    /// Which balls are written: outer balls hold the solid, inner balls lie in it.
+    #[arg(long, value_enum, default_value_t = Side::Outer)]
+    pub set: Side,
+    /// Cells of a grid along the longest edge of the box around the solid.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = at_least_one)]
+    pub cells: usize,
+    /// Replace files that are there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// One of the two sets of balls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Side {
+    /// Balls inside the solid.
+    Inner,
+    /// Balls that hold the solid.
+    Outer,
+}
+
+/// Most cells along an edge.
+const MAX_CELLS: usize = 512;
+
+/// Why a file is not one that is written.
+fn unknown(option: &str, path: &Path, endings: &str) -> Failure {
+    Failure::input(format!("--{option} does not write such files"))
+        .at(path)
+        .remedy(format!("end the name with {endings}"))
+}
+
+impl SolidOutput {
+    /// Checks, before any work, that the files to write are none of those `read`, and can be made.
+    pub fn check(&self, read: &[&Path], allowed: Option<u64>) -> Result<(), Failure> {
+        let files: Vec<&PathBuf> = [
+            &self.output,
+            &self.surface,
+            &self.volume_grid,
+            &self.picture,
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        for (index, file) in files.iter().enumerate() {
+            if files[..index].iter().any(|other| is_same(other, file)) {
+                return Err(Failure::input("the same file is named twice")
+                    .at(file)
+                    .remedy("give each file to write a name of its own"));
+            }
+            check_output(file, read.iter().copied(), self.force)?;
+        }
+        if let Some(path) = &self.surface
+            && SurfaceFormat::of(path).is_none()
+        {
+            return Err(unknown("surface", path, ".obj, .stl or .ply"));
+        }
+        if let Some(path) = &self.volume_grid
+            && VolumeFormat::of(path).is_none()
+        {
+            return Err(unknown(
+                "volume-grid",
+                path,
+                ".mrc, .map, .ccp4, .nrrd or .vtk",
+            ));
+        }
+        if let Some(path) = &self.picture
+            && !path
+                .extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+            && !is_stream(path)
+        {
+            return Err(unknown("picture", path, ".svg"));
+        }
+        if self.cells > MAX_CELLS {
+            return Err(
+                Failure::input(format!("--cells {} is more than {MAX_CELLS}", self.cells))
+                    .remedy(format!("give at most {MAX_CELLS}")),
+            );
+        }
+        let needed = BYTES_A_NODE * (self.cells as u64 + 6).pow(3);
+        match allowed {
+            Some(allowed) if needed > allowed => Err(Failure::input(format!(
+                "a grid of {} cells needs {needed} bytes of memory, and {allowed} are allowed",
+                self.cells
+            ))
+            .remedy("give fewer --cells, or allow more --memory")),
+            _ => Ok(()),
+        }
+    }
+
+    /// The balls that are written.
+    pub fn chosen<'a>(&self, solid: &'a Bracket) -> &'a [Ball] {
+        match self.set {
+            Side::Inner => &solid.inner,
+            Side::Outer => &solid.outer,
+        }
+    }
+
+    /// Writes all that was requested and returns the names; the table holds `table` if that is given.
+    pub fn write(&self, solid: &Bracket, table: Option<Knots>) -> Result<Vec<String>, Failure> {
+        let balls = self.chosen(solid);
+        let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
+        let wants_any =
+            self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
+        if balls.is_empty() && wants_any {
+            return Err(
+                Failure::other("no ball of the result is left to write").remedy(
+                    "sample on a finer --grid and --complement-grid, or write the other --set",
+                ),
+            );
+        }
+        if let Some(path) = &self.output {
+            let knots = match table {
+                Some(knots) => knots,
+                None => knots(balls, solid.origin)?,
+            };
+            staged.push((write_table(&knots, path)?, path));
+        }
+        if self.surface.is_some() || self.volume_grid.is_some() {
+            let field = field(balls, self.cells)?;
+            if let (Some(path), Some(format)) = (&self.surface, self.surface_format()) {
+                let surface = surface(&field, solid.origin);
+                let written = write_surface(&surface.positions, &surface.triangles, format, path)?;
+                staged.push((written, path));
+            }
+            if let (Some(path), Some(format)) = (&self.volume_grid, self.volume_format()) {
+                let grid = VolumeGrid {
+                    origin: [0, 1, 2].map(|axis| solid.origin[axis] + field.grid.first[axis]),
+                    spacing: field.grid.spacing,
+                    shape: field.grid.shape,
+                    values: &field.depth,
+                    title: "knotdock: depth of a union of balls, above zero inside",
+                };
+                staged.push((write_volume(&grid, format, path)?, path));
+            }
+        }
+        if let Some(path) = &self.picture {
+            staged.push((write_ball_picture(&solid.inner, &solid.outer, path)?, path));
+        }
+        // None takes its place before all of them are on the device.
+        let mut names = Vec::new();
+        for (file, path) in staged {
+            file.place()?;
+            names.push(path.display().to_string());
+        }
+        Ok(names)
+    }
+
+    fn surface_format(&self) -> Option<SurfaceFormat> {
+        self.surface.as_deref().and_then(SurfaceFormat::of)
+    }
+
+    fn volume_format(&self) -> Option<VolumeFormat> {
+        self.volume_grid.as_deref().and_then(VolumeFormat::of)
+    }
+}
+
+/// The depth of balls on a grid.
+fn field(balls: &[Ball], cells: usize) -> Result<BallField, Failure> {
+    let grid = FieldGrid::about(balls, cells)
+        .ok_or_else(|| Failure::other("the balls span no box to lay a grid on"))?;
+    Ok(BallField::new(&BallTree::new(balls), grid))
+}
+
+/// Balls as knots in the frame of the files.
+pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Failure> {
+    let placed = balls.iter().map(|ball| shifted(ball, origin));
+    let (centers, radii) = placed.map(|ball| (ball.center, ball.radius)).unzip();
+    Knots::new(centers, radii).map_err(Failure::other)
+}
+
+/// Volumes of a result, and their errors as measured: of the inner balls, of the outer ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Volumes {
+    /// Of the inner balls.
+    pub inner: (f64, f64),
+    /// Of the outer balls.
+    pub outer: (f64, f64),
+}
+
+impl Volumes {
+    /// Measures both.
+    pub fn of(solid: &Bracket) -> Self {
+        let inner = volume(&solid.inner);
+        let outer = match solid.is_exact() {
+            true => inner,
+            false => volume(&solid.outer),
+        };
+        Self { inner, outer }
+    }
+
+    /// Reports them under the name of the result.
+    pub fn describe(&self, name: &str, solid: &Bracket, console: Console) {
+        let set = |balls: &[Ball], (value, error): (f64, f64)| {
+            format!(
+                "{} balls, volume {} ± {}",
+                balls.len(),
+                Figure(value),
+                Figure(error)
+            )
+        };
+        console.say(format!(
+            "\n{name}:\n  inner: {}\n  outer: {}",
+            set(&solid.inner, self.inner),
+            set(&solid.outer, self.outer)
+        ));
+        console.say(if solid.epsilon.is_finite() {
+            format!(
+                "  The true result lies between, within {} of either (Hausdorff)",
+                Figure(solid.epsilon)
+            )
+        } else {
+            "  No point is known to be inside; a finer --grid and --complement-grid may find one"
+                .to_owned()
+        });
+    }
+
+    /// The result for JSON.
+    pub fn object(&self, solid: &Bracket) -> Value {
+        let set = |balls: &[Ball], (value, error): (f64, f64)| json!({ "balls": balls.len(), "volume": value, "volume_error": error });
+        json!({
+            "inner": set(&solid.inner, self.inner),
+            "outer": set(&solid.outer, self.outer),
+            "epsilon": solid.epsilon.is_finite().then_some(solid.epsilon),
+        })
+    }
+}
