@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 const WAVES: f64 = 4.0;
 /// Most pairs of radii whose kernels are quadratures in space; of more they are sums over frequencies.
 const MAX_QUADRATURES: usize = 16;
-/// Panels of a table for each wave of the highest frequency: polynomials of degree 7 follow a quarter of a wave to 3e-8.
-const PANELS_A_WAVE: f64 = 0.25;
+/// Width of a table's panels in waves of the highest frequency: polynomials of degree 7 follow a quarter to 3e-8.
+const PANEL_IN_WAVES: f64 = 0.25;
 
 /// Widths of the low-pass's ring after which the low-passed kernel counts as 0: about 1e-8 of its peak is left there.
 const RINGS: f64 = 24.0;
@@ -136,7 +136,7 @@ impl ProductKernel {
             .iter()
             .map(|&w| 4.0 * PI * w * w * step * self.unit.powi(3) * self.low_pass(w))
             .collect();
-        let panels = (end * self.w_max / PANELS_A_WAVE).ceil().max(1.0) as usize;
+        let panels = (end * self.w_max / PANEL_IN_WAVES).ceil().max(1.0) as usize;
         let width = end / panels as f64;
         let fit = PanelFit::new();
         // [panel][pair], then [pair][panel].
