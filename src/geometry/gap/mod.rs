@@ -370,9 +370,13 @@ mod tests {
         };
         let found = gap_ways(&cloud(12, 1.0), &cloud(9, 1.7), 32).unwrap();
         let named = |name: &str| found.iter().find(|way| way.name == name).unwrap();
-        for (name, bound) in [("rasterise + FFT", 3e-3), ("NDFT", 1e-3), ("NFFT", 1e-3)] {
+        // A grid of three points a radius has an error of its own, which falls with its spacing.
+        for (name, bound) in [("rasterise + FFT", 6e-3), ("NDFT", 1e-3), ("NFFT", 1e-3)] {
             assert!(named(name).residual < bound, "{name}: {:?}", named(name));
         }
+        let finer = gap_ways(&cloud(12, 1.0), &cloud(9, 1.7), 48).unwrap();
+        let raster = finer.iter().find(|way| way.name == "rasterise + FFT");
+        assert!(raster.unwrap().residual < 0.5 * named("rasterise + FFT").residual);
         let errors: Vec<f64> = found.iter().filter_map(|way| way.hausdorff).collect();
         assert!(errors.len() >= 2 && errors.is_sorted(), "{errors:?}");
     }

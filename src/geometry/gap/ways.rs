@@ -1,7 +1,7 @@
 //! Three ways from balls to the spectrum of their summed bumps without a grid, all through an [`Expansion`] of the
 //! radius.
 //!
-//! - [`direct`]: the nufft sums as they stand (NDFT), over whichever expansion: with the series that is the 4D sum.
+//! - [`direct()`]: the nufft sums as they stand (NDFT), over whichever expansion: with the series that is the 4D sum.
 //! - [`fast_4d`]: one four-dimensional fast transform of the points (x, y, z, r), for the series.
 //! - [`fast_3d`]: a three-dimensional fast transform for each function of the radius.
 //!
@@ -89,7 +89,7 @@ pub fn direct(points: &Points) -> Vec<Complex64> {
     output
 }
 
-/// A share of [`direct`]'s work: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is
+/// A share of [`direct()`]'s work: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is
 /// the same for every kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases
 /// of x and y are multiplied once for all of them.)
 pub fn direct_share(points: &Points, planes: usize) -> f64 {
