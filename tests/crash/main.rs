@@ -116,19 +116,20 @@ fn balls_of_a_mesh() {
     Scenario::new(mesh, sample).by_file().check();
 }
 
-/// A table of collisions, in place of another.
+/// A table of collisions and the files of an obstacle, each in place of another.
 #[test]
-fn a_table_of_collisions() {
+fn tables_and_files_of_solids() {
     let solids = |folder: &Path| {
-        fs::write(folder.join("a.csv"), "0,0,0,1\n").unwrap();
-        fs::write(folder.join("out.csv"), "an older table\n").unwrap();
+        fs::write(folder.join("a.csv"), "0,0,0,1\n1.2,0,0,0.5\n").unwrap();
+        for file in ["out.csv", "surface.obj", "depth.nrrd", "balls.svg"] {
+            fs::write(folder.join(file), "old").unwrap();
+        }
     };
-    Scenario::new(
-        solids,
-        "collide a.csv a.csv -o out.csv --force --quiet --compute distance",
-    )
-    .measured()
-    .check();
+    let collide = "collide a.csv a.csv -o out.csv --force --quiet --compute distance";
+    Scenario::new(solids, collide).by_file().measured().check();
+    let obstacle = "obstacle a.csv a.csv -o out.csv --surface surface.obj --volume-grid depth.nrrd --picture balls.svg \
+                    --cells 8 --force --quiet";
+    Scenario::new(solids, obstacle).by_file().check();
 }
 
 /// Of each pair the old or no run stands, or the new one; the table has a row for each pair.

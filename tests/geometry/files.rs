@@ -213,7 +213,7 @@ fn results_are_the_same_on_any_number_of_threads() {
         let name = format!("{threads}.csv");
         let command = [
             "morph",
-            "difference",
+            "close",
             "shell.csv",
             "small.csv",
             "--set",

@@ -29,6 +29,8 @@ pub mod separation;
 pub mod shared_volume;
 
 #[cfg(test)]
+mod obstacle_tests;
+#[cfg(test)]
 mod tests;
 
 pub use answer::{Answer, Quantities, Questions, Ways};

@@ -50,7 +50,7 @@ fn cuboid(half: [f64; 3], inward: bool) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     ((0..8).map(corner).collect(), faces.to_vec())
 }
 
-fn solid(parts: &[([f64; 3], bool)], per_axis: usize) -> BallSolid {
+pub fn solid(parts: &[([f64; 3], bool)], per_axis: usize) -> BallSolid {
     let mut corners = Vec::new();
     let mut faces = Vec::new();
     for &(half, inward) in parts {
