@@ -205,7 +205,8 @@ impl CollisionScene {
         let mut ball_pairs = found.ball_pairs;
         let mut low = found.lower - self.band();
         if low < 0.0 {
-            let (length, pairs) = self.separation(motion, found.pair, deadline, work);
+            let (length, pairs) =
+                self.separation(motion, (found.distance, found.pair), deadline, work);
             low = -length;
             ball_pairs += pairs;
         }

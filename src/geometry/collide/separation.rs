@@ -1,6 +1,7 @@
 //! A translation that parts two solids: an upper bound of their penetration depth.
 //!
-//! Two ways are tried, and the shorter result is taken. Any translation after which no outer balls meet is one.
+//! Two ways are tried, and the shorter result is taken. Any translation after which no outer balls meet is one. None is
+//! shorter than the depth of the deepest pair: a push of at most twice that is taken as it is.
 //!
 //! - **Pushes.** All pairs of outer balls that meet push along their centres, each by its depth. B goes along the sum
 //!   until the deepest pair is parted, again and again. This follows a curved way out of shallow contacts, and ends
@@ -18,24 +19,29 @@ use super::scene::{CollisionScene, Deadline, Workspace, unit};
 const STEPS: usize = 64;
 /// Pairs of balls looked at for one step, unless none that meets is found among them.
 const PAIRS_A_STEP: usize = 512;
+/// A push of so many times the depth of the deepest pair is not bettered by lines.
+const ENOUGH: f64 = 2.0;
 /// Pushes at most.
 const PUSHES: usize = 100;
 /// Share by which a step goes on, so that rounding does not leave it at the pair that it parts.
 const BEYOND: f64 = 1e-12;
 
 impl CollisionScene {
-    /// Length of a translation of B after which no outer balls meet, given the deepest pair of inner balls, and the
-    /// pairs of balls looked at.
+    /// Length of a translation of B after which no outer balls meet, given the deepest pair of inner balls and its
+    /// signed distance, and the pairs of balls looked at.
     pub(super) fn separation(
         &self,
         motion: &Motion,
-        deepest: Option<[usize; 2]>,
+        (high, deepest): (f64, Option<[usize; 2]>),
         deadline: Deadline,
         work: &mut Workspace,
     ) -> (f64, usize) {
         let mut pairs = 0;
         let pushed = self.pushed(motion, deadline, work, &mut pairs);
         let mut best = pushed.map_or(f64::INFINITY, length);
+        if best <= ENOUGH * (self.band() - high) {
+            return (best, pairs);
+        }
         let straight = pushed.map(unit);
         for direction in straight.into_iter().chain(self.directions(motion, deepest)) {
             let end = self.beyond_all(motion, direction);
