@@ -79,8 +79,18 @@ fn add(folder: &Path, root: &Path, files: &mut BTreeMap<String, String>) {
     }
 }
 
-/// A record without times; other text as it is.
+/// A record, or a table whose last column is a time, without times; other text as it is.
 fn settled(text: String) -> String {
+    if text
+        .lines()
+        .next()
+        .is_some_and(|header| header.ends_with(",microseconds"))
+    {
+        let rows = text
+            .lines()
+            .map(|row| row.rsplit_once(',').map_or(row, |(rest, _)| rest));
+        return rows.collect::<Vec<_>>().join("\n");
+    }
     match serde_json::from_str::<Value>(&text) {
         Ok(Value::Object(mut record)) if record.contains_key("program") => {
             record.remove("timing");

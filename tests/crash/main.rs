@@ -126,7 +126,7 @@ fn tables_and_files_of_solids() {
         }
     };
     let collide = "collide a.csv a.csv -o out.csv --force --quiet --compute distance";
-    Scenario::new(solids, collide).by_file().measured().check();
+    Scenario::new(solids, collide).by_file().check();
     let obstacle = "obstacle a.csv a.csv -o out.csv --surface surface.obj --volume-grid depth.nrrd --picture balls.svg \
                     --cells 8 --force --quiet";
     Scenario::new(solids, obstacle).by_file().check();
