@@ -16,10 +16,10 @@ use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::molecule::{ChainMap, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 
+use crate::cli::inputs::ball_files::ball_file_of;
 use crate::cli::inputs::molecules::{Input, folders_of, label};
 use crate::cli::inputs::room::{room_to_read, room_to_sample};
 use crate::cli::inputs::shapes::{ShapeInput, is_shape};
-use crate::cli::inputs::solids::ball_file_of;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -232,10 +232,7 @@ impl Bodies {
 /// What a text names: of a file of balls, a link may stand behind a colon.
 pub fn spec_of(text: &str) -> Result<InputSpec, Failure> {
     match ball_file_of(text) {
-        Some((path, group)) => Ok(InputSpec {
-            path,
-            chains: group.map(|group| vec![group]),
-        }),
+        Some(spec) => Ok(spec),
         None => Ok(InputSpec::parse(text)?),
     }
 }

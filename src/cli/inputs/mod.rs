@@ -1,5 +1,6 @@
 //! The inputs of a run: files named on the command line, in a table of pairs or in an earlier run's record.
 
+mod ball_files;
 pub mod batch_pairs;
 pub mod bodies;
 pub mod meshes;

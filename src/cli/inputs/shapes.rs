@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use knotdock::bounded_read::{MAX_TABLE, read_bounded};
 use knotdock::mesh::SampledPart;
 use knotdock::mesh::shape::{BallPart, Shape};
 use knotdock::output::files::assemblies::Surface;
 use knotdock::output::files::balls::spheres;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
-use knotdock_structures::ball_file::{self, is_ball_file};
+use knotdock_structures::ball_file::is_ball_file;
 use knotdock_structures::molecule::InputSpec;
 use serde_json::json;
 
+use crate::cli::inputs::ball_files::BallFileInput;
 use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -27,12 +27,14 @@ pub enum ShapeInput {
     /// A mesh.
     Mesh(Box<MeshInput>),
     /// Balls.
-    Balls(BallInput),
+    Balls(Box<BallInput>),
 }
 
 /// Balls as read.
 pub struct BallInput {
     record: InputRecord,
+    report: String,
+    warnings: Vec<String>,
     part: BallPart,
     /// Their spheres, to be looked at.
     spheres: (Vec<[f64; 3]>, Vec<[u32; 3]>),
@@ -44,15 +46,13 @@ impl ShapeInput {
         if is_mesh(&spec.path) {
             return Ok(Self::Mesh(Box::new(MeshInput::read(spec)?)));
         }
-        let bytes = read_bounded(&spec.path, MAX_TABLE).map_err(|error| {
-            Failure::input(format!("cannot read the balls: {error}"))
-                .at(&spec.path)
-                .remedy("check the name, the permissions and the size of the file")
-        })?;
-        let group = spec.chains.as_ref().and_then(|chains| chains.first());
-        let file = ball_file::parse(&spec.path, &bytes, group.map(String::as_str))?;
-        Ok(Self::Balls(BallInput {
-            record: InputRecord::new(spec, &bytes),
+        let input = BallFileInput::read(spec)?;
+        let (report, warnings) = (input.report(), input.warnings());
+        let BallFileInput { record, file } = input;
+        Ok(Self::Balls(Box::new(BallInput {
+            record,
+            report,
+            warnings,
             spheres: spheres(&file.balls),
             part: BallPart {
                 balls: file.balls,
@@ -61,7 +61,7 @@ impl ShapeInput {
                     .weights
                     .filter(|weights| weights.iter().any(|&weight| weight != 1.0)),
             },
-        }))
+        })))
     }
 
     /// The file.
@@ -105,8 +105,10 @@ impl ShapeInput {
                     Some(_) => "weighted",
                     None => "without weights",
                 };
-                let count = input.part.balls.len();
-                console.say(format!("{side}: {count} balls, {weighted}"));
+                console.say(format!("{side}: {}, {weighted}", input.report));
+                for warning in &input.warnings {
+                    console.warn(format!("{}: {warning}", input.record.path.display()));
+                }
             }
         }
     }

@@ -1,20 +1,19 @@
 //! Solids named on the command line: a mesh, a molecule or a file of balls, as balls between which its surface lies.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
-use knotdock::bounded_read::{MAX_TABLE, read_bounded};
 use knotdock::options::InputOptions;
 use knotdock::options::SampleGrid;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_structures::Ball;
-use knotdock_structures::ball_file::{self, BallFile};
 use knotdock_structures::ball_solid::{BallSolid, MeshSampling};
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Figure;
 use knotdock_structures::molecule::{InputSpec, Molecule};
 use serde_json::{Value, json};
 
+use crate::cli::inputs::ball_files::{BallFileInput, ball_file_of};
 use crate::cli::inputs::meshes::{MeshInput, is_mesh};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::inputs::room::{room_to_read, room_to_sample};
@@ -69,8 +68,8 @@ impl SolidInput {
         arguments: &SolidArguments,
         allowed: Option<u64>,
     ) -> Result<Self, Failure> {
-        if let Some((path, group)) = ball_file_of(text) {
-            return Self::of_balls(&path, group.as_deref());
+        if let Some(spec) = ball_file_of(text) {
+            return Self::of_balls(&spec);
         }
         let spec = InputSpec::parse(text)?;
         room_to_read(std::slice::from_ref(&spec), allowed)?;
@@ -82,24 +81,16 @@ impl SolidInput {
         Self::of_molecule(input.record, &input.molecule)
     }
 
-    fn of_balls(path: &Path, group: Option<&str>) -> Result<Self, Failure> {
-        let bytes = read_bounded(path, MAX_TABLE).map_err(|error| {
-            Failure::input(format!("cannot read the balls: {error}"))
-                .at(path)
-                .remedy("check the name, the permissions and the size of the file")
-        })?;
-        let file = ball_file::parse(path, &bytes, group)?;
+    fn of_balls(spec: &InputSpec) -> Result<Self, Failure> {
+        let input = BallFileInput::read(spec)?;
+        let file = &input.file;
         let solid = BallSolid::from_balls(&file.balls, file.weights.as_deref())
-            .map_err(|error| Failure::input(error).at(path))?;
-        let spec = InputSpec {
-            path: path.to_owned(),
-            chains: group.map(|group| vec![group.to_owned()]),
-        };
+            .map_err(|error| Failure::input(error).at(&spec.path))?;
         Ok(Self {
-            record: InputRecord::new(&spec, &bytes),
             kind: SolidKind::Balls,
-            report: balls_text(&file),
-            warnings: switched_off(&file).into_iter().collect(),
+            report: input.report(),
+            warnings: input.warnings(),
+            record: input.record,
             solid,
             sampling: None,
         })
@@ -185,47 +176,5 @@ impl SolidInput {
             "volume_missed_by_balls": self.sampling.and_then(|sampling| sampling.missed),
             "warnings": self.warnings,
         })
-    }
-}
-
-/// The file of balls that a text names, and the link picked of it.
-pub fn ball_file_of(text: &str) -> Option<(PathBuf, Option<String>)> {
-    let whole = Path::new(text);
-    if ball_file::is_ball_file(whole) {
-        return Some((whole.to_owned(), None));
-    }
-    let (path, group) = text.rsplit_once(':')?;
-    let is_of_balls = ball_file::is_ball_file(Path::new(path)) && !group.is_empty();
-    is_of_balls.then(|| (path.into(), Some(group.to_owned())))
-}
-
-fn balls_text(file: &BallFile) -> String {
-    let count = file.balls.len();
-    let of = file.group.as_ref().map(|group| format!(" of {group}"));
-    let balls = if count == 1 { "ball" } else { "balls" };
-    format!("{count} {balls}{}", of.unwrap_or_default())
-}
-
-fn switched_off(file: &BallFile) -> Option<String> {
-    let count = file.switched_off;
-    (count > 0).then(|| {
-        format!("left out {count} spheres whose radius is not above zero, by which they are switched off")
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_of_balls_are_known_by_their_names() {
-        let found =
-            |text| ball_file_of(text).map(|(path, group)| (path.display().to_string(), group));
-        assert_eq!(found("a/knots.csv"), Some(("a/knots.csv".into(), None)));
-        let hand = ("robot.yml".to_owned(), Some("hand".to_owned()));
-        assert_eq!(found("robot.yml:hand"), Some(hand));
-        assert_eq!(found("robot.yml:"), None);
-        assert_eq!(found("molecule.pdb:A"), None);
-        assert_eq!(found("part.stl"), None);
     }
 }

@@ -110,11 +110,6 @@ impl Densities {
         })
     }
 
-    /// Whether any modes are in use.
-    pub fn has_modes(&self) -> bool {
-        self.modes.is_some()
-    }
-
     /// Energy, force and torque by pairs of balls, or by modes where these cost less.
     pub fn contact(
         &self,

@@ -37,6 +37,7 @@ pub use motion::Motion;
 
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
+use crate::mesh::vector::{norm, subtract};
 
 /// A solid between two sets of balls.
 #[derive(Clone, Debug)]
@@ -126,7 +127,7 @@ impl BallSolid {
 /// A ball relative to a point.
 fn relative(ball: &Ball, origin: [f64; 3]) -> Ball {
     Ball {
-        center: [0, 1, 2].map(|axis| ball.center[axis] - origin[axis]),
+        center: subtract(ball.center, origin),
         radius: ball.radius,
     }
 }
@@ -164,8 +165,4 @@ fn density(balls: &[Ball], weights: &[f64]) -> Result<Knots, KnotsError> {
         balls.iter().map(|ball| ball.radius).collect(),
         weights,
     )
-}
-
-fn norm([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
 }
