@@ -123,7 +123,7 @@ impl Questions {
             bounds
         });
         let volume = self.quantities.volume;
-        let volume = volume.then(|| self.scene.shared_volume(&motion, work));
+        let volume = volume.then(|| self.scene.shared_volume(&motion, deadline, work));
         Answer {
             found,
             bounds,

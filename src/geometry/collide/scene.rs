@@ -10,7 +10,7 @@ use knotdock_structures::ball_solid::{
 use serde::Serialize;
 
 /// Pairs of balls looked at between two looks at the clock.
-const PAIRS_A_LOOK: usize = 256;
+pub(super) const PAIRS_A_LOOK: usize = 256;
 
 /// Whether two solids come closer than a margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -75,6 +75,11 @@ impl Deadline {
     /// So long from now.
     pub fn after(time: Option<Duration>) -> Self {
         Self(time.and_then(|time| Instant::now().checked_add(time)))
+    }
+
+    /// Whether there is one.
+    pub fn is_set(&self) -> bool {
+        self.0.is_some()
     }
 
     /// Whether it has come.

@@ -13,7 +13,7 @@
 
 use knotdock_structures::ball_solid::{ClosestSearch, Limits, Motion};
 
-use super::scene::{CollisionScene, Deadline, Workspace, unit};
+use super::scene::{CollisionScene, Deadline, PAIRS_A_LOOK, Workspace, unit};
 
 /// Steps along one line.
 const STEPS: usize = 64;
@@ -80,7 +80,7 @@ impl CollisionScene {
                         deepest = Some((depth, [i, j]));
                     }
                     *pairs += 1;
-                    true
+                    !pairs.is_multiple_of(PAIRS_A_LOOK) || !deadline.has_come()
                 });
             let Some((_, [i, j])) = deepest else {
                 return Some(total);

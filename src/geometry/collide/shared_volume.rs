@@ -2,12 +2,18 @@
 //!
 //! A point of both solids lies in a ball of either, and these two meet. So only balls that meet one of the other body's
 //! count, and the volumes are those of [`ball_union::overlap_by_lines`] over these.
+//!
+//! That cannot stop halfway. Under a deadline the volume is bounded by balls alone: from below by the largest lens of two
+//! inner balls, from above by the balls of either solid that meet one of the other.
 
+use std::f64::consts::PI;
+
+use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_structures::ball_solid::Motion;
 use knotdock_structures::knots::Knots;
 use knotdock_structures::{Ball, ball_union};
 
-use super::scene::{CollisionScene, Workspace};
+use super::scene::{CollisionScene, Deadline, PAIRS_A_LOOK, Workspace};
 
 /// Spacing of the lines that measure volumes, as a share of both eps: what these leave open needs no closer ones.
 const LINES: f64 = 0.25;
@@ -23,7 +29,15 @@ pub struct SharedVolume {
 
 impl CollisionScene {
     /// The volume of the region that lies in both solids.
-    pub fn shared_volume(&self, motion: &Motion, work: &mut Workspace) -> SharedVolume {
+    pub fn shared_volume(
+        &self,
+        motion: &Motion,
+        deadline: Deadline,
+        work: &mut Workspace,
+    ) -> SharedVolume {
+        if deadline.is_set() {
+            return self.volume_by_pairs(motion, deadline, work);
+        }
         let inner = self.shared(motion, 0.0, work);
         if self.band() == 0.0 {
             return SharedVolume {
@@ -33,6 +47,44 @@ impl CollisionScene {
         }
         let outer = self.shared(motion, self.band(), work);
         let (low, high) = ((inner.0 - inner.1).max(0.0), outer.0 + outer.1);
+        SharedVolume {
+            value: 0.5 * (low + high),
+            bound: 0.5 * (high - low),
+        }
+    }
+
+    /// Bounds from the pairs of balls that meet; of a visit that the deadline ends, from the balls about all of them.
+    fn volume_by_pairs(
+        &self,
+        motion: &Motion,
+        deadline: Deadline,
+        work: &mut Workspace,
+    ) -> SharedVolume {
+        let trees = self.trees();
+        let [a, b] = self.solids().each_ref().map(|solid| solid.epsilon());
+        let Workspace { pairs, marks, .. } = work;
+        for (marks, tree) in marks.iter_mut().zip(trees) {
+            marks.clear();
+            marks.resize(tree.balls().len(), false);
+        }
+        let (mut low, mut high, mut seen) = (0.0f64, [0.0f64; 2], 0usize);
+        let all = pairs.visit(trees, motion, self.band(), |[i, j], moved, squared| {
+            let first = trees[0].balls()[i];
+            let grown = [(0, i, first.radius + a), (1, j, moved.radius + b)];
+            for (side, ball, radius) in grown {
+                if !std::mem::replace(&mut marks[side][ball], true) {
+                    high[side] += ball_volume(radius);
+                }
+            }
+            low = low.max(lens_volume(first.radius, moved.radius, squared.sqrt()));
+            seen += 1;
+            !seen.is_multiple_of(PAIRS_A_LOOK) || !deadline.has_come()
+        });
+        let bounds = [0, 1].map(|side| match trees[side].bound() {
+            Some(bound) if !all => ball_volume(bound.radius + self.band()),
+            _ => high[side],
+        });
+        let high = bounds[0].min(bounds[1]);
         SharedVolume {
             value: 0.5 * (low + high),
             bound: 0.5 * (high - low),
@@ -71,6 +123,10 @@ impl CollisionScene {
             _ => (0.0, 0.0),
         }
     }
+}
+
+fn ball_volume(radius: f64) -> f64 {
+    4.0 / 3.0 * PI * radius.powi(3)
 }
 
 /// The marked balls, grown and moved; `None` where none is marked.

@@ -1,5 +1,7 @@
 //! Closed forms: balls, boxes, shells and nested solids.
 
+use std::time::Duration;
+
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::BallSolid;
@@ -208,7 +210,7 @@ fn deadlines_bracket() {
     let motion = scene.motion(&pose);
     let mut work = Workspace::new();
     let whole = scene.distance(&motion, Deadline::NEVER, &mut work);
-    let now = Deadline::after(Some(std::time::Duration::ZERO));
+    let now = Deadline::after(Some(Duration::ZERO));
     let early = scene.distance(&motion, now, &mut work);
     assert!(early.low <= whole.high && early.high >= whole.high);
     let found = scene.verdict(&motion, now, &mut work);
@@ -318,7 +320,7 @@ fn shared_volume_of_two_balls_is_the_lens() {
     let mut work = Workspace::new();
     let d = 1.1f64;
     let motion = scene.motion(&at([d, 0.0, 0.0]));
-    let volume = scene.shared_volume(&motion, &mut work);
+    let volume = scene.shared_volume(&motion, Deadline::NEVER, &mut work);
     let (r, s) = (1.0f64, 0.8f64);
     let exact = std::f64::consts::PI
         * (r + s - d).powi(2)
@@ -328,6 +330,19 @@ fn shared_volume_of_two_balls_is_the_lens() {
         (volume.value - exact).abs() < 0.02 * exact,
         "{volume:?} {exact}"
     );
+    // A deadline leaves bounds by balls, whether it comes or not.
+    for time in [Duration::ZERO, Duration::from_secs(60)] {
+        let quick = scene.shared_volume(&motion, Deadline::after(Some(time)), &mut work);
+        assert!(
+            (quick.value - exact).abs() <= quick.bound + 1e-12,
+            "{quick:?} {exact}"
+        );
+    }
     let motion = scene.motion(&at([1.9, 0.0, 0.0]));
-    assert_eq!(scene.shared_volume(&motion, &mut work).value, 0.0);
+    assert_eq!(
+        scene
+            .shared_volume(&motion, Deadline::NEVER, &mut work)
+            .value,
+        0.0
+    );
 }
