@@ -1,8 +1,7 @@
 //! Each kind of bad input: exit code 2, a message that names the fault, the file and the line, and what to do; and
 //! nothing written.
 
-mod molecules;
-
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 

@@ -1,15 +1,13 @@
 //! Many pairs in one call: what each leaves, what a failure costs, and what a second call does again.
 
-mod program;
-
 use knotdock::output::files::folder_lock::FolderLock;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
-use program::succeed;
 use serde_json::Value;
 
 /// A folder `in` with two small pairs, each with a table of both.

@@ -2,9 +2,6 @@
 //! of solids that are apart lies between the bounds. `scripts/checks/check_solids.py` does the same with coal and
 //! Manifold, and more poses.
 
-#[path = "../structures/examples/docking_parts/mod.rs"]
-#[allow(dead_code)]
-mod docking_parts;
 #[path = "../benches/collide/path.rs"]
 #[allow(dead_code)]
 mod path;
@@ -12,7 +9,7 @@ mod path;
 #[allow(dead_code)]
 mod peers;
 
-use docking_parts::{Part, linked_torus, peg_and_hole};
+use crate::docking_parts::{Part, linked_torus, peg_and_hole};
 use knotdock::geometry::collide::{CollisionScene, Deadline, Verdict, Workspace};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;

@@ -1,13 +1,11 @@
 //! `--config`: options from a file, which commands take them, and what of them wins.
 
-mod molecules;
-mod program;
-
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
-use program::succeed;
 use serde_json::Value;
 
 const OPTIONS: &str = "\

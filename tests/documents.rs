@@ -1,4 +1,4 @@
-//! Documents name files that exist.
+//! Documents name files that exist, and no file of tests is left out.
 
 use std::fs;
 use std::path::Path;
@@ -41,4 +41,27 @@ fn files_that_pages_name_exist() {
         }
     }
     assert!(named > 30, "{named}");
+}
+
+/// A file that no `mod` names is compiled by nobody, and its tests pass unrun.
+#[test]
+fn every_file_of_tests_is_a_module() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for folder in ["tests", "scoring/tests", "structures/tests"] {
+        let main = fs::read_to_string(root.join(folder).join("main.rs")).unwrap();
+        for entry in fs::read_dir(root.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let holds_code = path.extension().is_some_and(|end| end == "rs")
+                || path.join("mod.rs").exists()
+                || path.join("main.rs").exists();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            if holds_code && name != "main" {
+                assert!(
+                    main.lines().any(|line| line == format!("mod {name};")),
+                    "{}",
+                    path.display()
+                );
+            }
+        }
+    }
 }

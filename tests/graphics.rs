@@ -3,17 +3,11 @@
 
 #[path = "../scoring/tests/scene/adapter.rs"]
 mod adapter;
-#[path = "dock_run/run.rs"]
-mod dock_run;
-mod molecules;
-#[path = "../structures/examples/docking_parts/mod.rs"]
-#[allow(dead_code)] // A pair of parts is all that is used.
-mod parts;
-mod program;
 
+use crate::dock_run::run::{comparable, number, place, rows, run};
+use crate::docking_parts;
 use adapter::adapter;
 use assert_cmd::cargo::cargo_bin_cmd;
-use dock_run::{comparable, number, place, rows, run};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -99,7 +93,7 @@ fn meshes() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let pair = parts::peg_and_hole(0.05);
+    let pair = docking_parts::peg_and_hole(0.05);
     for (name, part) in [("a.stl", &pair.receptor), ("b.stl", &pair.ligand)] {
         fs::write(folder.path().join(name), part.stl()).unwrap();
     }

@@ -1,8 +1,7 @@
 //! Names in files that a terminal or a spreadsheet would obey: escape sequences are shown and not sent, formulas are
 //! quoted and not run.
 
-mod molecules;
-
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 use std::process::Output;

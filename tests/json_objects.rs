@@ -1,14 +1,12 @@
 //! The JSON object of each command, and what goes to which stream.
 
-mod molecules;
-mod program;
-
+use crate::molecules;
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use program::succeed;
+use crate::program::succeed;
 use serde_json::Value;
 
 fn place() -> tempfile::TempDir {

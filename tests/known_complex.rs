@@ -1,13 +1,11 @@
 //! `knotdock evaluate` with known complexes as people have them: several copies, one chain name, two models, two data
 //! blocks.
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
-use program::succeed;
 use serde_json::Value;
 
 /// Trypsin or its inhibitor, unbound or bound: the atom records of an example, all of the chain given.

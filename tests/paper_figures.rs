@@ -4,15 +4,13 @@
 
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
-#[path = "../structures/examples/docking_parts/mod.rs"]
-#[allow(dead_code)]
-mod docking_parts;
 #[path = "../benches/paper_figures/minkowski.rs"]
 mod minkowski;
 #[path = "../benches/paper_figures/scene.rs"]
 #[allow(dead_code)]
 mod scene;
 
+use crate::docking_parts;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::spectrum::{self, Body, FrequencyBox, Kernel, exact};

@@ -1,14 +1,12 @@
 //! Reading of predicted models and of biological assemblies, through every command: it is reported, recorded and
 //! followed.
 
-mod molecules;
-mod program;
-
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
-use program::succeed;
 use serde_json::Value;
 
 /// The ligand as predicted: pLDDT 42, 47, 52 ... 97, two residues below 50.

@@ -1,14 +1,12 @@
 //! Residues that are left out by their name, ligands that are warned of, and chains that are docked against
 //! themselves: through every command.
 
-mod molecules;
-mod program;
-
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
-use program::succeed;
 use serde_json::{Value, json};
 
 /// An inhibitor of six atoms, far from the receptor.

@@ -1,7 +1,6 @@
 //! `knotdock score`: the ladder reaches the exact score, bounds hold, and poses that are none are refused.
 
-mod molecules;
-
+use crate::molecules;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -6,9 +6,9 @@
 //! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every
 //! pose in Python.
 //!
-//! What moved, by how much, and in which term: `cargo test --test scoring_table -- --nocapture`. After a change that
-//! is meant: `KNOTDOCK_BLESS=1 cargo test --test scoring_table`, and say in the change what moved and why. The cases
-//! are made by `scripts/reference/scoring_cases.py`.
+//! What moved, by how much, and in which term: `cargo test --test all scoring_table -- --nocapture`. After a change
+//! that is meant: `KNOTDOCK_BLESS=1 cargo test --test all scoring_table`, and say in the change what moved and why.
+//! The cases are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -222,7 +222,7 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
     assert!(
         lines.is_empty(),
         "{} moves in tests/scoring_table/{name}, the first of them:\n{}\n\
-         If they are meant: KNOTDOCK_BLESS=1 cargo test --test scoring_table",
+         If they are meant: KNOTDOCK_BLESS=1 cargo test --test all scoring_table",
         lines.len(),
         lines
             .iter()

@@ -1,9 +1,6 @@
 //! `knotdock tradeoff`: its table, its fronts, its advice and what it refuses, on two helices and on two meshes.
 
-#[path = "../structures/examples/docking_parts/mod.rs"]
-#[allow(dead_code)] // The example writes files, which the tests do by themselves.
-mod parts;
-
+use crate::docking_parts;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -215,7 +212,7 @@ fn molecules() {
 #[test]
 fn meshes() {
     let folder = tempfile::tempdir().unwrap();
-    let pair = parts::broken_block(0.05);
+    let pair = docking_parts::broken_block(0.05);
     fs::write(folder.path().join("receptor.stl"), pair.receptor.stl()).unwrap();
     fs::write(folder.path().join("ligand.stl"), pair.ligand.stl()).unwrap();
     let object = swept(

@@ -5,8 +5,8 @@
 //! (`structures/examples/docking_parts`), and its size here comes near this share. It is turned once, so that none of
 //! its faces lies along the grid.
 
-use crate::docking_parts::peg_and_hole;
-use crate::minkowski::Node;
+use super::docking_parts::peg_and_hole;
+use super::minkowski::Node;
 use knotdock::geometry::gap::spectrum::Body;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;

@@ -15,9 +15,7 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-#[path = "../src/test_support.rs"]
-mod test_support;
-use test_support::Numbers;
+use crate::scene::Numbers;
 
 fn options(tolerance: f64) -> EngineOptions {
     EngineOptions {

@@ -2,8 +2,8 @@
 //!
 //! Errors of G are relative to the best exact score, errors of a slice to its largest value.
 
-mod scene;
-
+use crate::scene;
+use crate::scene::{RADII, cloud, engine_options as options};
 use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
@@ -16,7 +16,6 @@ use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex64;
-use scene::{RADII, cloud, engine_options as options};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -3,15 +3,14 @@
 
 #[path = "scene/adapter.rs"]
 mod adapter;
-mod scene;
 
+use crate::scene::{Numbers, Pair, RADII, cloud, engine_options, some_rotation};
 use adapter::adapter;
 use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
 use knotdock_scoring::engine::{EngineOptions, Plan};
 use knotdock_scoring::se3::{HalfTurn, Pose};
 use knotdock_structures::Knots;
 use nalgebra::UnitQuaternion;
-use scene::{Numbers, Pair, RADII, cloud, engine_options, some_rotation};
 
 const MEMORY: u64 = 256 << 20;
 

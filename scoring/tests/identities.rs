@@ -1,7 +1,6 @@
 //! Identities of the exact score that hold whatever the knots are.
 
-mod scene;
-
+use crate::scene;
 use knotdock_scoring::exact::{ExactScore, ExactScorer};
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::se3::Pose;

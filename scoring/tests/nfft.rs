@@ -7,9 +7,7 @@ use knotdock_scoring::transform::nufft::{Plan, PlanError, TransformError};
 use num_complex::{Complex, Complex64};
 use std::f64::consts::PI;
 
-#[path = "../src/test_support.rs"]
-mod test_support;
-use test_support::Numbers;
+use crate::scene::Numbers;
 
 /// Numbers, points and weights that every run sees alike.
 struct Random(Numbers);

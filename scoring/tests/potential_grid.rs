@@ -1,7 +1,6 @@
 //! The potential grid against the sum of the same modes, and its gradient against its own values.
 
-mod scene;
-
+use crate::scene::{Numbers, RADII, cloud, engine_options};
 use knotdock_scoring::engine::{Plan, ReceptorSpectra};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -10,7 +9,6 @@ use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
-use scene::{Numbers, RADII, cloud, engine_options};
 
 struct Pair {
     plan: Plan,

@@ -1,7 +1,6 @@
 //! Grown balls with weights of their own: the engine of the product kernel against the sum over all pairs.
 
-mod scene;
-
+use crate::scene::{cloud, engine_options};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::kernel::Band;
@@ -9,7 +8,6 @@ use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
-use scene::{cloud, engine_options};
 use std::sync::Arc;
 
 /// Balls of 20 radii from 1 to 6, their weights, and others for the same balls grown.

@@ -1,8 +1,8 @@
 //! One configuration from chosen modes: against the engine's grid, finite differences, the exact sum, and its own error
 //! bounds.
 
-mod scene;
-
+use crate::scene;
+use crate::scene::{RADII, engine_options as options};
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -13,7 +13,6 @@ use knotdock_scoring::truncated::{TruncatedCorrelation, envelope};
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
-use scene::{RADII, engine_options as options};
 use std::sync::Arc;
 
 /// A ball of knots off the origin.

@@ -3,8 +3,8 @@
 //!
 //! Errors are relative to the best exact score of the sweep; errors of a slice to its largest value.
 
-mod scene;
-
+use crate::scene;
+use crate::scene::{RADII, cloud};
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{
     CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
@@ -20,7 +20,6 @@ use knotdock_scoring::transform::ndft::{ndft_3d, ndft_4d};
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex64;
-use scene::{RADII, cloud};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -2,14 +2,12 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
 use std::path::Path;
 
+use crate::pdb_text::{ATOM, Line, text};
 use knotdock_structures::molecule::{
     BuiltAssembly, DropKind, InputSpec, Molecule, ReadError, ReadOptions, read, read_with_fates,
 };
-use pdb_text::{ATOM, Line, text};
 
 /// Two glycine carbons of chain A, at (5, 1, 2) and (6, 1, 2), one of chain B and a zinc of chain A on the axis, (0, 0,
 /// 2).

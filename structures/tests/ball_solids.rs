@@ -1,15 +1,13 @@
 //! Solids of meshes lie between their inner and their outer balls.
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::path::Path;
 
+use crate::solids::{cuboid, scattered};
 use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::sampling::ball_tree::BallTree;
-use solids::{cuboid, scattered};
 
 fn block(half: [f64; 3]) -> Solid {
     cuboid(half.map(|side| -side), half).solid()

@@ -3,10 +3,8 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
+use crate::solids::{Surface, cuboid, scattered, sphere};
 use knotdock_structures::mesh::{MeshReport, Solid};
-use solids::{Surface, cuboid, scattered, sphere};
 
 /// The report of a surface, after a check that its volume is the one expected, by both ways to measure it.
 fn with_volume(surface: &Surface, expected: f64) -> MeshReport {

@@ -2,15 +2,13 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::f64::consts::PI;
 
+use crate::solids::{Surface, cuboid, sphere};
 use knotdock_structures::mesh::{MeshFormat, MeshReport, Solid, parse};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
 use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampling::{BallSet, Method, SampleError, SetName, knots, sample};
-use solids::{Surface, cuboid, sphere};
 
 /// What was made of a shape, and how it fits, lengths as shares of eps.
 struct Sampled {
@@ -300,7 +298,7 @@ fn a_sheet_has_next_to_no_inside() {
     }
 }
 
-/// A million triangles, by `cargo test -p knotdock-structures --test hard_meshes -- --ignored --nocapture`.
+/// A million triangles, by `cargo test -p knotdock-structures --test all hard_meshes -- --ignored --nocapture`.
 #[test]
 #[ignore = "a million triangles take a while"]
 fn a_million_triangles() {

@@ -2,12 +2,10 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
 use std::io::Write;
 
+use crate::pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 use knotdock_structures::molecule::{Format, InputSpec, ReadError, ReadOptions, read};
-use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 #[test]
 fn records_that_break_pdbtbx_are_filtered_out() {

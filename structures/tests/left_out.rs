@@ -3,12 +3,10 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
+use crate::pdb_text::{Line, names, text};
 use knotdock_structures::molecule::{
     DropKind, Dropped, InputSpec, Molecule, ReadError, ReadOptions, Waters, read,
 };
-use pdb_text::{Line, names, text};
 
 fn read_by(lines: &[Line], options: &ReadOptions) -> Result<Molecule, ReadError> {
     let folder = tempfile::tempdir().unwrap();

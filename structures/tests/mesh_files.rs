@@ -2,12 +2,10 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::fs;
 
+use crate::solids::{Surface, cuboid, scattered, sphere};
 use knotdock_structures::mesh::{MeshErrorKind, MeshFormat, Solid, parse, read};
-use solids::{Surface, cuboid, scattered, sphere};
 
 fn unit_cube() -> Surface {
     cuboid([0.0; 3], [1.0; 3])

@@ -2,10 +2,8 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
+use crate::solids::{Surface, cuboid, scattered, sphere};
 use knotdock_structures::mesh::{Solid, from_triangles};
-use solids::{Surface, cuboid, scattered, sphere};
 
 /// Signed distance to a box centred at zero, above zero inside.
 fn box_depth(half: [f64; 3], p: [f64; 3]) -> f64 {

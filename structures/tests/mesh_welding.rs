@@ -3,13 +3,11 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::f64::consts::PI;
 use std::fmt::Write;
 
+use crate::solids::{Surface, cuboid, sphere};
 use knotdock_structures::mesh::{Mesh, MeshFormat, MeshReport, parse};
-use solids::{Surface, cuboid, sphere};
 
 fn read(bytes: &[u8], format: MeshFormat) -> (Mesh, MeshReport) {
     parse(bytes, format).unwrap_or_else(|error| panic!("{error}"))

@@ -2,10 +2,8 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
+use crate::pdb_text::read_text;
 use knotdock_structures::molecule::{Labels, Molecule, OtherName};
-use pdb_text::read_text;
 
 /// The inhibitor of 1PPE: 29 residues, 221 atoms, a charge of -1.
 fn example() -> String {

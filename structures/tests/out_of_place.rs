@@ -2,12 +2,10 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
+use crate::pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 use knotdock_structures::molecule::{
     AlternateLocation, InputSpec, Molecule, ReadError, ReadOptions, read,
 };
-use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 fn example(name: &str) -> String {
     let path = format!("{}/examples/{name}", env!("CARGO_MANIFEST_DIR"));

@@ -2,13 +2,11 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
+use crate::pdb_text::{ATOM, Line, names, text};
 use knotdock_structures::molecule::{
     AlternateLocation, DropKind, Hetatm, Hydrogens, InputSpec, ModelChoice, Molecule, ReadError,
     ReadOptions, Waters, read, read_with_fates,
 };
-use pdb_text::{ATOM, Line, names, text};
 
 fn read_by(text: &str, options: &ReadOptions) -> Result<Molecule, ReadError> {
     let folder = tempfile::tempdir().unwrap();

@@ -2,15 +2,13 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
 use std::fmt::Write;
 
+use crate::pdb_text::{read_bytes, read_text};
 use knotdock_structures::molecule::{
     Confidence, ConfidenceSource, DropKind, InputSpec, ReadError, ReadOptions, read,
     read_with_fates,
 };
-use pdb_text::{read_bytes, read_text};
 
 /// PDB records of glycines of four atoms; the B value of atom a of residue r is `b(r, a)`.
 fn glycines(residues: usize, b: impl Fn(usize, usize) -> f64) -> String {

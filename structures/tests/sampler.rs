@@ -2,10 +2,9 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::f64::consts::PI;
 
+use crate::solids::{Surface, cuboid, scattered, sphere};
 use knotdock_structures::mesh::{Solid, read};
 use knotdock_structures::sampling::ball_tree::BallTree;
 use knotdock_structures::sampling::decomposition::{DecompositionOptions, decompose};
@@ -14,7 +13,6 @@ use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::hausdorff::HausdorffMeter;
 use knotdock_structures::sampling::skeletal_density::{Priority, SHARE_WIDTH, share};
 use knotdock_structures::sampling::{Ball, Method, SetName, sample};
-use solids::{Surface, cuboid, scattered, sphere};
 
 /// Past a wall thinner than anything the surface is far, and still no ball fits into the wall.
 #[test]

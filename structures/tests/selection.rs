@@ -2,10 +2,8 @@
 
 #![cfg(feature = "molecule")]
 
-mod pdb_text;
-
+use crate::pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 use knotdock_structures::molecule::{DropKind, GroupKind, InputSpec, ReadError, ReadOptions, read};
-use pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
 
 #[test]
 fn alternate_locations_go_by_summed_occupancy_and_then_alphabet() {

@@ -2,16 +2,14 @@
 
 #![cfg(feature = "mesh")]
 
-mod solids;
-
 use std::f64::consts::PI;
 
+use crate::solids::{cuboid, sphere};
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::weights::fit;
 use knotdock_structures::sampling::{Ball, Method, sample};
-use solids::{cuboid, sphere};
 
 fn bump(alpha: f64) -> Bump {
     Bump::new(alpha).unwrap()

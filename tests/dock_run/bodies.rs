@@ -6,7 +6,7 @@ use std::fs;
 use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
-use crate::run::*;
+use super::run::*;
 
 #[test]
 fn the_same_chain_on_both_sides_docks() {

@@ -4,7 +4,7 @@ use std::fs;
 
 use assert_cmd::cargo::cargo_bin_cmd;
 
-use crate::run::*;
+use super::run::*;
 
 #[test]
 fn a_recorded_run_repeats_to_the_byte() {

@@ -7,7 +7,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
-use crate::run::*;
+use super::run::*;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
                       fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,z_score,\

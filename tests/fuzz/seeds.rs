@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::readers::Reader;
+use super::readers::Reader;
 
 impl Reader {
     /// Sound inputs, small so that a change is likely to hit something that matters.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::fs;
 
-use crate::{folder, object, run};
+use super::{folder, object, run};
 
 fn volume(object: &serde_json::Value, set: &str) -> f64 {
     object[set]["volume"].as_f64().unwrap()

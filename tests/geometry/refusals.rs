@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{folder, run};
+use super::{folder, run};
 
 #[test]
 fn bad_input_is_refused_with_a_remedy() {

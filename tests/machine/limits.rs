@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::place::{Place, error};
+use super::place::{Place, error};
 
 /// SIGXFSZ ended the program, and what was half-written stayed.
 #[test]

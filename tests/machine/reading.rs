@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 
 use serde_json::Value;
 
-use crate::place::{Place, error};
+use super::place::{Place, error};
 
 /// A folder with a run in `run`, which `native` was measured against.
 fn docked() -> Place {

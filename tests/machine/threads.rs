@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use assert_cmd::cargo::cargo_bin;
 
-use crate::place::{Place, error, not_run};
+use super::place::{Place, error, not_run};
 
 /// Commands that compute, each into a place of its own.
 const COMMANDS: [&str; 8] = [

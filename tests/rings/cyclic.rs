@@ -1,6 +1,11 @@
 //! Cn: copies of one molecule about an axis.
 
 use super::*;
+use knotdock::dock::scene::Scene;
+use knotdock::options::{DockOptions, EffectChoice};
+use knotdock_scoring::engine::Plan;
+use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::terms::effect::Effect;
 
 /// Trypsin with the inhibitor of its neighbour in a ring of two: each then holds the other's inhibitor, as the
 /// complex has it, and no fit is as good.
@@ -66,6 +71,16 @@ fn gyration(molecule: &Molecule) -> f64 {
         .sqrt()
 }
 
+/// The exact sum of shape over two copies of a molecule, as `score` has it.
+fn scorer_of_shape(molecule: &Molecule) -> ExactScorer {
+    let options = DockOptions::default()
+        .changed(|options| options.kernel.effects = EffectChoice::Only(vec![Effect::Shape]));
+    let scene = Scene::new(molecule, molecule, &options).unwrap();
+    let engine = options.kernel.engine();
+    let plan = Plan::new(&scene.receptor, &scene.ligand, engine).unwrap();
+    ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()
+}
+
 /// Every row closes into a ring and repeats no better one of its cluster, and its parts are the exact sums of
 /// neighbours and of the others at the printed pose.
 #[test]
@@ -74,15 +89,8 @@ fn rows_are_rings_and_score_as_their_pairs_do() {
     let file = example("ligand_unbound");
     let mut alphas = molecule(&file);
     alphas.atoms.retain(|atom| atom.name == "CA");
-    let score = |pose: &Pose| {
-        let [w, x, y, z] = pose.quaternion();
-        let [a, b, c]: [f64; 3] = pose.translation.into();
-        let pose = format!("--pose={w},{x},{y},{z},{a},{b},{c}");
-        let options = ["score", &file, &file, &pose, "--effects", "shape", "--json"];
-        let output = succeed(folder.path(), options);
-        let reported: Value = serde_json::from_slice(&output.stdout).unwrap();
-        reported["exact"].as_f64().unwrap()
-    };
+    let scorer = scorer_of_shape(&molecule(&file));
+    let score = |pose: &Pose| scorer.score(pose).score;
     for name in ["C2", "C3", "C4", "C5"] {
         let (reported, rows) = small(folder.path(), name, &["--no-cluster", "--diagnostics"]);
         assert_eq!(reported["run"]["options"]["search"]["symmetry"], name);

@@ -1,7 +1,7 @@
 //! Scenes for tests: clouds of knots, options, and the fast path compared with the exact pair sum. One set for all test
 //! files, the root package's included.
 
-// Every test file is a program of its own and uses a part of this.
+// The tests of either package use a part of this.
 #![allow(dead_code)]
 
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra, Workspace};

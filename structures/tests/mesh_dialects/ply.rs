@@ -1,6 +1,6 @@
 //! PLY files of other programs, as text and binary.
 
-use crate::{cube, is_cube};
+use super::{cube, is_cube};
 
 /// Numbers that are none in properties that no mesh needs, blank lines, strips of triangles, indices of other types:
 /// all were refused.

@@ -1,5 +1,4 @@
 //! Meshes of solids whose volumes and distances are known, and files of them.
-#![allow(dead_code)] // Each test binary uses its own share.
 
 use std::f64::consts::PI;
 use std::fmt::Write;

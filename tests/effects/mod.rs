@@ -2,15 +2,13 @@
 
 mod flexible_regions;
 mod known_residues;
-#[path = "../molecules/mod.rs"]
-mod molecules;
-#[path = "../program/mod.rs"]
-mod program;
 mod rescoring;
 
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
@@ -20,7 +18,6 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{POSE_TERMS, Workspace};
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
-use program::succeed;
 use serde_json::Value;
 
 fn example(name: &str) -> String {

@@ -4,15 +4,13 @@
 #![cfg(feature = "mesh")]
 
 mod ply;
-#[path = "../solids/mod.rs"]
-mod solids;
 
 use std::fs;
 
+use crate::solids::{Surface, cuboid};
 use knotdock_structures::mesh::{
     Mesh, MeshError, MeshErrorKind, MeshFormat, MeshReport, parse, read,
 };
-use solids::{Surface, cuboid};
 
 fn cube() -> Surface {
     cuboid([0.0; 3], [10.0; 3])

@@ -3,9 +3,6 @@
 //! Limits are set by `ulimit` of the shell, so that they hold for the program alone. A check that the machine at hand
 //! does not allow says `NOT RUN` in its output.
 
-#[path = "../molecules/mod.rs"]
-mod molecules;
-
 #[cfg(unix)]
 mod limits;
 #[cfg(unix)]

@@ -1,9 +1,5 @@
 //! The numerical hard cases and identities of kernels, transforms, precision and the periodic box: one file a family,
-//! each case with its reason, and its story where it first failed. One program, since every one that uses the engines
-//! compiles them anew.
-
-#[path = "../../scoring/tests/scene/mod.rs"]
-mod scene;
+//! each case with its reason, and its story where it first failed.
 
 mod identities;
 mod kernel;

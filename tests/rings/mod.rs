@@ -5,13 +5,12 @@
 
 mod cyclic;
 mod dihedral;
-#[path = "../program/mod.rs"]
-mod program;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::Symmetry;
@@ -19,7 +18,6 @@ use knotdock_structures::molecule::{
     Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
 };
 use nalgebra::{Unit, Vector3};
-use program::succeed;
 use serde_json::Value;
 
 type Row = BTreeMap<String, String>;

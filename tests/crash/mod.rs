@@ -5,12 +5,10 @@
 //! nothing behind.
 #![cfg(debug_assertions)]
 
-#[path = "../molecules/mod.rs"]
-mod molecules;
-
 mod folder;
 mod scenario;
 
+use crate::molecules;
 use std::fs;
 use std::path::Path;
 

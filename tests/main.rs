@@ -1,0 +1,42 @@
+//! The tests of the program and its library, one module a subject.
+//!
+//! One program holds them all: each further one would link all crates again and wait for the slowest test of the last.
+//! `cargo test --test all SUBJECT` runs a subject.
+
+#[path = "../structures/examples/docking_parts/mod.rs"]
+#[allow(dead_code)] // The example writes files, which the tests do by themselves.
+mod docking_parts;
+mod molecules;
+mod program;
+#[path = "../scoring/tests/scene/mod.rs"]
+mod scene;
+
+mod bad_input;
+mod batch;
+mod collide;
+mod collide_exact;
+mod config;
+mod crash;
+mod dock_run;
+mod documents;
+mod effects;
+mod example;
+mod fuzz;
+mod geometry;
+#[cfg(feature = "gpu")]
+mod graphics;
+mod hard_cases;
+mod hostile_names;
+mod json_objects;
+mod known_complex;
+mod machine;
+mod memory;
+mod mesh_docking;
+mod paper_figures;
+mod reading;
+mod residues_by_name;
+mod rings;
+mod sample;
+mod score;
+mod scoring_table;
+mod tradeoff;
