@@ -136,17 +136,22 @@ fn slices_meet_the_requested_tolerance() {
 
 /// Below 1e-2 the grid's spacing comes from a bound on what the modes beyond it take, with a slack that whole sums have
 /// never used up. Cases: small bodies, whose few pairs may be off in phase, offsets near zero, where skins and cores
-/// nearly cancel, and kernels with a cusp or an edge.
+/// nearly cancel, and kernels with a cusp or an edge. Of large bodies, the slowest and the least delicate, every two of
+/// offset, kernel and tolerance meet; `KNOTDOCK_WHOLE=1` takes all three together.
 #[test]
 fn cut_modes_stay_within_the_tolerance() {
+    let whole = std::env::var_os("KNOTDOCK_WHOLE").is_some();
     let (mut worst_share, mut counted) = (0.0f64, 0);
     for (receptor, ligand) in [(1, 1), (4, 2), (20, 10), (160, 60)] {
         let size = 2.0 * f64::from(receptor).cbrt();
         let a = cloud(receptor as usize, size, &RADII, 21);
         let b = cloud(ligand, 0.8 * size, &RADII, 22);
-        for offset in [0.0, 1.0, 2.0] {
-            for alpha in [0.5, 2.0, f64::INFINITY] {
-                for tolerance in [5e-3, 1e-4, 1e-6] {
+        for (i, offset) in [0.0, 1.0, 2.0].into_iter().enumerate() {
+            for (j, alpha) in [0.5, 2.0, f64::INFINITY].into_iter().enumerate() {
+                for (k, tolerance) in [5e-3, 1e-4, 1e-6].into_iter().enumerate() {
+                    if receptor == 160 && (i + j + k) % 3 != 0 && !whole {
+                        continue;
+                    }
                     let mut options = options(tolerance);
                     (options.kernel.offset, options.kernel.alpha) = (offset, alpha);
                     let pair = scene::Pair::<f64>::new(&a, &b, options);

@@ -12,8 +12,13 @@ use std::path::Path;
 
 use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock::dock::scene::Scene;
+use knotdock::options::{DockOptions, EffectChoice};
+use knotdock_scoring::engine::Plan;
+use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::Symmetry;
+use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::{
     Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
 };
@@ -80,4 +85,14 @@ fn refused(folder: &Path, command: &str) -> String {
     let reported = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{command}: {reported}");
     reported
+}
+
+/// The exact sum of shape over two copies of a molecule, as `score` has it.
+fn scorer_of_shape(molecule: &Molecule) -> ExactScorer {
+    let options = DockOptions::default()
+        .changed(|options| options.kernel.effects = EffectChoice::Only(vec![Effect::Shape]));
+    let scene = Scene::new(molecule, molecule, &options).unwrap();
+    let engine = options.kernel.engine();
+    let plan = Plan::new(&scene.receptor, &scene.ligand, engine).unwrap();
+    ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()
 }
