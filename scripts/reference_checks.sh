@@ -1,36 +1,67 @@
 #!/usr/bin/env bash
-# Checks against other programs and by hand, by Python in virtual environments of their own under target/. Needs python3 with venv.
+# Checks against other programs and by hand, by Python in virtual environments of their own under target/. Needs python3
+# with venv. With --install it makes the environments and checks nothing.
 set -euo pipefail
 shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=${CARGO_TARGET_DIR:-target}
-# Prints the Python that has what scripts/checks/requirements_NAME.txt names, each file of it by its hash.
-python() {
-    local venv=$target/python/$1 requirements=scripts/checks/requirements_$1.txt
-    if ! cmp --silent "$requirements" "$venv/installed.txt"; then
+knotdock=$target/debug/knotdock
+# Makes an environment: NAME, then those of scripts/checks/requirements_*.txt that it has, each file of it by its hash.
+install() {
+    local venv=$target/python/$1 files=()
+    for name in "${@:2}"; do files+=(--requirement "scripts/checks/requirements_$name.txt"); done
+    local wanted
+    wanted=$(for name in "${@:2}"; do cat "scripts/checks/requirements_$name.txt"; done)
+    if [ "$wanted" != "$(cat "$venv/installed.txt" 2>/dev/null)" ]; then
         rm -rf "$venv"
         python3 -m venv "$venv"
-        "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement "$requirements"
-        cp "$requirements" "$venv/installed.txt"
+        "$venv/bin/pip" install --quiet --disable-pip-version-check --no-compile "${files[@]}"
+        echo "$wanted" >"$venv/installed.txt"
     fi
-    echo "$venv/bin/python"
 }
+# DockQ wants an older numpy than the rest.
+install dockq dockq
+install others rdkit gemmi solids
+[ "${1:-}" != --install ] || exit 0
+old_numpy() { "$target/python/dockq/bin/python" "$@"; }
+python() { "$target/python/others/bin/python" "$@"; }
+
 # The tests build the program; building it alone would compile some of its dependencies again with fewer features.
 cargo test --workspace --no-run --quiet --locked
 example=structures/examples/1ppe
-# Either may be called the receptor.
-for sides in "receptor ligand" "ligand receptor"; do
-    read -r first second <<<"$sides"
-    "$(python dockq)" scripts/checks/check_dockq.py "$target/debug/knotdock" \
-        "${example}_${first}_unbound.pdb" "${example}_${second}_unbound.pdb" \
-        "${example}_${first}_bound.pdb" "${example}_${second}_bound.pdb"
-done
-"$(python dockq)" scripts/checks/check_atom_pairs.py
-"$(python dockq)" scripts/reference/pair_sum.py "$target/debug/knotdock"
-"$(python rdkit)" scripts/checks/check_rdkit.py "$target/debug/knotdock" structures/examples
+poses() {
+    # Either may be called the receptor.
+    for sides in "receptor ligand" "ligand receptor"; do
+        read -r first second <<<"$sides"
+        old_numpy scripts/checks/check_dockq.py "$knotdock" \
+            "${example}_${first}_unbound.pdb" "${example}_${second}_unbound.pdb" \
+            "${example}_${first}_bound.pdb" "${example}_${second}_bound.pdb"
+    done
+    old_numpy scripts/checks/check_atom_pairs.py
+    old_numpy scripts/reference/pair_sum.py "$knotdock"
+}
+shapes() { python scripts/checks/check_rdkit.py "$knotdock" structures/examples; }
 # The full set of files, five times as many, goes without --few.
-"$(python gemmi)" scripts/checks/check_gemmi.py "$target/debug/knotdock" "$target/stress" --few
-"$(python gemmi)" scripts/checks/check_assemblies.py "$target/debug/knotdock" "$target/stress" --few
+files() {
+    python scripts/checks/check_gemmi.py "$knotdock" "$target/stress" --few
+    python scripts/checks/check_assemblies.py "$knotdock" "$target/stress" --few
+}
 # The full set, 1,000 poses of each pair of solids, goes without --poses.
-"$(python solids)" scripts/checks/check_solids.py "$target/debug/knotdock" structures/examples/bunny.obj --poses 100
+solids() { python scripts/checks/check_solids.py "$knotdock" structures/examples/bunny.obj --poses 100; }
+
+# They wait for each other's files and for the network, so all run at once; what each says comes in one piece.
+words=$(mktemp -d)
+trap 'rm -rf "$words"' EXIT
+groups=(poses shapes files solids)
+running=()
+for group in "${groups[@]}"; do
+    (set -e; "$group") >"$words/$group" 2>&1 &
+    running+=($!)
+done
+failed=0
+for number in "${!groups[@]}"; do
+    wait "${running[number]}" || failed=1
+    cat "$words/${groups[number]}"
+done
+exit "$failed"
