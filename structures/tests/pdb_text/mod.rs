@@ -1,8 +1,5 @@
 //! Atom records as text, for tests of the PDB reader.
 
-// Each test file uses its own part of this.
-#![allow(dead_code)]
-
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
 
 /// An atom record: record name, atom name (4 columns), alternate location, residue, chain, number, insertion, x,
