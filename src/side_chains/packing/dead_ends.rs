@@ -1,0 +1,76 @@
+//! States that cannot be in the best answer.
+//!
+//! A state r of site i is a dead end if another state t of i is better whatever the other sites do: if
+//! E(r) - E(t) + sum_j min_s (E(r, s) - E(t, s)) > 0, over the states s of the sites j (Goldstein, Biophys. J. 66
+//! (1994) 1335-1340, eq. 6). The search ends when a pass over all sites finds none.
+
+use super::{Problem, TIE};
+
+/// The states of each site that are left, rising.
+pub(super) fn survivors(problem: &Problem) -> Vec<Vec<usize>> {
+    let tables = tables(problem);
+    let counts = problem.own.iter().map(Vec::len);
+    let mut alive: Vec<Vec<usize>> = counts.map(|count| (0..count).collect()).collect();
+    loop {
+        let mut dropped = false;
+        for site in 0..alive.len() {
+            let states = alive[site].clone();
+            let mut left = states.clone();
+            for &state in &states {
+                // A state that has gone by now may still show that another is worse, but for ties.
+                let is_dead = left.iter().any(|&other| {
+                    other != state
+                        && is_worse(&problem.own[site], &tables[site], &alive, [state, other])
+                });
+                if is_dead {
+                    left.retain(|&kept| kept != state);
+                }
+            }
+            dropped |= left.len() < states.len();
+            alive[site] = left;
+        }
+        if !dropped {
+            return alive;
+        }
+    }
+}
+
+/// Energies of a site's states with those of another, the other's running fastest.
+struct Table {
+    other: usize,
+    columns: usize,
+    energies: Vec<f64>,
+}
+
+/// Each site's tables.
+fn tables(problem: &Problem) -> Vec<Vec<Table>> {
+    let mut tables: Vec<Vec<Table>> = problem.own.iter().map(|_| Vec::new()).collect();
+    for pair in &problem.pairs {
+        let [a, b] = pair.sites;
+        let (rows, columns) = (problem.own[a].len(), problem.own[b].len());
+        let transposed = (0..rows * columns).map(|k| pair.energies[k % rows * columns + k / rows]);
+        tables[b].push(Table {
+            other: a,
+            columns: rows,
+            energies: transposed.collect(),
+        });
+        tables[a].push(Table {
+            other: b,
+            columns,
+            energies: pair.energies.clone(),
+        });
+    }
+    tables
+}
+
+/// Whether state `r` costs more than `t` whatever the other sites do.
+fn is_worse(own: &[f64], tables: &[Table], alive: &[Vec<usize>], [r, t]: [usize; 2]) -> bool {
+    let mut gain = own[r] - own[t];
+    for table in tables {
+        let row = |state: usize| &table.energies[state * table.columns..][..table.columns];
+        let (of_r, of_t) = (row(r), row(t));
+        let differences = alive[table.other].iter().map(|&state| of_r[state] - of_t[state]);
+        gain += differences.fold(f64::INFINITY, f64::min);
+    }
+    gain > TIE
+}
