@@ -4,11 +4,12 @@
 //! E(r) - E(t) + sum_j min_s (E(r, s) - E(t, s)) > 0, over the states s of the sites j (Goldstein, Biophys. J. 66
 //! (1994) 1335-1340, eq. 6). The search ends when a pass over all sites finds none.
 
+use super::site_tables::{SiteTable, site_tables};
 use super::{Problem, TIE};
 
 /// The states of each site that are left, rising.
 pub(super) fn survivors(problem: &Problem) -> Vec<Vec<usize>> {
-    let tables = tables(problem);
+    let tables = site_tables(problem);
     let counts = problem.own.iter().map(Vec::len);
     let mut alive: Vec<Vec<usize>> = counts.map(|count| (0..count).collect()).collect();
     loop {
@@ -35,41 +36,14 @@ pub(super) fn survivors(problem: &Problem) -> Vec<Vec<usize>> {
     }
 }
 
-/// Energies of a site's states with those of another, the other's running fastest.
-struct Table {
-    other: usize,
-    columns: usize,
-    energies: Vec<f64>,
-}
-
-/// Each site's tables.
-fn tables(problem: &Problem) -> Vec<Vec<Table>> {
-    let mut tables: Vec<Vec<Table>> = problem.own.iter().map(|_| Vec::new()).collect();
-    for pair in &problem.pairs {
-        let [a, b] = pair.sites;
-        let (rows, columns) = (problem.own[a].len(), problem.own[b].len());
-        let transposed = (0..rows * columns).map(|k| pair.energies[k % rows * columns + k / rows]);
-        tables[b].push(Table {
-            other: a,
-            columns: rows,
-            energies: transposed.collect(),
-        });
-        tables[a].push(Table {
-            other: b,
-            columns,
-            energies: pair.energies.clone(),
-        });
-    }
-    tables
-}
-
 /// Whether state `r` costs more than `t` whatever the other sites do.
-fn is_worse(own: &[f64], tables: &[Table], alive: &[Vec<usize>], [r, t]: [usize; 2]) -> bool {
+fn is_worse(own: &[f64], tables: &[SiteTable], alive: &[Vec<usize>], [r, t]: [usize; 2]) -> bool {
     let mut gain = own[r] - own[t];
     for table in tables {
-        let row = |state: usize| &table.energies[state * table.columns..][..table.columns];
-        let (of_r, of_t) = (row(r), row(t));
-        let differences = alive[table.other].iter().map(|&state| of_r[state] - of_t[state]);
+        let (of_r, of_t) = (table.row(r), table.row(t));
+        let differences = alive[table.other]
+            .iter()
+            .map(|&state| of_r[state] - of_t[state]);
         gain += differences.fold(f64::INFINITY, f64::min);
     }
     gain > TIE

@@ -31,16 +31,22 @@ pub(super) fn best(problem: &Problem, sites: &[usize], limit: usize) -> Option<V
     while !left.is_empty() {
         let size = |site: usize| {
             let others = neighbours(&tables, site).into_iter();
-            others.fold(counts[site], |size, other| size.saturating_mul(counts[other]))
+            others.fold(counts[site], |size, other| {
+                size.saturating_mul(counts[other])
+            })
         };
-        let next = left.iter().copied().min_by_key(|&site| (size(site), site))?;
+        let next = left
+            .iter()
+            .copied()
+            .min_by_key(|&site| (size(site), site))?;
         if size(next) > limit {
             return None;
         }
         left.retain(|&site| site != next);
         let neighbours = neighbours(&tables, next);
-        let (touching, others): (Vec<Table>, _) =
-            tables.into_iter().partition(|table| table.sites.contains(&next));
+        let (touching, others): (Vec<Table>, _) = tables
+            .into_iter()
+            .partition(|table| table.sites.contains(&next));
         tables = others;
         let (table, best) = eliminate(next, &neighbours, &touching, &counts);
         tables.push(table);
@@ -102,9 +108,17 @@ fn eliminate(
         .map(|table| {
             let stride = |wanted: usize| {
                 let at = table.sites.iter().position(|&one| one == wanted);
-                at.map_or(0, |at| table.sites[at + 1..].iter().map(|&one| counts[one]).product())
+                at.map_or(0, |at| {
+                    table.sites[at + 1..]
+                        .iter()
+                        .map(|&one| counts[one])
+                        .product()
+                })
             };
-            (neighbours.iter().map(|&other| stride(other)).collect(), stride(site))
+            (
+                neighbours.iter().map(|&other| stride(other)).collect(),
+                stride(site),
+            )
         })
         .collect();
     let mut states = vec![0; neighbours.len()];

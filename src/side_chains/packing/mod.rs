@@ -2,13 +2,15 @@
 //!
 //! [`Problem::solve`] drops states that cannot be in the best answer ([`dead_ends`]), takes the components apart that
 //! share no energy, and solves each exactly ([`elimination`]). A component that is too entangled for that is
-//! improved from the first states on ([`sweeps`]).
+//! improved from the states given ([`annealing`]).
 //!
 //! State 0 of every site is the present one. It wins ties, so that nothing moves without a gain.
 
+mod annealing;
 mod dead_ends;
 mod elimination;
-mod sweeps;
+mod numbers;
+mod site_tables;
 #[cfg(test)]
 mod tests;
 
@@ -46,7 +48,6 @@ pub(crate) struct Solution {
 
 impl Problem {
     /// Energy of all sites in these states.
-    #[cfg(test)]
     pub fn energy(&self, states: &[usize]) -> f64 {
         let own = self.own.iter().zip(states).map(|(own, &state)| own[state]);
         let of_pair = |pair: &Pair| {
@@ -56,12 +57,12 @@ impl Problem {
         own.sum::<f64>() + self.pairs.iter().map(of_pair).sum::<f64>()
     }
 
-    /// The states of least energy; of components whose tables would need more than `limit` entries, states that
-    /// single changes and changes of pairs do not improve.
-    pub fn solve(&self, limit: usize) -> Solution {
+    /// The states of least energy; of components whose tables would need more than `limit` entries, states that no
+    /// single change improves and that are no worse than those of `start`.
+    pub fn solve(&self, start: &[usize], limit: usize) -> Solution {
         let alive = dead_ends::survivors(self);
         let reduced = self.reduced(&alive);
-        let mut states: Vec<usize> = vec![0; self.own.len()];
+        let mut states: Vec<usize> = start.to_vec();
         let (mut exact, mut improved) = (0, 0);
         for sites in reduced.components() {
             if let Some(best) = elimination::best(&reduced, &sites, limit) {
@@ -71,7 +72,7 @@ impl Problem {
                 }
             } else {
                 improved += 1;
-                sweeps::improve(self, &sites, &alive, &mut states);
+                annealing::improve(self, &sites, &alive, &mut states);
             }
         }
         Solution {
@@ -122,6 +123,9 @@ impl Problem {
         for site in 0..root.len() {
             members[find(&root, site)].push(site);
         }
-        members.into_iter().filter(|sites| !sites.is_empty()).collect()
+        members
+            .into_iter()
+            .filter(|sites| !sites.is_empty())
+            .collect()
     }
 }

@@ -1,26 +1,14 @@
+use super::numbers::Numbers;
 use super::*;
-
-/// A generator of numbers from 0 to 1 (SplitMix64).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as f64 / u64::MAX as f64
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() * count as f64) as usize % count
-    }
-}
 
 /// Up to `sites` sites of up to `states` states; two of them share energies by a chance of `density`.
 fn problem(numbers: &mut Numbers, sites: usize, states: usize, density: f64) -> Problem {
-    let counts: Vec<usize> = (0..1 + numbers.below(sites)).map(|_| 1 + numbers.below(states)).collect();
-    let own = counts.iter().map(|&count| (0..count).map(|_| 4.0 * numbers.next()).collect());
+    let counts: Vec<usize> = (0..1 + numbers.below(sites))
+        .map(|_| 1 + numbers.below(states))
+        .collect();
+    let own = counts
+        .iter()
+        .map(|&count| (0..count).map(|_| 4.0 * numbers.next()).collect());
     let own = own.collect();
     let mut pairs = Vec::new();
     for b in 0..counts.len() {
@@ -29,7 +17,9 @@ fn problem(numbers: &mut Numbers, sites: usize, states: usize, density: f64) -> 
                 let size = counts[a] * counts[b];
                 pairs.push(Pair {
                     sites: [a, b],
-                    energies: (0..size).map(|_| 10.0 * numbers.next().powi(4) - 1.0).collect(),
+                    energies: (0..size)
+                        .map(|_| 10.0 * numbers.next().powi(4) - 1.0)
+                        .collect(),
                 });
             }
         }
@@ -61,7 +51,7 @@ fn the_search_finds_the_least_of_all_combinations() {
     for round in 0..200 {
         let density = [0.2, 0.5, 1.0][round % 3];
         let problem = problem(&mut numbers, 6, 5, density);
-        let solution = problem.solve(1 << 20);
+        let solution = problem.solve(&vec![0; problem.own.len()], 1 << 20);
         assert_eq!(solution.improved, 0);
         let found = problem.energy(&solution.states);
         assert!((found - brute_force(&problem)).abs() < 1e-9, "{problem:?}");
@@ -90,9 +80,12 @@ fn entangled_components_are_improved() {
     let mut lowered = 0;
     for _ in 0..100 {
         let problem = problem(&mut numbers, 8, 6, 1.0);
-        let solution = problem.solve(0);
+        let solution = problem.solve(&vec![0; problem.own.len()], 0);
         assert_eq!(solution.exact, 0);
-        let (before, after) = (problem.energy(&vec![0; problem.own.len()]), problem.energy(&solution.states));
+        let (before, after) = (
+            problem.energy(&vec![0; problem.own.len()]),
+            problem.energy(&solution.states),
+        );
         assert!(after <= before + 1e-9);
         lowered += usize::from(after < before);
         for site in 0..problem.own.len() {
@@ -116,9 +109,9 @@ fn ties_keep_the_present_state() {
             energies: vec![0.5, 0.5],
         }],
     };
-    let solution = problem.solve(100);
+    let solution = problem.solve(&vec![0; problem.own.len()], 100);
     assert_eq!(solution.states, [0, 2, 0]);
     assert_eq!((solution.exact, solution.improved), (2, 0));
-    let nothing = Problem::default().solve(100);
+    let nothing = Problem::default().solve(&[], 100);
     assert_eq!(nothing.states, Vec::<usize>::new());
 }
