@@ -56,10 +56,10 @@ fn main() -> ExitCode {
     let is_bound = flags.iter().any(|flag| *flag == "--bound");
     let kind = if is_bound { "bound" } else { "unbound" };
     let number = |name: &str, default: f64| {
-        let values = flags
+        let mut values = flags
             .iter()
             .filter_map(|flag| flag.strip_prefix(name)?.parse().ok());
-        values.last().unwrap_or(default)
+        values.next_back().unwrap_or(default)
     };
     let default = RepackOptions::default();
     let options = RepackOptions {
