@@ -54,8 +54,8 @@ impl Bonding {
 
 /// Energy of two atoms, the same in either order.
 pub(super) fn pair_energy(a: &Particle, b: &Particle) -> f64 {
-    let apart: [f64; 3] = std::array::from_fn(|axis| b.position[axis] - a.position[axis]);
-    let square: f64 = apart.iter().map(|x| x * x).sum();
+    let between: [f64; 3] = std::array::from_fn(|axis| b.position[axis] - a.position[axis]);
+    let square: f64 = between.iter().map(|x| x * x).sum();
     if square >= REACH * REACH {
         return 0.0;
     }
@@ -67,11 +67,11 @@ pub(super) fn pair_energy(a: &Particle, b: &Particle) -> f64 {
     } else {
         MAX_REPULSION
     };
-    contact + hydrogen_bond(a, b, apart, square)
+    contact + hydrogen_bond(a, b, between, square)
 }
 
 /// Energy of the hydrogen bond that two atoms may form, at most 0.
-fn hydrogen_bond(a: &Particle, b: &Particle, apart: [f64; 3], square: f64) -> f64 {
+fn hydrogen_bond(a: &Particle, b: &Particle, between: [f64; 3], square: f64) -> f64 {
     let (Some(of_a), Some(of_b)) = (&a.bonding, &b.bonding) else {
         return 0.0;
     };
@@ -87,7 +87,7 @@ fn hydrogen_bond(a: &Particle, b: &Particle, apart: [f64; 3], square: f64) -> f6
         return 0.0;
     }
     let distance = square.sqrt();
-    let towards = apart.map(|x| x / distance);
+    let towards = between.map(|x| x / distance);
     radial * of_a.fit(towards) * of_b.fit(towards.map(|x| -x))
 }
 

@@ -9,13 +9,13 @@
 //!
 //! In units of about a kcal/mol, a sum of three terms:
 //!
-//! - **Contacts** of heavy atoms within 6 Å: e (x^12 - 2 x^6) with x = (r + s) / d, e = 0.1, at most 10. r and s are the
-//!   atoms' radii ([`knotdock_structures::molecule::Atom::radius`], united atoms), d their distance. The form is
-//!   Lennard-Jones' with its least at touching radii; bounded, since states are few and the backbone stays.
-//! - **Hydrogen bonds** of donors and acceptors: 2 (5 y^12 - 6 y^10) g h where that is negative, with y = 2.9 Å / d. g is
-//!   cos^2 of the angle by which the bond leaves one atom's ideal direction, 0 past a right angle, and h the other's.
-//!   With one bonded neighbour the ideal angle at the atom is 120 degrees, with more the bond lies opposite to them. The
-//!   form is DREIDING's, Mayo, Olafson & Goddard, J. Phys. Chem. 94 (1990) 8897-8909, for heavy atoms alone.
+//! - **Contacts** of heavy atoms within 6 Å: 0.1 (x^12 - 2 x^6), at most 10, with x = (r + s) / d. Here r and s are the
+//!   atoms' radii ([`knotdock_structures::molecule::Atom::radius`]), d their distance. The form is Lennard-Jones', with
+//!   its least where the balls touch. It is bounded because states are few and the backbone stays.
+//! - **Hydrogen bonds** of donors and acceptors: 2 (5 y^12 - 6 y^10) g h where negative, with y = 2.9 Å / d. The form is
+//!   DREIDING's, Mayo, Olafson & Goddard, J. Phys. Chem. 94 (1990) 8897-8909, here for heavy atoms alone. At each atom
+//!   g or h is cos^2 of the angle between the bond and its ideal direction, 0 past a right angle. With one bonded
+//!   neighbour the ideal angle at the atom is 120 degrees; with more the bond lies opposite to them.
 //! - **Rotamers**: -w times the logarithm of the probability relative to the backbone's most probable rotamer
 //!   ([`knotdock_structures::molecule::log_probability`]).
 //!
@@ -24,16 +24,21 @@
 //!
 //! # Search
 //!
-//! First among the rotamers of each backbone and the present angles, each with steps of 10 degrees in the first two;
-//! then three times among steps of 8 and of 4 degrees about what was found. In each search dead ends are eliminated, and
-//! components that share no energy are solved exactly, by `packing`; those that are too entangled are annealed with
-//! numbers that are the same in every run. Nothing depends on the number of threads.
+//! The first search is among the rotamers of each backbone and the present angles, with steps of 10 degrees in the
+//! first two angles. Three more try steps of 8 and of 4 degrees about what was found.
+//!
+//! In each search dead ends are eliminated, and components that share no energy are solved exactly (`packing`). Those
+//! that are too entangled are annealed, with numbers that are the same in every run. Nothing depends on the number of
+//! threads.
 
 mod candidates;
+mod clashes;
 mod energy;
 mod packing;
 mod repack;
 mod scene;
+mod search;
+mod sites;
 #[cfg(test)]
 mod tests;
 

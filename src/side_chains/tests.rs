@@ -175,16 +175,20 @@ fn the_energy_never_rises_and_only_what_is_reported_moves() {
             }
         }
     }
-    let apart = packed(
+    let distant = packed(
         &receptor,
         &ligand,
         &Pose::from_parts([1.0, 0.0, 0.0, 0.0], [1e6, 0.0, 0.0]),
     );
     assert_eq!(
-        (apart.considered, apart.moved.len(), apart.energy_before),
+        (
+            distant.considered,
+            distant.moved.len(),
+            distant.energy_before
+        ),
         (0, 0, 0.0)
     );
-    assert!(apart.exact);
+    assert!(distant.exact);
 }
 
 /// A ligand placed by its pose is packed like one that lies there.

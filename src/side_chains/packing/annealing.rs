@@ -1,8 +1,9 @@
 //! Improvement of components that are too entangled to be solved exactly.
 //!
-//! Simulated annealing (Kirkpatrick, Gelatt & Vecchi, Science 220 (1983) 671-680) with numbers that are the same in
-//! every run, then sweeps: each site in turn takes the state that is best beside the others', until nothing changes.
-//! The better of that and of sweeps from the first states is the answer, so it never ends above where it began.
+//! By simulated annealing (Kirkpatrick, Gelatt & Vecchi, Science 220 (1983) 671-680) with numbers that are the same in
+//! every run, and sweeps after it. In a sweep each site in turn takes the state that is best beside the others', until
+//! nothing changes. Sweeps alone from the first states are the other way; the better of the two is the answer, so it
+//! never ends above where it began.
 
 use super::numbers::Numbers;
 use super::site_tables::{SiteTable, beside, site_tables};

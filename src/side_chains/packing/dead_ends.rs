@@ -1,8 +1,8 @@
 //! States that cannot be in the best answer.
 //!
-//! A state r of site i is a dead end if another state t of i is better whatever the other sites do: if
-//! E(r) - E(t) + sum_j min_s (E(r, s) - E(t, s)) > 0, over the states s of the sites j (Goldstein, Biophys. J. 66
-//! (1994) 1335-1340, eq. 6). The search ends when a pass over all sites finds none.
+//! A state r of a site is a dead end if another state t of it is better whatever the other sites do. That is so if
+//! E(r) - E(t) + sum_j min_s (E(r, s) - E(t, s)) > 0, over the states s of the other sites j. The search ends when a
+//! pass over all sites finds none. Source: Goldstein, Biophys. J. 66 (1994) 1335-1340.
 
 use super::site_tables::{SiteTable, site_tables};
 use super::{Problem, TIE};

@@ -1,6 +1,6 @@
 //! The least energy of sites that take one of several states each, when energies are of single states and of pairs.
 //!
-//! [`Problem::solve`] drops states that cannot be in the best answer ([`dead_ends`]), takes the components apart that
+//! [`Problem::solve`] drops states that cannot be in the best answer ([`dead_ends`]), separates the components that
 //! share no energy, and solves each exactly ([`elimination`]). A component that is too entangled for that is
 //! improved from the states given ([`annealing`]).
 //!

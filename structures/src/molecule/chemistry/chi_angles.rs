@@ -1,8 +1,8 @@
 //! Chi angles: about which bonds the side chains of amino acids turn.
 //!
 //! Atoms and signs are those of IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17. Chi k is the dihedral angle of four atoms in
-//! a row of the chain N, CA, CB, ..., counted from its k-th atom. Alanine and glycine have none; proline's are not
-//! listed, because its ring does not turn.
+//! a row of the chain N, CA, CB, ..., counted from its k-th atom. Alanine and glycine have none; proline's are left
+//! out, because its ring does not turn.
 
 use crate::molecule::chemistry::residues::side_chain;
 

@@ -2,7 +2,7 @@
 //!
 //! The table is an excerpt of the 2010 Backbone-Dependent Rotamer Library: Shapovalov & Dunbrack, Structure 19 (2011)
 //! 844-858, free under the Open Data Commons Attribution License. It holds nodes every 40 degrees of phi and psi, and
-//! rotamers of at least 2%. Where chi turns freely (amides, carboxylates, rings) the library has a rotamer every 30
+//! rotamers of at least 2%. Of amides, carboxylates and rings the library has a rotamer every 30
 //! degrees or so of the last angle, each with its own probability.
 
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ const LOWEST: [i32; 2] = [-180, -160];
 /// Standard deviation in radians of an angle about a rotamer's mean: 15 degrees, the library's own being 6 to 21.
 const DEVIATION: f64 = 15.0 * TAU / 360.0;
 
-/// Probability of a conformation near no rotamer of the table: half of the least that is listed.
+/// Probability of a conformation near no rotamer of the table: half of the least in the table.
 const ELSEWHERE: f64 = 0.01;
 
 /// One rotamer of a residue at a node of phi and psi.
