@@ -13,7 +13,7 @@ const MAX_REPULSION: f64 = 10.0;
 /// Best distance in Å of a hydrogen bond's heavy atoms.
 const BOND_DISTANCE: f64 = 2.9;
 /// Depth of a hydrogen bond.
-const BOND_DEPTH: f64 = 2.0;
+const BOND_DEPTH: f64 = 1.5;
 /// Cosine and sine of the angle between a hydrogen bond and the direction away from an atom's one bonded neighbour, 60
 /// degrees.
 const BESIDE: [f64; 2] = [0.5, 0.866_025_403_784_438_6];

@@ -15,6 +15,8 @@ pub struct RepackOptions {
     /// Side chains with an atom, CB included, this near to the other molecule are packed, in Å.
     pub reach: f64,
     /// Least gain of energy for which a side chain moves, so that trusted ones do not jitter; at least 0.
+    ///
+    /// Chosen so that side chains of bound complexes stay, nearly all, while most clashes of unbound ones go.
     pub threshold: f64,
     /// Weight of the rotamers' logarithm of probability.
     pub rotamer_weight: f64,
@@ -24,7 +26,7 @@ impl Default for RepackOptions {
     fn default() -> Self {
         Self {
             reach: 6.0,
-            threshold: 3.0,
+            threshold: 4.0,
             rotamer_weight: 1.0,
         }
     }

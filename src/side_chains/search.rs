@@ -7,7 +7,7 @@ use super::sites::{Setting, Site, pair_energies};
 /// Steps in degrees by which angles are refined once rotamers are found, one search each.
 const STEPS: [f64; 3] = [8.0, 4.0, 4.0];
 /// Most entries of a table of the exact search.
-const TABLE_LIMIT: usize = 1 << 22;
+const TABLE_LIMIT: usize = 1 << 20;
 
 /// The last search: its sites, their energies and its answer.
 pub(super) struct Search<'a> {

@@ -202,6 +202,11 @@ fn poses_and_placed_molecules_agree() {
         packed(&receptor, &away, &pose),
     );
     assert_eq!(there.moved.len(), here.moved.len());
+    let again = packed(&receptor, &ligand, &Pose::identity());
+    assert_eq!(
+        (&again.receptor, &again.ligand),
+        (&there.receptor, &there.ligand)
+    );
     assert!((there.energy_after - here.energy_after).abs() < 1e-6);
     for (a, b) in there.ligand.atoms.iter().zip(&here.ligand.atoms) {
         let placed = pose.apply(b.position);

@@ -19,7 +19,7 @@ struct Table {
 struct Eliminated {
     site: usize,
     neighbours: Vec<usize>,
-    best: Vec<usize>,
+    best: Vec<u32>,
 }
 
 /// The best states of a component's sites in their order; `None` where a table would need more than `limit` entries.
@@ -59,7 +59,7 @@ pub(super) fn best(problem: &Problem, sites: &[usize], limit: usize) -> Option<V
     let mut states = vec![0; sites.len()];
     for step in eliminated.iter().rev() {
         let place = |place: usize, &site: &usize| place * counts[site] + states[site];
-        states[step.site] = step.best[step.neighbours.iter().fold(0, place)];
+        states[step.site] = step.best[step.neighbours.iter().fold(0, place)] as usize;
     }
     Some(states)
 }
@@ -100,7 +100,7 @@ fn eliminate(
     neighbours: &[usize],
     touching: &[Table],
     counts: &[usize],
-) -> (Table, Vec<usize>) {
+) -> (Table, Vec<u32>) {
     let combinations: usize = neighbours.iter().map(|&other| counts[other]).product();
     // Of each table, what a step of each neighbour's state and of the site's own moves its place by.
     let strides: Vec<(Vec<usize>, usize)> = touching
@@ -141,7 +141,7 @@ fn eliminate(
             }
         }
         energies.push(least.0);
-        best.push(least.1);
+        best.push(least.1 as u32);
         // The next combination, the last neighbour's state running fastest.
         for (state, &other) in states.iter_mut().zip(neighbours).rev() {
             *state += 1;
