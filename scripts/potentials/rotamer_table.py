@@ -4,8 +4,8 @@
     python3 scripts/potentials/rotamer_table.py dunbrack-2010.lib.csv [-o FILE]
 
 The library: Shapovalov & Dunbrack, Structure 19 (2011) 844-858, free under the Open Data Commons Attribution License
-(ODC-By). It gives probabilities and mean chi angles at phi and psi every 10 degrees. The file with its rows as CSV is in
-the crate dunbrack 0.1.0:
+(ODC-By). It gives probabilities and mean chi angles at phi and psi every 10 degrees. Its rows as CSV are in the crate
+dunbrack 0.1.0:
 
     cargo init --name fetch fetch && cd fetch && cargo add dunbrack@0.1.0 && cargo vendor
     python3 .../rotamer_table.py vendor/dunbrack/data/dunbrack-2010.lib.csv
@@ -28,9 +28,10 @@ CHI_ANGLES = {"ARG": 4, "LYS": 4, "GLN": 3, "GLU": 3, "MET": 3, "CYH": 1, "SER":
 STEP = 40
 LEAST = 0.02
 HEADER = """\
-# Rotamers of amino acids by backbone: probability in thousandths and mean chi angles in degrees, at nodes of phi and psi.
+# Rotamers of amino acids by backbone: probability in thousandths and mean chi angles in degrees, at nodes of phi, psi.
 # From the 2010 Backbone-Dependent Rotamer Library, M. V. Shapovalov & R. L. Dunbrack Jr., Structure 19 (2011) 844-858,
-# which is distributed under the Open Data Commons Attribution License (ODC-By 1.0); this excerpt is under it, too.
+# which is distributed under the Open Data Commons Attribution License (ODC-By 1.0); this excerpt is under it, too:
+# https://opendatacommons.org/licenses/by/1-0/
 # Made by scripts/potentials/rotamer_table.py: nodes every 40 degrees, rotamers of at least 2%. Read by rotamers.rs.
 residue,phi,psi,probability,chi1,chi2,chi3,chi4
 """
