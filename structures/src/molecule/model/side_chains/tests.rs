@@ -130,3 +130,40 @@ fn what_is_unlike_the_table_or_bonded_is_held() {
     assert_eq!(serine(&|atoms| beside(atoms, "C", 2.1)), None);
     assert_eq!(serine(&|atoms| beside(atoms, "P", 1.8)), Some(Bonded));
 }
+
+/// Hydrogens turn with the atom that carries them, those of CB too; CA's stays.
+#[test]
+fn hydrogens_go_with_their_atoms() {
+    let molecule = example("1ppe_receptor_bound.pdb");
+    let of = molecule.side_chains().into_iter();
+    let mut serines = of.filter(|one| one.name == "SER" && one.held.is_none());
+    let serine = serines.next().unwrap();
+    let own = serine
+        .near_bonds
+        .iter()
+        .map(|&index| molecule.atoms[index].clone());
+    let mut atoms: Vec<Atom> = own.filter(|atom| atom.residue_name == "SER").collect();
+    let place =
+        |atoms: &[Atom], name: &str| atoms.iter().position(|atom| atom.name == name).unwrap();
+    // Each 1 Å from its carrier, opposite to another neighbour of it.
+    let carried = [("HA", "CA", "C"), ("HB2", "CB", "OG"), ("HG", "OG", "CB")];
+    for (name, carrier, neighbour) in carried {
+        let [at, from] = [carrier, neighbour].map(|name| atoms[place(&atoms, name)].position);
+        let bond = distance(at, from);
+        let mut hydrogen = atoms[place(&atoms, carrier)].clone();
+        hydrogen.position = std::array::from_fn(|k| at[k] + (at[k] - from[k]) / bond);
+        (hydrogen.name, hydrogen.element) = (name.to_owned(), "H".to_owned());
+        atoms.push(hydrogen);
+    }
+    let changed = Molecule::new(atoms, Format::Pdb);
+    let serine = changed.side_chains().remove(0);
+    assert_eq!(serine.held, None);
+    let before = positions(&changed);
+    let mut after = before.clone();
+    serine.set_chi(&mut after, &[serine.chi(&before)[0] + 2.0]);
+    for (name, carrier, _) in carried {
+        let [hydrogen, carrier] = [name, carrier].map(|name| place(&changed.atoms, name));
+        assert!((distance(after[hydrogen], after[carrier]) - 1.0).abs() < 1e-9);
+        assert_eq!(after[hydrogen] == before[hydrogen], name == "HA");
+    }
+}
