@@ -12,7 +12,8 @@
 //! - `chi1`: share of them whose chi1 is within 40 degrees of the bound one;
 //! - `clashes`: pairs of atoms across the interface nearer than 0.8 of the sum of their radii.
 //!
-//! `--threshold` and `--rotamer-weight` set the options of these names (`--threshold=2`). With `--bound` the bound molecules themselves are packed, which shows how far packing leads away from the answer.
+//! `--threshold` and `--rotamer-weight` set the options of these names (`--threshold=2`). With `--bound` the bound
+//! molecules themselves are packed, which shows how far packing leads away from the answer.
 
 use std::process::ExitCode;
 use std::time::Instant;

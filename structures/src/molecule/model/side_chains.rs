@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::molecule::chemistry::charged_termini::BOND;
 use crate::molecule::chemistry::chi_angles::ChiAngles;
 use crate::molecule::chemistry::residues::{backbone_type, parent, standard_atom_name};
 use crate::molecule::model::atom::{Atom, squared_distance};
@@ -9,9 +10,6 @@ use crate::molecule::model::dihedral::{dihedral, is_left_handed, turned};
 use crate::molecule::model::groups::{Residue, residues};
 use crate::molecule::model::held_side_chain::{HeldSideChain, SideChainBonds};
 use crate::molecule::model::molecule::Molecule;
-
-/// Longest C-N distance in Å of a peptide bond, with room for poor structures.
-const PEPTIDE_BOND: f64 = 2.5;
 
 /// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145
 /// degrees.
@@ -156,7 +154,7 @@ impl Molecule {
         let end = self.atoms[end].position;
         let near = |&&index: &&usize| {
             let atom = &self.atoms[index];
-            atom.name == name && squared_distance(atom.position, end) <= PEPTIDE_BOND * PEPTIDE_BOND
+            atom.name == name && squared_distance(atom.position, end) <= BOND * BOND
         };
         neighbour.atoms.iter().find(near).copied()
     }
