@@ -26,7 +26,7 @@ impl Default for RepackOptions {
     fn default() -> Self {
         Self {
             reach: 6.0,
-            threshold: 4.0,
+            threshold: 6.0,
             rotamer_weight: 1.0,
         }
     }

@@ -104,9 +104,10 @@ fn buried_side_chains_come_back() {
         }
     }
     let [receptor, ligand] = &disturbed;
-    // Some have left the interface, and are packed all the same.
+    // Some have left the interface, and are packed all the same; none is to be trusted.
     let options = RepackOptions {
         reach: 14.0,
+        threshold: 0.0,
         ..RepackOptions::default()
     };
     let after = Repacker::new(receptor, ligand, options).repack(&Pose::identity());
