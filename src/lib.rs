@@ -22,5 +22,6 @@ pub mod progress;
 pub mod rank;
 pub mod score;
 pub mod search;
+pub mod side_chains;
 pub mod threads;
 pub mod tradeoff;

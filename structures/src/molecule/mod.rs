@@ -16,7 +16,7 @@
 //!   The result is a [`Molecule`] with its [`ReadReport`].
 //! - `model`: what a molecule is, and what follows from where its atoms stand: residues, chains, surface, unresolved
 //!   segments.
-//! - `chemistry`: tables of names, elements, radii, charges and contact types.
+//! - `chemistry`: tables of names, elements, radii, charges, contact types, chi angles and rotamers.
 //! - `write`: molecules and complexes as PDB or mmCIF.
 
 mod chemistry;
@@ -26,13 +26,16 @@ mod write;
 
 pub use self::chemistry::atom_names::plain_atom_name;
 pub use self::chemistry::contact_types::{CONTACT_TYPES, atom_kinds};
+pub use self::chemistry::hydrogen_bonds::{HydrogenBonding, hydrogen_bonding};
 pub use self::chemistry::labels::{LabelReport, Labels};
+pub use self::chemistry::rotamers::{Rotamer, log_probability, rotamers};
 pub use self::chemistry::standard_names::{plain_residue_name, standard_residue_name};
 pub use self::model::accessible::PROBE;
 pub use self::model::atom::Atom;
 pub use self::model::copies::CopiesError;
 pub use self::model::format::Format;
 pub use self::model::groups::GroupKind;
+pub use self::model::held_side_chain::HeldSideChain;
 pub use self::model::molecule::Molecule;
 pub use self::model::report::{
     Altered, AlternateChoice, BuiltAssembly, ChainCount, Confidence, ConfidenceSource, DropKind,
@@ -40,6 +43,7 @@ pub use self::model::report::{
 };
 pub use self::model::residue_selection::{ResidueSelection, UnknownResidues};
 pub use self::model::sequence::{PeptideChain, PeptideResidue, one_letter};
+pub use self::model::side_chains::{SideChain, TurningBond};
 pub use self::model::termini::Termini;
 pub use self::model::unresolved::UnresolvedResidues;
 pub use self::read::confidence::LOW;

@@ -1,0 +1,131 @@
+//! The least energy of sites that take one of several states each, when energies are of single states and of pairs.
+//!
+//! [`Problem::solve`] drops states that cannot be in the best answer ([`dead_ends`]), separates the components that
+//! share no energy, and solves each exactly ([`elimination`]). A component that is too entangled for that is
+//! improved from the states given ([`annealing`]).
+//!
+//! State 0 of every site is the present one. It wins ties, so that nothing moves without a gain.
+
+mod annealing;
+mod dead_ends;
+mod elimination;
+mod numbers;
+mod site_tables;
+#[cfg(test)]
+mod tests;
+
+/// Energies that differ by less than this are equal (the unit of the energies).
+const TIE: f64 = 1e-9;
+
+/// Sites, their states and what these cost.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Problem {
+    /// Energy of each state of each site by itself.
+    pub own: Vec<Vec<f64>>,
+    /// Energies of pairs of sites; each pair once.
+    pub pairs: Vec<Pair>,
+}
+
+/// The energies of two sites' states together.
+#[derive(Clone, Debug)]
+pub(crate) struct Pair {
+    /// The two sites, the lower first.
+    pub sites: [usize; 2],
+    /// One value for each state of the first and of the second site, the second running fastest.
+    pub energies: Vec<f64>,
+}
+
+/// A state for each site.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Solution {
+    /// The states.
+    pub states: Vec<usize>,
+    /// Components that were solved exactly, and those that were improved only.
+    pub exact: usize,
+    /// See `exact`.
+    pub improved: usize,
+}
+
+impl Problem {
+    /// Energy of all sites in these states.
+    pub fn energy(&self, states: &[usize]) -> f64 {
+        let own = self.own.iter().zip(states).map(|(own, &state)| own[state]);
+        let of_pair = |pair: &Pair| {
+            let [a, b] = pair.sites;
+            pair.energies[states[a] * self.own[b].len() + states[b]]
+        };
+        own.sum::<f64>() + self.pairs.iter().map(of_pair).sum::<f64>()
+    }
+
+    /// The states of least energy; of components whose tables would need more than `limit` entries, states that no
+    /// single change improves and that are no worse than those of `start`.
+    pub fn solve(&self, start: &[usize], limit: usize) -> Solution {
+        let alive = dead_ends::survivors(self);
+        let reduced = self.reduced(&alive);
+        let mut states: Vec<usize> = start.to_vec();
+        let (mut exact, mut improved) = (0, 0);
+        for sites in reduced.components() {
+            if let Some(best) = elimination::best(&reduced, &sites, limit) {
+                exact += 1;
+                for (site, state) in sites.iter().zip(best) {
+                    states[*site] = alive[*site][state];
+                }
+            } else {
+                improved += 1;
+                annealing::improve(self, &sites, &alive, &mut states);
+            }
+        }
+        Solution {
+            states,
+            exact,
+            improved,
+        }
+    }
+
+    /// The problem with only these states of each site.
+    fn reduced(&self, alive: &[Vec<usize>]) -> Self {
+        let own = self.own.iter().zip(alive);
+        let own = own.map(|(own, alive)| alive.iter().map(|&state| own[state]).collect());
+        let pairs = self.pairs.iter().map(|pair| {
+            let [a, b] = pair.sites;
+            let row = self.own[b].len();
+            let energies = alive[a].iter().flat_map(|&first| {
+                let second = alive[b].iter();
+                second.map(move |&second| pair.energies[first * row + second])
+            });
+            Pair {
+                sites: pair.sites,
+                energies: energies.collect(),
+            }
+        });
+        let acts = |pair: &Pair| pair.energies.iter().any(|&energy| energy != 0.0);
+        Self {
+            own: own.collect(),
+            pairs: pairs.filter(acts).collect(),
+        }
+    }
+
+    /// Sites that pairs connect, sorted, each component by itself; the one with the lowest site first.
+    fn components(&self) -> Vec<Vec<usize>> {
+        let mut root: Vec<usize> = (0..self.own.len()).collect();
+        // The lowest site of a component stands for it.
+        fn find(root: &[usize], mut site: usize) -> usize {
+            while root[site] != site {
+                site = root[site];
+            }
+            site
+        }
+        for pair in &self.pairs {
+            let [a, b] = pair.sites.map(|site| find(&root, site));
+            root[a.max(b)] = a.min(b);
+        }
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); root.len()];
+        for site in 0..root.len() {
+            members[find(&root, site)].push(site);
+        }
+        members
+            .into_iter()
+            .filter(|sites| !sites.is_empty())
+            .collect()
+    }
+}

@@ -1,0 +1,85 @@
+//! The searches of one pose: rotamers first, then finer steps about those found.
+
+use super::candidates::{around, candidates};
+use super::packing::{Pair, Problem, Solution};
+use super::sites::{Setting, Site, pair_energies};
+
+/// Steps in degrees by which angles are refined once rotamers are found, one search each.
+const STEPS: [f64; 3] = [8.0, 4.0, 4.0];
+/// Most entries of a table of the exact search.
+const TABLE_LIMIT: usize = 1 << 20;
+
+/// The last search: its sites, their energies and its answer.
+pub(super) struct Search<'a> {
+    pub sites: Vec<Site<'a>>,
+    pub problem: Problem,
+    pub solution: Solution,
+    /// Whether it and those before were exact.
+    pub exact: bool,
+}
+
+/// Searches the rotamers, then finer steps about those found. Every state but the present one costs `threshold`.
+pub(super) fn search<'a>(setting: &Setting<'a>, threshold: f64) -> Search<'a> {
+    let present = setting.present();
+    let lists = setting.side_chains().zip(&present);
+    let lists = lists.map(|(side_chain, present)| candidates(side_chain, present));
+    let start = vec![0; present.len()];
+    let mut search = solved(setting, threshold, lists.collect(), &start);
+    for step in STEPS {
+        let found = search.sites.iter().zip(&search.solution.states);
+        let lists = found.zip(&present).map(|((site, &state), present)| {
+            around(present, &site.states[state], step.to_radians())
+        });
+        let lists = lists.collect();
+        // The present state costs no threshold, so what has not moved starts from there.
+        let states = search.solution.states.iter();
+        let start: Vec<usize> = states.map(|&state| usize::from(state != 0)).collect();
+        let next = solved(setting, threshold, lists, &start);
+        search = Search {
+            exact: search.exact && next.exact,
+            ..next
+        };
+    }
+    search
+}
+
+/// One search over lists of states, the present one first, from a start that is one of the first two.
+fn solved<'a>(
+    setting: &Setting<'a>,
+    threshold: f64,
+    lists: Vec<Vec<Vec<f64>>>,
+    start: &[usize],
+) -> Search<'a> {
+    let sites = setting.sites(lists);
+    let problem = problem(&sites, threshold);
+    let solution = problem.solve(start, TABLE_LIMIT);
+    Search {
+        exact: solution.improved == 0,
+        sites,
+        problem,
+        solution,
+    }
+}
+
+/// The energies of all states and of all pairs of them; every state but the present one costs the threshold too.
+fn problem(sites: &[Site<'_>], threshold: f64) -> Problem {
+    let own = sites.iter().map(|site| {
+        let costs = site.own.iter().enumerate();
+        let cost = |state: usize| if state == 0 { 0.0 } else { threshold };
+        costs.map(|(state, energy)| energy + cost(state)).collect()
+    });
+    let mut pairs = Vec::new();
+    for second in 1..sites.len() {
+        for first in 0..second {
+            let energies = pair_energies(&sites[first], &sites[second]);
+            pairs.extend(energies.map(|energies| Pair {
+                sites: [first, second],
+                energies,
+            }));
+        }
+    }
+    Problem {
+        own: own.collect(),
+        pairs,
+    }
+}

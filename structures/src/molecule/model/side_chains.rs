@@ -1,0 +1,223 @@
+//! Side chains that turn: the bonds, the angles, and what keeps a side chain as it is.
+
+use std::collections::HashMap;
+
+use crate::molecule::chemistry::charged_termini::BOND;
+use crate::molecule::chemistry::chi_angles::ChiAngles;
+use crate::molecule::chemistry::residues::{backbone_type, parent, standard_atom_name};
+use crate::molecule::model::atom::{Atom, squared_distance};
+use crate::molecule::model::dihedral::{dihedral, is_left_handed, turned};
+use crate::molecule::model::groups::{Residue, residues};
+use crate::molecule::model::held_side_chain::{HeldSideChain, SideChainBonds};
+use crate::molecule::model::molecule::Molecule;
+
+/// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145
+/// degrees.
+const EXTENDED: [f64; 2] = [-1.309, 2.531];
+
+/// The side chain of an amino acid with chi angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SideChain {
+    /// The author's name of the chain; may be empty.
+    pub chain: String,
+    /// The author's number with the insertion code, e.g. `52A`.
+    pub number: String,
+    /// The residue's name in the file.
+    pub name: String,
+    /// The residue in the table of rotamers, e.g. `HIS` of `HIE` and `MET` of `MSE`.
+    pub residue: &'static str,
+    /// Places in the molecule of its heavy atoms that the file has, CB first.
+    pub atoms: Vec<usize>,
+    /// Places of all atoms of the residue, and of the C before and the N after it: none of them more than a few bonds
+    /// away.
+    pub near_bonds: Vec<usize>,
+    /// Its turning bonds, the one next to the backbone first; none where `held` says that atoms are missing.
+    pub bonds: Vec<TurningBond>,
+    /// phi and psi in radians.
+    pub backbone: [f64; 2],
+    /// Why it must stay as it is; `None` where it may turn.
+    pub held: Option<HeldSideChain>,
+}
+
+/// A bond about which a side chain turns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TurningBond {
+    /// Places of the four atoms of its chi angle; the bond is between the second and the third.
+    pub atoms: [usize; 4],
+    /// Places of the atoms beyond the bond, which turn, hydrogens included.
+    pub moved: Vec<usize>,
+}
+
+impl SideChain {
+    /// The chi angles in radians, -pi to pi, of the atoms at `positions` (Å, one an atom of the molecule).
+    pub fn chi(&self, positions: &[[f64; 3]]) -> Vec<f64> {
+        let of = |bond: &TurningBond| dihedral(bond.atoms.map(|atom| positions[atom]));
+        self.bonds.iter().map(of).collect()
+    }
+
+    /// Turns the side chain to these chi angles (radians). Angles past those given stay, and so do bond lengths and
+    /// bond angles.
+    pub fn set_chi(&self, positions: &mut [[f64; 3]], chi: &[f64]) {
+        for (bond, target) in self.bonds.iter().zip(chi) {
+            let by = target - dihedral(bond.atoms.map(|atom| positions[atom]));
+            if by == 0.0 {
+                continue;
+            }
+            let [_, from, to, _] = bond.atoms.map(|atom| positions[atom]);
+            for &atom in &bond.moved {
+                positions[atom] = turned(positions[atom], from, to, by);
+            }
+        }
+    }
+}
+
+impl Molecule {
+    /// The side chains with chi angles, in file order: those of all amino acids but alanine, glycine and proline.
+    ///
+    /// Residues whose backbone lacks N, CA or C are left out.
+    pub fn side_chains(&self) -> Vec<SideChain> {
+        let groups = residues(&self.atoms);
+        let bonds = SideChainBonds::new(&self.atoms, &groups);
+        let place = |place: usize| groups.get(place).filter(|group| group.is_peptide());
+        let of = |(at, residue): (usize, &Residue<'_>)| {
+            let before = at.checked_sub(1).and_then(place);
+            self.side_chain(residue, [before, place(at + 1)], &bonds)
+        };
+        groups.iter().enumerate().filter_map(of).collect()
+    }
+
+    fn side_chain(
+        &self,
+        residue: &Residue<'_>,
+        neighbours: [Option<&Residue<'_>>; 2],
+        bonds: &SideChainBonds<'_>,
+    ) -> Option<SideChain> {
+        let plain = parent(residue.known_as);
+        let angles = ChiAngles::of(plain)?;
+        let named = self.by_name(residue, plain);
+        let at = |name: &str| named.get(name).and_then(|places| places.first()).copied();
+        let [n, ca, c] = [at("N")?, at("CA")?, at("C")?];
+        let [before, after] = neighbours;
+        let before = before.and_then(|other| self.bonded(other, "C", n));
+        let after = after.and_then(|other| self.bonded(other, "N", c));
+        let angle = |places: [usize; 4]| dihedral(places.map(|place| self.atoms[place].position));
+        let backbone = [
+            before.map_or(EXTENDED[0], |before| angle([before, n, ca, c])),
+            after.map_or(EXTENDED[1], |after| angle([n, ca, c, after])),
+        ];
+        let atoms: Vec<usize> = angles
+            .side_chain
+            .iter()
+            .filter_map(|name| at(name))
+            .collect();
+        let near_bonds = residue.atoms.iter().copied().chain(before).chain(after);
+        let held = self
+            .unlike_the_table(&angles, &named)
+            .or_else(|| {
+                let [n, ca, c, cb] = [n, ca, c, *atoms.first()?].map(|i| self.atoms[i].position);
+                (!is_left_handed(n, ca, c, cb)).then_some(HeldSideChain::Mirrored)
+            })
+            .or_else(|| bonds.held(residue, &atoms));
+        let (_, number, insertion, name) = residue.key;
+        Some(SideChain {
+            chain: residue.key.0.to_owned(),
+            number: insertion.map_or_else(|| number.to_string(), |code| format!("{number}{code}")),
+            name: name.to_owned(),
+            residue: angles.residue,
+            bonds: if held == Some(HeldSideChain::Incomplete) {
+                Vec::new()
+            } else {
+                self.turning_bonds(residue, &angles, &at)
+            },
+            near_bonds: near_bonds.collect(),
+            atoms,
+            backbone,
+            held,
+        })
+    }
+
+    /// The places of a residue's heavy atoms by their standard names.
+    fn by_name<'a>(&'a self, residue: &Residue<'_>, plain: &str) -> HashMap<&'a str, Vec<usize>> {
+        let mut named: HashMap<&str, Vec<usize>> = HashMap::new();
+        for &index in &residue.atoms {
+            let atom = &self.atoms[index];
+            if !atom.is_hydrogen() {
+                let name = standard_atom_name(plain, &atom.name);
+                named.entry(name).or_default().push(index);
+            }
+        }
+        named
+    }
+
+    /// The atom of this name in a neighbour that is bonded to the atom at `end`.
+    fn bonded(&self, neighbour: &Residue<'_>, name: &str, end: usize) -> Option<usize> {
+        let end = self.atoms[end].position;
+        let near = |&&index: &&usize| {
+            let atom = &self.atoms[index];
+            atom.name == name && squared_distance(atom.position, end) <= BOND * BOND
+        };
+        neighbour.atoms.iter().find(near).copied()
+    }
+
+    /// Whether atoms are missing, given twice, in other places too, or such as the residue does not have.
+    fn unlike_the_table(
+        &self,
+        angles: &ChiAngles,
+        named: &HashMap<&str, Vec<usize>>,
+    ) -> Option<HeldSideChain> {
+        let of = |name: &&str| named.get(*name).map_or(&[][..], Vec::as_slice);
+        let places = || angles.side_chain.iter().map(of);
+        if places().any(<[usize]>::is_empty) {
+            return Some(HeldSideChain::Incomplete);
+        }
+        let known = |name: &&str| angles.side_chain.contains(name) || backbone_type(name).is_some();
+        if !named.keys().all(known) || places().any(|places| places.len() > 1) {
+            return Some(HeldSideChain::OtherAtoms);
+        }
+        let alternate = |&place: &usize| self.atoms[place].alternate_location.is_some();
+        places()
+            .flatten()
+            .any(alternate)
+            .then_some(HeldSideChain::AlternateLocations)
+    }
+
+    /// The turning bonds of a complete side chain.
+    fn turning_bonds(
+        &self,
+        residue: &Residue<'_>,
+        angles: &ChiAngles,
+        at: &dyn Fn(&str) -> Option<usize>,
+    ) -> Vec<TurningBond> {
+        let of = |k: usize| {
+            let mut chain = angles.chain.iter().skip(k).map(|name| at(name));
+            let mut next = || chain.next().flatten();
+            let atoms = [next()?, next()?, next()?, next()?];
+            let mut moved: Vec<usize> = angles.moved(k).filter_map(at).collect();
+            // Hydrogens go with the atom that they are nearest to; those of the bond's far end turn, too.
+            let carriers = moved.iter().copied().chain([atoms[2]]).collect::<Vec<_>>();
+            let hydrogens = residue.atoms.iter().copied();
+            moved.extend(hydrogens.filter(|&index| {
+                self.atoms[index].is_hydrogen()
+                    && self
+                        .carrier(residue, index)
+                        .is_some_and(|carrier| carriers.contains(&carrier))
+            }));
+            Some(TurningBond { atoms, moved })
+        };
+        (0..angles.count()).filter_map(of).collect()
+    }
+
+    /// The heavy atom of the residue that is nearest to a hydrogen.
+    fn carrier(&self, residue: &Residue<'_>, hydrogen: usize) -> Option<usize> {
+        let from = |index: usize| {
+            squared_distance(self.atoms[index].position, self.atoms[hydrogen].position)
+        };
+        let heavy = residue.atoms.iter().copied();
+        heavy
+            .filter(|&index| !Atom::is_hydrogen(&self.atoms[index]))
+            .min_by(|&a, &b| from(a).total_cmp(&from(b)))
+    }
+}
+
+#[cfg(test)]
+mod tests;
