@@ -39,6 +39,7 @@
 //! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
+//! | [`sharp`] | the energy of rigid bodies at atomic resolution, and its optima near a pose |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
 //! | [`terms::pose`] | terms that score the poses which a search keeps |
 
@@ -54,6 +55,7 @@ pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;
 pub mod se3;
+pub mod sharp;
 pub mod so3;
 pub mod symmetry;
 pub mod terms;

@@ -30,6 +30,7 @@ pub mod mesh;
 pub mod molecule;
 pub mod neighbours;
 pub mod numeric;
+mod polar_atom;
 
 #[cfg(feature = "mesh")]
 pub mod sampling;
@@ -41,3 +42,4 @@ mod test_support;
 pub use ball::Ball;
 pub use conformers::Conformers;
 pub use knots::Knots;
+pub use polar_atom::PolarAtom;

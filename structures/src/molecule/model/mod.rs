@@ -11,6 +11,7 @@ pub(crate) mod format;
 pub(crate) mod groups;
 pub(crate) mod held_side_chain;
 pub(crate) mod molecule;
+pub(crate) mod polar_atoms;
 pub(crate) mod report;
 pub(crate) mod report_text;
 pub(crate) mod residue_selection;

@@ -1,0 +1,140 @@
+//! Levenberg-Marquardt descents over rigid moves, and several of them about a pose.
+
+use super::energy::{Energy, STIFFNESS};
+use super::rigid_move::{Move, Slope};
+use super::{PairList, SharpFit};
+use crate::se3::Pose;
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+/// Rounds of a descent: stiffness in RT/Å², and most steps. The last has the stiffness of the energy.
+const ROUNDS: [(f64, usize); 3] = [(0.2, 10), (1.2, 10), (STIFFNESS, 25)];
+/// Longest step, Å: the root of the squares of the shift and of the arc at the interface's radius.
+const LONGEST: f64 = 0.8;
+/// Damping of a first step in RT/Å²: a part for each contact and a constant, for the curvature of contacts, which has
+/// either sign.
+const DAMPING: [f64; 2] = [0.02, 2.0];
+/// What damping is divided by after a step downhill, and multiplied by after one uphill.
+const EASED: f64 = 3.0;
+const RAISED: f64 = 5.0;
+/// A round ends with a step downhill of less than this, in RT and Å.
+const SETTLED: (f64, f64) = (0.01, 0.02);
+/// A round ends with a step uphill that is shorter than this, Å.
+const SHORTEST: f64 = 0.005;
+/// Distance of the other starts about a pose, Å: about what a search's rotations and grid leave open.
+const AROUND: f64 = 1.5;
+
+/// Where a descent came to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Optimum {
+    /// The pose.
+    pub pose: Pose,
+    /// Its energy.
+    pub energy: Energy,
+}
+
+impl SharpFit {
+    /// The optimum that a pose descends to; `None` if the bodies do not touch.
+    pub fn descend(&self, pose: &Pose, list: &mut PairList) -> Option<Optimum> {
+        let touches = list.begin(self, pose);
+        touches.then(|| self.rest(pose, &Move::none(), list))
+    }
+
+    /// The best of the optima that a pose and twelve places about it descend to: 1.5 Å to either side along the
+    /// interface's principal axes, and by rotations about them. `None` if the bodies do not touch.
+    pub fn best_near(&self, pose: &Pose, list: &mut PairList) -> Option<Optimum> {
+        if !list.begin(self, pose) {
+            return None;
+        }
+        let mut best = self.rest(pose, &Move::none(), list);
+        let axes = list.axes;
+        let arc = AROUND / list.radius;
+        for axis in axes.column_iter() {
+            let axis: Vector3<f64> = axis.into();
+            for sign in [-1.0, 1.0] {
+                for (shift, turn) in [(AROUND, 0.0), (0.0, arc)] {
+                    let mut step = Vector6::zeros();
+                    step.fixed_rows_mut::<3>(0)
+                        .copy_from(&(sign * shift * axis));
+                    step.fixed_rows_mut::<3>(3).copy_from(&(sign * turn * axis));
+                    let other = self.rest(pose, &Move::none().then(&step), list);
+                    if other.energy.total() < best.energy.total() {
+                        best = other;
+                    }
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// Descends from a move of a pose to its optimum.
+    fn rest(&self, pose: &Pose, from: &Move, list: &mut PairList) -> Optimum {
+        let mut at = *from;
+        for (stiffness, steps) in ROUNDS {
+            at = self.round(&at, stiffness, steps, list);
+        }
+        let pose = self.moved(pose, &at, list);
+        Optimum {
+            pose,
+            energy: self.energy(&pose),
+        }
+    }
+
+    /// One round at a stiffness: steps downhill from a move.
+    fn round(&self, from: &Move, stiffness: f64, steps: usize, list: &mut PairList) -> Move {
+        let mut at = *from;
+        list.renew(self, &at);
+        let mut here = list.slope(stiffness, &at);
+        let mut value = here.energy.at(stiffness);
+        let arc = 1.0 / list.radius;
+        let scale = Vector6::new(1.0, 1.0, 1.0, arc, arc, arc);
+        let mut damping = 1.0;
+        for _ in 0..steps {
+            let Some(step) = here.step(&scale, damping) else {
+                break;
+            };
+            let length = step.norm();
+            let next = at.then(&step.component_mul(&scale));
+            list.renew(self, &next);
+            let there = list.slope(stiffness, &next);
+            let reached = there.energy.at(stiffness);
+            let gain = value - reached;
+            if gain > 0.0 {
+                (at, here, value) = (next, there, reached);
+                damping /= EASED;
+                if gain < SETTLED.0 && length < SETTLED.1 {
+                    break;
+                }
+            } else {
+                damping *= RAISED;
+                if length < SHORTEST {
+                    break;
+                }
+            }
+        }
+        at
+    }
+
+    /// The pose that a move about an interface leads to from another.
+    pub(super) fn moved(&self, pose: &Pose, at: &Move, list: &PairList) -> Pose {
+        let about = list.middle + self.receptor_center;
+        Pose {
+            rotation: at.turn * pose.rotation,
+            translation: at.turn * (pose.translation - about) + about + at.shift,
+        }
+    }
+}
+
+impl Slope {
+    /// A step downhill of at most [`LONGEST`], its rotation as an arc in Å; `None` if a number is not finite.
+    fn step(&self, scale: &Vector6<f64>, damping: f64) -> Option<Vector6<f64>> {
+        let mut matrix: Matrix6<f64> = self.curvature.component_mul(&(scale * scale.transpose()));
+        for axis in 0..6 {
+            matrix[(axis, axis)] += damping * (DAMPING[0] * self.energy.contacts + DAMPING[1]);
+        }
+        let step = -matrix
+            .cholesky()?
+            .solve(&self.gradient.component_mul(scale));
+        let length = step.norm();
+        Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
+    }
+}

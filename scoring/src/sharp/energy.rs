@@ -1,0 +1,121 @@
+//! The energy of a pose, and the functions of a distance and an angle that make it.
+
+use super::Site;
+use super::hydrogen_bond::is_bridge;
+use nalgebra::Vector3;
+
+/// Depth of a contact, RT.
+pub(super) const DEPTH: f64 = 0.25;
+/// Distance beyond contact at which it ends, Å.
+pub(super) const RANGE: f64 = 2.0;
+/// Overlap of two atoms at no cost, Å.
+const TOLERANCE: f64 = 0.1;
+/// Stiffness of further overlap, RT/Å².
+pub(super) const STIFFNESS: f64 = 6.0;
+/// Depth of a hydrogen bond, RT.
+pub(super) const BOND: f64 = 1.5;
+/// Length of a hydrogen bond between heavy atoms at which it has its whole depth, Å.
+pub(super) const BOND_LENGTH: f64 = 2.8;
+/// Distance beyond it at which it ends, Å.
+pub(super) const BOND_RANGE: f64 = 0.9;
+/// Charges whose product is below this attract each other, e².
+const OPPOSITE: f64 = -0.05;
+/// Overlap from which two atoms clash, Å. MolProbity counts overlaps of 0.4 Å between all atoms as clashes (Chen et al.,
+/// Acta Cryst. D66 (2010) 12-21); united atoms with their tolerance leave 0.5 Å.
+pub(super) const CLASH: f64 = 0.5;
+/// Cosine from which an angle has its whole weight: 60 degrees.
+const STRAIGHT: f64 = 0.5;
+
+/// Energy of a pose by its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Contacts, each weighed by how close it is.
+    pub contacts: f64,
+    /// Sum of the squares of overlaps, Å².
+    pub overlap: f64,
+    /// Hydrogen bonds, each weighed by its geometry; those between opposite charges count twice.
+    pub bonds: f64,
+    /// Overlaps deeper than 0.5 Å.
+    pub clashes: usize,
+}
+
+impl Energy {
+    /// The sum, RT; lower is better.
+    pub fn total(&self) -> f64 {
+        self.at(STIFFNESS)
+    }
+
+    /// The sum at another stiffness (RT/Å²), RT.
+    pub(super) fn at(&self, stiffness: f64) -> f64 {
+        stiffness * self.overlap - DEPTH * self.contacts - BOND * self.bonds
+    }
+
+    /// Adds a receptor atom and a ligand atom with the vector from the first to the second (Å), and the ligand atom's
+    /// direction.
+    pub(super) fn add(
+        &mut self,
+        receptor: &Site,
+        ligand: &Site,
+        between: &Vector3<f64>,
+        direction: &Vector3<f64>,
+    ) {
+        let distance = between.norm();
+        let beyond = distance - contact_distance(receptor, ligand);
+        self.contacts += well(beyond, RANGE).0;
+        let lack = (-beyond).max(0.0);
+        self.overlap += lack * lack;
+        self.clashes += usize::from(lack > CLASH);
+        if receptor.polar.may_bond(&ligand.polar) && distance > 0.0 {
+            let along = between / distance;
+            let angles =
+                weight_of(&receptor.polar.direction.into(), &along) * weight_of(direction, &-along);
+            let count = if is_bridge(receptor, ligand) {
+                2.0
+            } else {
+                1.0
+            };
+            self.bonds += count * well(distance - BOND_LENGTH, BOND_RANGE).0 * angles;
+        }
+    }
+}
+
+/// Whether two charges attract each other as those of a salt bridge do.
+pub(super) fn are_opposite(a: f64, b: f64) -> bool {
+    a * b < OPPOSITE
+}
+
+/// Distance of contact of two atoms, Å.
+fn contact_distance(receptor: &Site, ligand: &Site) -> f64 {
+    let bonds = receptor.polar.may_bond(&ligand.polar);
+    distance_of(receptor.radius + ligand.radius, bonds)
+}
+
+/// Distance of contact by a sum of radii (Å), and by whether a hydrogen bond is possible.
+#[inline(always)]
+pub(super) fn distance_of(radii: f64, bonds: bool) -> f64 {
+    let least = if bonds { BOND_LENGTH } else { f64::INFINITY };
+    radii.min(least) - TOLERANCE
+}
+
+/// Depth of a well at a distance beyond its bottom (Å), from 1 to 0 at `range`, and its derivative.
+#[inline(always)]
+pub(super) fn well(beyond: f64, range: f64) -> (f64, f64) {
+    let t = (beyond / range).clamp(0.0, 1.0);
+    let rest = 1.0 - t * t;
+    (rest * rest, -4.0 * rest * t / range)
+}
+
+/// Weight of an angle by its cosine and the derivative: 0 from a right angle on, 1 below 60 degrees.
+pub(super) fn angle(cosine: f64) -> (f64, f64) {
+    let t = (cosine / STRAIGHT).clamp(0.0, 1.0);
+    (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t) / STRAIGHT)
+}
+
+/// Weight of the angle between a direction and a line; 1 where an atom has no direction.
+fn weight_of(direction: &Vector3<f64>, along: &Vector3<f64>) -> f64 {
+    if direction.norm_squared() == 0.0 {
+        1.0
+    } else {
+        angle(direction.dot(along)).0
+    }
+}

@@ -1,0 +1,158 @@
+//! The sharp fit: the energy of two rigid bodies at atomic resolution, and its optima near a pose.
+//!
+//! The score that a search ranks by is soft: it forgives what unbound surfaces get wrong. Where the two files fit as
+//! they are (a known complex taken apart), an exact fit is strong evidence, and it shows at atomic resolution alone.
+//!
+//! # Energy
+//!
+//! In RT, over pairs of heavy atoms at distance d, with united-atom radii r and s:
+//!
+//! `E = sum of -0.25 W((d - c) / 2 Å) + 6 RT/Å² max(0, c - d)² - 1.5 sum over donors and acceptors of h`
+//!
+//! - c is the distance of contact: r + s - 0.1 Å, and at most 2.7 Å between a donor and an acceptor.
+//! - W falls from 1 at contact to 0: (1 - t²)² for 0 < t < 1. The depth of a contact is about that of a pair of united
+//!   atoms in a molecular force field (Jorgensen & Tirado-Rives, J. Am. Chem. Soc. 110 (1988) 1657-1666).
+//! - h is a hydrogen bond by its heavy atoms: W((d - 2.8 Å) / 0.9 Å) times a weight of the angle at either atom, which
+//!   is 1 where each points at the other to within 60 degrees, and 0 beyond 90. It counts twice between opposite
+//!   charges. Baker & Hubbard (Prog. Biophys. Mol. Biol. 44 (1984) 97-179) describe distances and angles.
+//!
+//! # Descents
+//!
+//! [`SharpFit::descend`] is a Levenberg-Marquardt descent over the six rigid degrees of freedom. Its stiffness against
+//! overlap grows over three rounds, so that first the whole interface finds its place and then its atoms do.
+//! [`SharpFit::best_near`] starts from a pose and from twelve places about it.
+//!
+//! Positions are relative to the bodies' centres. Lengths are in Å, energies in RT. Lower is better.
+
+mod contacts;
+mod descent;
+mod energy;
+mod hydrogen_bond;
+mod nearness;
+mod pair_list;
+mod rigid_move;
+#[cfg(test)]
+mod tests;
+
+pub use descent::Optimum;
+pub use energy::Energy;
+pub use pair_list::PairList;
+
+use crate::exact::center;
+use crate::se3::Pose;
+use knotdock_structures::neighbours::{CellList, Member};
+use knotdock_structures::{Knots, PolarAtom};
+use nalgebra::{Matrix3, Vector3};
+use nearness::Nearness;
+
+/// Edge in Å of the cells that hold the receptor's atoms.
+const CELL_EDGE: f64 = 3.0;
+/// Largest radius in Å of a hydrogen, whose bonds hold it inside another atom: it does not count.
+const HYDROGEN: f64 = 1.15;
+
+/// What lists of pairs read of a receptor atom.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    index: u32,
+    radius: f32,
+    donates: bool,
+    accepts: bool,
+}
+
+/// A heavy atom of a body.
+#[derive(Clone, Copy, Debug)]
+struct Site {
+    /// Position relative to the body's centre, Å.
+    position: Vector3<f64>,
+    radius: f64,
+    polar: PolarAtom,
+    /// Charge, e.
+    charge: f64,
+}
+
+/// Two rigid bodies prepared for sharp fits.
+pub struct SharpFit {
+    receptor: CellList<Near>,
+    near: Nearness,
+    receptor_center: Vector3<f64>,
+    sites: Vec<Site>,
+    ligand: Vec<Site>,
+    ligand_center: Vector3<f64>,
+    /// Largest radius of a receptor atom, Å.
+    widest: f64,
+}
+
+impl SharpFit {
+    /// Prepares receptor and ligand with what their atoms may do in hydrogen bonds: one label a knot, or none.
+    pub fn new([receptor, ligand]: [&Knots; 2], polar: [&[PolarAtom]; 2]) -> Self {
+        let (receptor_center, ligand_center) = (center(receptor), center(ligand));
+        let sites_of = sites(receptor, polar[0], receptor_center);
+        let ligand = sites(ligand, polar[1], ligand_center);
+        let widest = |sites: &[Site]| {
+            sites
+                .iter()
+                .fold(0.0, |most: f64, site| most.max(site.radius))
+        };
+        let members = sites_of.iter().zip(0..).map(|(site, index)| Member {
+            position: site.position.into(),
+            item: Near {
+                index,
+                radius: site.radius as f32,
+                donates: site.polar.donates,
+                accepts: site.polar.accepts,
+            },
+        });
+        Self {
+            widest: widest(&sites_of),
+            receptor: CellList::new(members.collect(), CELL_EDGE),
+            near: Nearness::new(sites_of.iter().map(|site| site.position)),
+            receptor_center,
+            sites: sites_of,
+            ligand,
+            ligand_center,
+        }
+    }
+
+    /// The energy of a pose as it stands: the plain double sum over pairs of atoms in f64.
+    pub fn energy(&self, pose: &Pose) -> Energy {
+        let (matrix, place) = self.placed(pose);
+        let mut energy = Energy::default();
+        for site in &self.ligand {
+            let at = matrix * site.position + place;
+            let direction = matrix * Vector3::from(site.polar.direction);
+            self.receptor
+                .visit_within(at.into(), self.reach(site), |atom, _| {
+                    let Some(other) = self.sites.get(atom.index as usize) else {
+                        return;
+                    };
+                    energy.add(other, site, &(at - other.position), &direction);
+                });
+        }
+        energy
+    }
+
+    /// Distance in Å from which a ligand atom has no energy.
+    fn reach(&self, ligand: &Site) -> f64 {
+        (self.widest + ligand.radius + energy::RANGE).max(hydrogen_bond::BOND_REACH)
+    }
+
+    /// Rotation of the ligand, and the place of its centre relative to the receptor's.
+    fn placed(&self, pose: &Pose) -> (Matrix3<f64>, Vector3<f64>) {
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        (*pose.rotation.to_rotation_matrix().matrix(), place)
+    }
+}
+
+/// The heavy atoms of a body relative to `middle`.
+fn sites(knots: &Knots, polar: &[PolarAtom], middle: Vector3<f64>) -> Vec<Site> {
+    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
+    let heavy = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
+    heavy
+        .map(|(index, (&x, &radius))| Site {
+            position: Vector3::from(x) - middle,
+            radius,
+            polar: polar.get(index).copied().unwrap_or_default(),
+            charge: knots.charges.get(index).copied().unwrap_or(0.0),
+        })
+        .collect()
+}

@@ -1,0 +1,71 @@
+//! Distance from any place to the nearest atom of a body, at least.
+
+use nalgebra::Vector3;
+
+/// Edge of a cell, Å.
+const EDGE: f64 = 2.5;
+/// Distance from which cells are only known to be far, Å.
+const FAR: f64 = 16.0;
+
+/// Lower bounds of the distance to a body's atoms, by cells of space.
+///
+/// Most atoms of a ligand are far from the receptor, and a look at one cell shows it.
+pub(super) struct Nearness {
+    low: Vector3<f64>,
+    counts: [usize; 3],
+    /// Bound of each cell, Å.
+    bounds: Vec<f32>,
+}
+
+impl Nearness {
+    /// Bounds about some points (Å).
+    pub fn new(points: impl Iterator<Item = Vector3<f64>> + Clone) -> Self {
+        let ends = points.clone().fold(None, |ends, point| {
+            let (low, high): (Vector3<f64>, Vector3<f64>) = ends.unwrap_or((point, point));
+            Some((low.inf(&point), high.sup(&point)))
+        });
+        let (low, high) = ends.unwrap_or_default();
+        let low = low.add_scalar(-FAR);
+        let counts: [usize; 3] =
+            std::array::from_fn(|axis| ((high[axis] + FAR - low[axis]) / EDGE) as usize + 1);
+        let mut bounds = vec![FAR as f32; counts.iter().product()];
+        let half_diagonal = 0.5 * 3f64.sqrt() * EDGE;
+        let span = (FAR / EDGE) as usize + 1;
+        for point in points {
+            let at = (point - low) / EDGE;
+            let [from, to]: [[usize; 3]; 2] = [
+                std::array::from_fn(|axis| (at[axis] as usize).saturating_sub(span)),
+                std::array::from_fn(|axis| (at[axis] as usize + span).min(counts[axis] - 1)),
+            ];
+            for x in from[0]..=to[0] {
+                for y in from[1]..=to[1] {
+                    let row = (x * counts[1] + y) * counts[2];
+                    let flat = (x as f64 + 0.5 - at.x).powi(2) + (y as f64 + 0.5 - at.y).powi(2);
+                    for (z, bound) in bounds[row + from[2]..=row + to[2]].iter_mut().enumerate() {
+                        let square = flat + ((from[2] + z) as f64 + 0.5 - at.z).powi(2);
+                        let distance = (square.sqrt() * EDGE - half_diagonal) as f32;
+                        *bound = bound.min(distance);
+                    }
+                }
+            }
+        }
+        Self {
+            low,
+            counts,
+            bounds,
+        }
+    }
+
+    /// Whether no atom can be within `reach` (Å, at most 16) of a place.
+    #[inline]
+    pub fn excludes(&self, place: &Vector3<f64>, reach: f64) -> bool {
+        let at = (place - self.low) / EDGE;
+        let inside = (0..3).all(|axis| at[axis] >= 0.0 && at[axis] < self.counts[axis] as f64);
+        if !inside {
+            return reach < FAR;
+        }
+        let cell =
+            (at.x as usize * self.counts[1] + at.y as usize) * self.counts[2] + at.z as usize;
+        f64::from(self.bounds[cell]) > reach
+    }
+}
