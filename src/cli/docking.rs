@@ -8,7 +8,7 @@ use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
 use knotdock::evaluate::Evaluator;
-use knotdock::options::Precision;
+use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::Staging;
 use knotdock::output::records::manifest::{
     EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
@@ -174,7 +174,8 @@ impl Docking {
             Some(evaluator) => quality::columns(&measure(evaluator, &rows)),
             None => Vec::new(),
         };
-        let table = RunTable::new(&outcome.poses, output.diagnostics, &quality);
+        let columns = (self.prepared.plan.sharp(), output.diagnostics);
+        let table = RunTable::new(&outcome.poses, columns, &quality);
         staging.write("poses.csv", |file| table.write_to(file))?;
         let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
         let top = rows.get(..output.write_top).unwrap_or(&rows);
@@ -267,6 +268,10 @@ fn plan_within(
     request: &mut Request,
     console: Console,
 ) -> Result<(PreparedPair, Chosen), Failure> {
+    // Nothing is known of the time that sharp fits take before there are poses.
+    if wanted.budget.is_some() && request.options.ranking.sharp == SharpChoice::Auto {
+        request.options.ranking.sharp = SharpChoice::Off;
+    }
     let rotations = request.options.search.rotations;
     // A first plan fills in the lengths of meshes; its rotations are not used.
     request.options.search.rotations = 4;

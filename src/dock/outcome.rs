@@ -1,6 +1,7 @@
 //! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use crate::options::Stopped;
+use crate::rank::sharp::{Evidence, SharpFinding, SharpPose};
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
 use knotdock_scoring::exact::ExactScore;
@@ -43,7 +44,9 @@ pub struct RankedPose {
     pub pose_terms: TermValues,
     /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
     pub other_copies: Option<f64>,
-    /// Sum that ranks poses: `score`, the pose terms and `other_copies`.
+    /// Its sharp fit; `None` where none was looked for.
+    pub sharp: Option<SharpPose>,
+    /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
     pub pose_score: f64,
     /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
     /// differ.
@@ -141,6 +144,19 @@ pub struct StageTime {
     pub cpu_seconds: Option<f64>,
 }
 
+/// What the sharp stage saw.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SharpOutcome {
+    /// Whether an exact fit stands out, and so what the run is ranked by.
+    pub finding: SharpFinding,
+    /// The best place against the others; `None` where there are too few places.
+    pub evidence: Option<Evidence>,
+    /// Standard deviations that the best place lies below the others.
+    pub margin: Option<f64>,
+    /// Poses that descended to an optimum.
+    pub poses: usize,
+}
+
 /// All that a docking run found.
 #[derive(Clone, Debug)]
 pub struct DockOutcome {
@@ -162,6 +178,8 @@ pub struct DockOutcome {
     pub rank_error: f64,
     /// Cost of each term.
     pub effects: Vec<EffectCost>,
+    /// What the sharp stage saw; `None` where it was off.
+    pub sharp: Option<SharpOutcome>,
     /// Coverage of a finer search about the best rotations, where one was requested.
     pub fine: Option<FineSearched>,
     /// Time by stage.

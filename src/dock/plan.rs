@@ -10,13 +10,14 @@ use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::rank::rescoring::Rescoring;
+use crate::rank::sharp::SharpInputs;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
-use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Molecule};
+use knotdock_structures::{Knots, PolarAtom};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -78,6 +79,9 @@ pub struct DockPlan {
     /// What is searched, and how.
     #[serde(skip)]
     pub(crate) search: SearchPlan,
+    /// The parts of atoms in hydrogen bonds, where sharp fits are looked for.
+    #[serde(skip)]
+    pub(crate) polar: Option<[Vec<PolarAtom>; 2]>,
     #[serde(skip)]
     pub(crate) receptor: Knots,
     #[serde(skip)]
@@ -137,6 +141,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         active: scene.active,
         labels: scene.labels,
         regions: scene.regions,
+        polar: scene.polar,
         options: options.clone(),
         receptor: scene.receptor,
         ligand: scene.ligand,
@@ -148,6 +153,20 @@ impl DockPlan {
     /// The knots that are docked, of receptor and ligand.
     pub fn knots(&self) -> [&Knots; 2] {
         [&self.receptor, &self.ligand]
+    }
+
+    /// Whether sharp fits are looked for.
+    pub fn sharp(&self) -> bool {
+        self.polar.is_some()
+    }
+
+    /// What the sharp stage reads; `None` where it is off.
+    pub(crate) fn sharp_inputs(&self) -> Option<SharpInputs<'_>> {
+        let polar = self.polar.as_ref()?;
+        Some(SharpInputs {
+            bodies: [&self.receptor, &self.ligand],
+            polar: polar.each_ref().map(Vec::as_slice),
+        })
     }
 
     /// Rotations in flight at once.

@@ -1,7 +1,7 @@
 //! The run: prepare, scan the rotations, refine the best peaks, check the fast path, rescore, cluster, score exactly.
 
 use crate::dock::effect_timings::{effect_timings, rank_of};
-use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, error_scale};
+use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, SharpOutcome, error_scale};
 use crate::dock::plan::DockPlan;
 use crate::dock::stopwatch::Stopwatch;
 use crate::error::SearchError;
@@ -12,6 +12,7 @@ use crate::progress::Progress;
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
 use crate::rank::ranking::{PoseScorer, Ranking, cluster_temperature, report};
+use crate::rank::sharp::{optima, settle};
 use crate::rank::time_left::poses_in_time;
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
 use crate::search::deadline::Deadline;
@@ -118,6 +119,16 @@ fn dock_in<T: Real>(
     found.peaks.truncate(ERROR_POSES);
     found.peaks.shrink_to_fit();
     clock.lap("rescore");
+    let sharp = sharpen(
+        plan,
+        &mut candidates,
+        &body,
+        (&scorer, rescorer.as_ref()),
+        progress,
+    );
+    if sharp.is_some() {
+        clock.lap("sharp");
+    }
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
     // Poses closer than neighbouring samples of the search are one place to it.
@@ -155,6 +166,7 @@ fn dock_in<T: Real>(
         rank_error,
         rank,
         effects,
+        sharp,
         fine: found.fine,
         timing: clock.into_stages(),
         adapter,
@@ -366,6 +378,28 @@ fn rescore(
         progress.advance(1);
     }
     candidates
+}
+
+/// Fits the best candidates at atomic resolution, and ranks by these fits where one stands out; `None` where sharp fits
+/// are off.
+fn sharpen(
+    plan: &DockPlan,
+    candidates: &mut [Candidate],
+    body: &RigidBody,
+    scorers: (&ExactSum, Option<&Rescorer>),
+    progress: &dyn Progress,
+) -> Option<SharpOutcome> {
+    let inputs = plan.sharp_inputs()?;
+    progress.stage("sharp", 1);
+    let optima = optima(&inputs, candidates, body);
+    let finding = settle(candidates, &optima, plan.options.ranking.sharp, scorers);
+    progress.advance(1);
+    Some(SharpOutcome {
+        finding,
+        evidence: optima.evidence,
+        margin: optima.evidence.map(|evidence| evidence.margin()),
+        poses: optima.of_candidates.iter().flatten().count(),
+    })
 }
 
 /// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.

@@ -4,7 +4,7 @@ use crate::dock::effect_decisions::{self, Decision};
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
-use crate::options::DockOptions;
+use crate::options::{DockOptions, SharpChoice};
 use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restraints::Restraints;
@@ -14,8 +14,8 @@ use knotdock_scoring::kernel::Band;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_scoring::terms::effect::{Effect, EffectInputs, LabelCounts, Term};
 use knotdock_scoring::terms::pose::Rescorer;
-use knotdock_structures::Knots;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
+use knotdock_structures::{Knots, PolarAtom};
 use serde::Serialize;
 
 /// The unit of a scene's lengths.
@@ -60,6 +60,8 @@ pub struct Scene {
     pub active: ActiveResidues,
     /// Unresolved segments and residues near termini; empty where they cost nothing.
     pub regions: FlexibleRegions,
+    /// The parts of the atoms of receptor and ligand in hydrogen bonds, where sharp fits are looked for.
+    pub polar: Option<[Vec<PolarAtom>; 2]>,
     /// Axis of the ring that the molecule is, where two such rings are docked.
     pub ring_axis: Option<RingAxis>,
 }
@@ -136,6 +138,8 @@ impl Scene {
             } else {
                 ActiveResidues::assumed(sites, [own, other], options)
             };
+        let polar =
+            sharp_fits(options, on(Effect::Contact)).then(|| molecules.map(Molecule::polar_atoms));
         // The weight of buried atoms is a matter of shape alone, so it comes after the terms.
         let [receptor, ligand] =
             [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
@@ -155,6 +159,7 @@ impl Scene {
             decisions,
             labels: [receptor_report, ligand_report],
             active,
+            polar,
             regions: FlexibleRegions::of(molecules, options),
             ring_axis,
         })
@@ -176,6 +181,7 @@ impl Scene {
             decisions: effect_decisions::of_meshes(options)?,
             labels: [LabelReport::default(), LabelReport::default()],
             active: Default::default(),
+            polar: None,
             regions: Default::default(),
             ring_axis: None,
         })
@@ -223,6 +229,17 @@ impl Scene {
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
         Rescoring::new(bodies, &self.active, &self.regions, options).rescorer()
+    }
+}
+
+/// Whether sharp fits are looked for between two molecules: where they are requested, and by default where residue
+/// contacts score as well, which the weights of the ranking were chosen with. Copies of a ring cannot move alone.
+fn sharp_fits(options: &DockOptions, contacts: bool) -> bool {
+    let is_free = options.search.symmetry.is_none();
+    match options.ranking.sharp {
+        SharpChoice::Auto => is_free && contacts,
+        SharpChoice::On => is_free,
+        SharpChoice::Off => false,
     }
 }
 

@@ -44,7 +44,7 @@ pub use kernel::{KernelOptions, PASS_RATIO};
 pub use machine::{MachineOptions, Threads};
 pub use output::OutputOptions;
 pub use potential_file::PotentialFileError;
-pub use ranking::RankingOptions;
+pub use ranking::{RankingOptions, SharpChoice};
 pub use restraints::{AntibodySurface, RestraintOptions};
 pub use sampling::{MAX_PER_AXIS, SampleGrid, SampleWeights, SamplingOptions};
 pub use search::{AXES, AXES_ACROSS, EngineChoice, Precision, REFINED_BY_SHAPE, SearchOptions};

@@ -1,6 +1,6 @@
 //! Options on ranking: how poses become rows.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
 use super::values::not_negative;
@@ -14,8 +14,31 @@ pub struct RankingOptions {
     /// by default 2.273 times the offset.
     #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 5.0)]
     pub cluster_radius: f64,
+    /// Fit the best poses at atomic resolution: auto ranks by these fits where one stands out as an exact fit does, on
+    /// always, off never looks for them.
+    #[arg(long, value_enum, value_name = "auto|on|off", hide_possible_values = true, default_value_t = SharpChoice::Auto)]
+    #[serde(default = "before_sharp_fits")]
+    pub sharp: SharpChoice,
     /// List every pose, but for those within a step of the search of a better refined one; without this, one row a
     /// cluster, its best pose.
     #[arg(long)]
     pub no_cluster: bool,
+}
+
+/// What records hold of runs that are older than the option.
+fn before_sharp_fits() -> SharpChoice {
+    SharpChoice::Off
+}
+
+/// Use of fits at atomic resolution in the ranking.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum SharpChoice {
+    /// They rank where one stands out.
+    #[default]
+    Auto,
+    /// They always rank.
+    On,
+    /// They are not looked for.
+    Off,
 }

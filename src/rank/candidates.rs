@@ -3,6 +3,7 @@
 
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
+use crate::rank::sharp::SharpPose;
 use knotdock_scoring::exact::ExactScore;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
@@ -24,6 +25,10 @@ pub(crate) struct Candidate {
     pub terms: Option<Box<ExactScore>>,
     /// Whether `pose` was moved off the grid.
     pub refined: bool,
+    /// Whether it was moved into the optimum of its sharp fit.
+    pub settled: bool,
+    /// Its sharp fit, where it has been looked for.
+    pub sharp: Option<SharpPose>,
     /// Index of the rotation that it came from.
     pub rotation: usize,
     /// The grid's score where it came from.
@@ -54,6 +59,8 @@ pub(crate) fn candidates(
                 start: placed.start,
                 terms: at_start.get(index).copied().map(Box::new),
                 refined: placed.refined,
+                settled: false,
+                sharp: None,
                 rotation: peak.rotation as usize,
                 score_grid: peak.score,
             }
@@ -65,17 +72,24 @@ pub(crate) fn candidates(
     candidates
 }
 
-/// Drops refined poses that ended where a better one did.
+impl Candidate {
+    /// Whether the pose has left the grid of the search.
+    fn is_off_grid(&self) -> bool {
+        self.refined || self.settled
+    }
+}
+
+/// Drops poses off the grid that ended where a better one did.
 pub(crate) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
     let poses: Vec<Pose> = candidates
         .iter()
-        .filter(|candidate| candidate.refined)
+        .filter(|candidate| candidate.is_off_grid())
         .map(|candidate| candidate.pose)
         .collect();
     let groups = greedy(body, &poses, distance);
     let (mut index, mut seen) = (0, 0);
     candidates.retain(|candidate| {
-        if !candidate.refined {
+        if !candidate.is_off_grid() {
             return true;
         }
         let is_best = groups[index] == seen;
@@ -110,7 +124,7 @@ pub(crate) fn deduplicated(
             let others = &mut standing[cluster];
             let near = body.first_within(others, &candidate.pose, step);
             let is_distinct = near.is_none();
-            if is_distinct && candidate.refined {
+            if is_distinct && candidate.is_off_grid() {
                 others.push(body.place(&candidate.pose));
             }
             is_distinct

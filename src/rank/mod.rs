@@ -4,5 +4,6 @@ pub(crate) mod candidates;
 pub mod cluster;
 pub(crate) mod ranking;
 pub mod rescoring;
+pub mod sharp;
 pub mod term_counts;
 pub(crate) mod time_left;

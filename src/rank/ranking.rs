@@ -213,18 +213,23 @@ impl Candidate {
             }
             _ => self.pose_terms,
         };
+        let sharp = self.sharp.and_then(|sharp| sharp.score);
         RankedPose {
             pose,
             pose_terms,
             other_copies: others,
-            pose_score: terms.score + pose_terms.sum() + others.unwrap_or(0.0),
+            pose_score: terms.score
+                + pose_terms.sum()
+                + others.unwrap_or(0.0)
+                + sharp.unwrap_or(0.0),
             z_score: None,
             score: 0.0,
             search_score: terms.score,
             cluster: None,
             cluster_size: None,
             cluster_score: None,
-            refined,
+            refined: refined || self.settled,
+            sharp: self.sharp,
             rotation: self.rotation,
             score_grid: self.score_grid,
             score_unfiltered: terms.unfiltered,

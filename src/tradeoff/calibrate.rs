@@ -151,6 +151,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         reason: "calibration".to_owned(),
     });
     Ok(Scene {
+        polar: None,
         unit: LengthUnit::Angstrom,
         angstrom: 1.0,
         skin: None,

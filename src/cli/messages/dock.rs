@@ -7,6 +7,8 @@ use knotdock::dock::outcome::{DockOutcome, EffectCost};
 use knotdock::dock::plan::DockPlan;
 use knotdock::output::tables::report::counted;
 use knotdock::priors::active_residues::AssumedSite;
+use knotdock::rank::sharp::SharpFinding;
+use knotdock::rank::sharp::evidence::MARGIN;
 use knotdock::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
@@ -52,6 +54,7 @@ pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
         ));
     }
     lines.extend(rescored_text(outcome));
+    lines.extend(sharp_text(outcome));
     lines.extend(error_text(outcome));
     lines.push(format!(
         "{} in {}",
@@ -90,6 +93,26 @@ fn rescored_text(outcome: &DockOutcome) -> Option<String> {
         "Rescored by {} in {:.2} s",
         joined(&names),
         stage.wall_seconds
+    ))
+}
+
+/// What the sharp stage saw, and its time.
+fn sharp_text(outcome: &DockOutcome) -> Option<String> {
+    let sharp = outcome.sharp.as_ref()?;
+    let stage = outcome.timing.iter().find(|stage| stage.name == "sharp")?;
+    let finding = match sharp.finding {
+        SharpFinding::ExactFit => "an exact fit stands out: ranked by it",
+        SharpFinding::Requested => "no exact fit stands out; ranked by sharp fits, as requested",
+        SharpFinding::NoExactFit => "no exact fit; ranked by the soft score",
+    };
+    let margin = sharp
+        .margin
+        .map(|margin| format!(" (margin {margin:.1} standard deviations, {MARGIN:.1} needed)"));
+    Some(format!(
+        "Sharp fits of {} in {:.2} s: {finding}{}",
+        counted(sharp.poses, "pose"),
+        stage.wall_seconds,
+        margin.unwrap_or_default()
     ))
 }
 

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::dock::memory::stages::MemoryStage;
 use crate::dock::outcome::MeasuredError;
-use crate::dock::outcome::{DockOutcome, EffectCost, StageTime};
+use crate::dock::outcome::{DockOutcome, EffectCost, SharpOutcome, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
@@ -154,6 +154,7 @@ pub struct Manifest<'a> {
     effects: &'a [EffectCost],
     pose_terms: Vec<ActingTerm>,
     active_site: Option<&'a AssumedSite>,
+    sharp: Option<SharpOutcome>,
     finer_search: Option<FineSearched>,
     error: ErrorRecord,
     results: Results,
@@ -205,6 +206,7 @@ impl<'a> Manifest<'a> {
             effects: &parts.outcome.effects,
             pose_terms: parts.plan.rescoring().acting(),
             active_site: parts.plan.active_site(),
+            sharp: parts.outcome.sharp,
             finer_search: parts.outcome.fine,
             error: ErrorRecord {
                 measured: parts.outcome.error,

@@ -20,8 +20,9 @@ use crate::tradeoff::{Measured, Refused, Tradeoff};
 pub const SCHEMA: u32 = 1;
 
 /// Stages whose times are columns, in the order in which they run.
-const STAGES: [&str; 10] = [
-    "sample", "plan", "prepare", "search", "fine", "refine", "check", "rescore", "cluster", "score",
+const STAGES: [&str; 11] = [
+    "sample", "plan", "prepare", "search", "fine", "refine", "check", "rescore", "sharp",
+    "cluster", "score",
 ];
 
 /// A measured setting under the names of its columns, in order.

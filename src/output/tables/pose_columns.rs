@@ -6,6 +6,7 @@
 //! | `pose_score` | `search_score`, the pose terms and `other_copies` together |
 //! | `search_score` | exact correlation at the pose, which is the sum of the effects |
 //! | effects, pose terms | their weighted values by id; empty where one is off |
+//! | `sharp`, `sharp_energy`, `clashes` | the sharp fit; not with `--sharp off` |
 //!
 //! Columns for diagnosis come last: what the fast path gave, and from where.
 
@@ -51,8 +52,9 @@ fn count(name: &'static str, value: impl Fn(&RankedPose) -> Option<usize> + 'sta
     })
 }
 
-/// The columns after `rank`.
-pub(crate) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
+/// The columns after `rank`: with those of sharp fits where these were looked for, and those for diagnosis where they
+/// are wanted.
+pub(crate) fn columns(sharp: bool, diagnostics: bool) -> Vec<PoseColumn> {
     let mut columns = vec![
         column("score", |row| row.score),
         count("cluster", |row| row.cluster),
@@ -69,6 +71,9 @@ pub(crate) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
             .map(|term| optional(term.id, |row| row.pose_terms.get(term.id))),
     );
     columns.push(optional("other_copies", |row| row.other_copies));
+    if sharp {
+        columns.extend(of_sharp_fits());
+    }
     columns.push(optional("z_score", |row| row.z_score));
     for (index, name) in ["qw", "qx", "qy", "qz"].into_iter().enumerate() {
         columns.push(column(name, move |row| row.pose.quaternion()[index]));
@@ -80,6 +85,15 @@ pub(crate) fn columns(diagnostics: bool) -> Vec<PoseColumn> {
         columns.extend(for_diagnosis());
     }
     columns
+}
+
+/// Columns of the sharp fit: what it adds to the pose score, then its energy (RT) and clashes.
+fn of_sharp_fits() -> [PoseColumn; 3] {
+    [
+        optional("sharp", |row| row.sharp?.score),
+        optional("sharp_energy", |row| Some(row.sharp?.energy)),
+        count("clashes", |row| Some(row.sharp?.clashes)),
+    ]
 }
 
 /// Columns that say how the search came to a pose.
@@ -105,7 +119,10 @@ mod tests {
     /// A term whose id is a column's name already would hide one of the two.
     #[test]
     fn names_are_distinct_and_hold_every_term() {
-        let names: Vec<&str> = columns(true).iter().map(|column| column.name).collect();
+        let names: Vec<&str> = columns(true, true)
+            .iter()
+            .map(|column| column.name)
+            .collect();
         let distinct: HashSet<&str> = names.iter().copied().collect();
         assert_eq!(distinct.len(), names.len());
         assert!(POSE_TERMS.iter().all(|term| distinct.contains(term.id)));
@@ -114,7 +131,7 @@ mod tests {
                 .iter()
                 .all(|effect| distinct.contains(effect.name()))
         );
-        let default = columns(false);
+        let default = columns(true, false);
         assert!(
             default
                 .iter()

@@ -104,6 +104,7 @@ mod tests {
             cluster_score: None,
             cluster_size: cluster.map(|_| 2),
             refined: false,
+            sharp: None,
             rotation: 0,
             score_grid: score,
             score_unfiltered: score,

@@ -19,12 +19,16 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// The table of some poses, with columns for diagnosis if they are wanted, and further columns after them. A row
-    /// for which a further column has no field gets an empty one.
-    pub fn new(poses: &'a [RankedPose], diagnostics: bool, further: &'a [Column]) -> Self {
+    /// The table of some poses: with columns of sharp fits if these were looked for, with columns for diagnosis if they
+    /// are wanted, and further columns after them. A row for which a further column has no field gets an empty one.
+    pub fn new(
+        poses: &'a [RankedPose],
+        (sharp, diagnostics): (bool, bool),
+        further: &'a [Column],
+    ) -> Self {
         Self {
             poses,
-            columns: columns(diagnostics),
+            columns: columns(sharp, diagnostics),
             further,
         }
     }

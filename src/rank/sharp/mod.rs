@@ -1,0 +1,29 @@
+//! The sharp stage: fits at atomic resolution, used where one stands out.
+//!
+//! The score that a search ranks by forgives what unbound surfaces get wrong, so it cannot tell an exact fit from a
+//! fair one. This stage lets the best poses descend to optima of the [sharp fit](knotdock_scoring::sharp). Where the
+//! best optimum stands out from the other places of the same run, the two files fit as they are, and the poses are
+//! ranked by it ([`evidence`]). Where none does, the sharp energies are noise, and nothing about the ranking changes.
+
+pub mod evidence;
+mod settle;
+mod stage;
+
+pub use evidence::{Evidence, SharpFinding};
+pub use stage::{DESCENDING, SEVERAL};
+
+pub(crate) use settle::settle;
+pub(crate) use stage::{SharpInputs, optima};
+
+use serde::Serialize;
+
+/// The sharp fit of one pose.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SharpPose {
+    /// Energy of the optimum that the pose descends to, RT.
+    pub energy: f64,
+    /// Pairs of atoms of that optimum that overlap by more than 0.5 Å.
+    pub clashes: usize,
+    /// What it adds to the pose score; `None` where the run is ranked by the soft score.
+    pub score: Option<f64>,
+}

@@ -1,0 +1,100 @@
+//! Optima of the best poses of a run, and the evidence that they are.
+
+use super::evidence::Evidence;
+use crate::pose_space::refine::printed;
+use crate::rank::candidates::Candidate;
+use crate::rank::cluster::{RigidBody, greedy};
+use knotdock_scoring::sharp::{Optimum, PairList, SharpFit};
+use knotdock_structures::{Knots, PolarAtom};
+use rayon::prelude::*;
+
+/// Poses that descend: the best of the run by the soft score.
+pub const DESCENDING: usize = 250;
+/// Places whose neighbourhood is tried, too: those of the best optima.
+pub const SEVERAL: usize = 20;
+/// RMSD of the ligand in Å within which two optima are one place.
+const PLACE: f64 = 2.5;
+
+/// What the sharp stage reads of two bodies.
+#[derive(Clone, Copy)]
+pub(crate) struct SharpInputs<'a> {
+    /// Receptor and ligand.
+    pub bodies: [&'a Knots; 2],
+    /// The parts of their atoms in hydrogen bonds.
+    pub polar: [&'a [PolarAtom]; 2],
+}
+
+/// Optima of a run's best poses.
+pub(crate) struct Optima {
+    /// The optimum of each of the first candidates; `None` where nothing touches.
+    pub of_candidates: Vec<Option<Optimum>>,
+    /// The best place against the others; `None` where there are too few.
+    pub evidence: Option<Evidence>,
+}
+
+/// Lets the best candidates descend, and looks about the places of the best optima.
+pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &RigidBody) -> Optima {
+    let fit = SharpFit::new(inputs.bodies, inputs.polar);
+    let best = candidates.get(..DESCENDING).unwrap_or(candidates);
+    let mut of_candidates: Vec<Option<Optimum>> = Vec::new();
+    best.par_iter()
+        .map_init(PairList::default, |list, candidate| {
+            fit.descend(&candidate.pose, list)
+                .map(|found| rounded(&fit, found))
+        })
+        .collect_into_vec(&mut of_candidates);
+    let firsts = first_of_places(&of_candidates, body);
+    let tried: Vec<(usize, Optimum)> = firsts
+        .get(..SEVERAL)
+        .unwrap_or(&firsts)
+        .par_iter()
+        .map_init(PairList::default, |list, &(index, first)| {
+            let near = fit
+                .best_near(&first.pose, list)
+                .map(|found| rounded(&fit, found));
+            let better = near.filter(|near| near.energy.total() < first.energy.total());
+            (index, better.unwrap_or(first))
+        })
+        .collect();
+    for (index, optimum) in tried {
+        if let Some(of_candidate) = of_candidates.get_mut(index) {
+            *of_candidate = Some(optimum);
+        }
+    }
+    let energies: Vec<f64> = first_of_places(&of_candidates, body)
+        .iter()
+        .map(|(_, optimum)| optimum.energy.total())
+        .collect();
+    Optima {
+        evidence: Evidence::of(&energies),
+        of_candidates,
+    }
+}
+
+/// An optimum at the printed digits of its pose, with the energy that these have.
+fn rounded(fit: &SharpFit, found: Optimum) -> Optimum {
+    let pose = printed(&found.pose);
+    Optimum {
+        pose,
+        energy: fit.energy(&pose),
+    }
+}
+
+/// The best optimum of each place with the index of its candidate, best first; ties in the order of candidates.
+fn first_of_places(optima: &[Option<Optimum>], body: &RigidBody) -> Vec<(usize, Optimum)> {
+    let found = optima.iter().enumerate();
+    let mut found: Vec<(usize, Optimum)> = found
+        .filter_map(|(index, optimum)| Some((index, (*optimum)?)))
+        .filter(|(_, optimum)| optimum.energy.total().is_finite())
+        .collect();
+    found.sort_by(|(_, a), (_, b)| a.energy.total().total_cmp(&b.energy.total()));
+    let poses: Vec<_> = found.iter().map(|(_, optimum)| optimum.pose).collect();
+    let places = greedy(body, &poses, PLACE);
+    let mut next = 0;
+    let firsts = found.into_iter().zip(places).filter(|&(_, place)| {
+        let is_first = place == next;
+        next += usize::from(is_first);
+        is_first
+    });
+    firsts.map(|(found, _)| found).collect()
+}
