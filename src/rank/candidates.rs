@@ -73,6 +73,12 @@ pub(crate) fn candidates(
 }
 
 impl Candidate {
+    /// The score without what a sharp fit adds.
+    pub fn soft_score(&self) -> f64 {
+        let sharp = self.sharp.and_then(|sharp| sharp.score);
+        self.score - sharp.unwrap_or(0.0)
+    }
+
     /// Whether the pose has left the grid of the search.
     fn is_off_grid(&self) -> bool {
         self.refined || self.settled

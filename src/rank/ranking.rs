@@ -9,8 +9,8 @@
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
 //! score where that pose stands alone. It is more where many good poses lie about it, as they do about a native one.
-//! T is a tenth of the run's best score: on training pairs anything from a twentieth to a fifth ranked better than
-//! the best pose alone (docs/defaults.md).
+//! T is a tenth of the run's best score, sharp fits left out. On training pairs anything from a twentieth to a fifth
+//! ranked better than the best pose alone (docs/defaults.md).
 //!
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
 //! score, so that such a cluster has many good poses; where a joint fits there is one place.
@@ -77,7 +77,9 @@ pub(crate) fn report(
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
-    let best = candidates.first().map_or(0.0, |best| best.score.abs());
+    // Sharp fits reach several times the best soft score, by which poses of a cluster are alike.
+    let soft = candidates.iter().map(Candidate::soft_score);
+    let best = soft.reduce(f64::max).unwrap_or(0.0).abs();
     let temperature = (pose_scorer.cluster_temperature * best).max(f64::MIN_POSITIVE);
     let background = Background::of(candidates);
     let mut centres = vec![f64::NEG_INFINITY; count];

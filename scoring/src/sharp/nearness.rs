@@ -2,8 +2,10 @@
 
 use nalgebra::Vector3;
 
-/// Edge of a cell, Å.
+/// Least edge of a cell, Å.
 const EDGE: f64 = 2.5;
+/// Most cells: where a body is spread out they grow.
+const MOST_CELLS: f64 = 4e6;
 /// Distance from which cells are only known to be far, Å.
 const FAR: f64 = 16.0;
 
@@ -12,6 +14,7 @@ const FAR: f64 = 16.0;
 /// Most atoms of a ligand are far from the receptor, and a look at one cell shows it.
 pub(super) struct Nearness {
     low: Vector3<f64>,
+    edge: f64,
     counts: [usize; 3],
     /// Bound of each cell, Å.
     bounds: Vec<f32>,
@@ -26,13 +29,17 @@ impl Nearness {
         });
         let (low, high) = ends.unwrap_or_default();
         let low = low.add_scalar(-FAR);
-        let counts: [usize; 3] =
-            std::array::from_fn(|axis| ((high[axis] + FAR - low[axis]) / EDGE) as usize + 1);
+        let extent = (high - low).add_scalar(FAR);
+        let mut edge = EDGE;
+        while extent.iter().map(|x| x / edge + 1.0).product::<f64>() > MOST_CELLS {
+            edge *= 1.5;
+        }
+        let counts: [usize; 3] = std::array::from_fn(|axis| (extent[axis] / edge) as usize + 1);
         let mut bounds = vec![FAR as f32; counts.iter().product()];
-        let half_diagonal = 0.5 * 3f64.sqrt() * EDGE;
-        let span = (FAR / EDGE) as usize + 1;
+        let half_diagonal = 0.5 * 3f64.sqrt() * edge;
+        let span = (FAR / edge) as usize + 1;
         for point in points {
-            let at = (point - low) / EDGE;
+            let at = (point - low) / edge;
             let [from, to]: [[usize; 3]; 2] = [
                 std::array::from_fn(|axis| (at[axis] as usize).saturating_sub(span)),
                 std::array::from_fn(|axis| (at[axis] as usize + span).min(counts[axis] - 1)),
@@ -43,7 +50,7 @@ impl Nearness {
                     let flat = (x as f64 + 0.5 - at.x).powi(2) + (y as f64 + 0.5 - at.y).powi(2);
                     for (z, bound) in bounds[row + from[2]..=row + to[2]].iter_mut().enumerate() {
                         let square = flat + ((from[2] + z) as f64 + 0.5 - at.z).powi(2);
-                        let distance = (square.sqrt() * EDGE - half_diagonal) as f32;
+                        let distance = (square.sqrt() * edge - half_diagonal) as f32;
                         *bound = bound.min(distance);
                     }
                 }
@@ -51,6 +58,7 @@ impl Nearness {
         }
         Self {
             low,
+            edge,
             counts,
             bounds,
         }
@@ -59,7 +67,7 @@ impl Nearness {
     /// Whether no atom can be within `reach` (Å, at most 16) of a place.
     #[inline]
     pub fn excludes(&self, place: &Vector3<f64>, reach: f64) -> bool {
-        let at = (place - self.low) / EDGE;
+        let at = (place - self.low) / self.edge;
         let inside = (0..3).all(|axis| at[axis] >= 0.0 && at[axis] < self.counts[axis] as f64);
         if !inside {
             return reach < FAR;
@@ -67,5 +75,36 @@ impl Nearness {
         let cell =
             (at.x as usize * self.counts[1] + at.y as usize) * self.counts[2] + at.z as usize;
         f64::from(self.bounds[cell]) > reach
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::Numbers;
+
+    /// What is excluded is farther than the reach, and most of what is far is excluded. Parts of a body may lie far
+    /// from each other.
+    #[test]
+    fn only_what_is_far_is_excluded() {
+        for spread in [1.0, 1e5] {
+            let mut numbers = Numbers(3);
+            let mut point = |size: f64| Vector3::from_fn(|_, _| size * (numbers.next() - 0.5));
+            let mut atoms: Vec<Vector3<f64>> = (0..200).map(|_| point(30.0)).collect();
+            atoms.push(Vector3::new(spread, 0.0, 0.0));
+            let near = Nearness::new(atoms.iter().copied());
+            assert!(near.bounds.len() as f64 <= MOST_CELLS);
+            let (mut far, mut excluded) = (0, 0);
+            for _ in 0..2000 {
+                let place = point(90.0);
+                let distances = atoms.iter().map(|atom| (atom - place).norm());
+                let distance = distances.fold(f64::INFINITY, f64::min);
+                let is_excluded = near.excludes(&place, 8.0);
+                assert!(!is_excluded || distance > 8.0);
+                far += usize::from(distance > 14.0);
+                excluded += usize::from(is_excluded);
+            }
+            assert!(far > 100 && (spread > 1.0 || excluded >= far));
+        }
     }
 }

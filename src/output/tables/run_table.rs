@@ -103,6 +103,7 @@ mod tests {
             cluster_size: Some(4),
             cluster_score: None,
             refined: true,
+            sharp: None,
             rotation: 17,
             score_grid: f64::NAN,
             score_unfiltered: 1e-7,
@@ -126,7 +127,7 @@ mod tests {
     #[test]
     fn numbers_are_shortest_and_missing_ones_empty() {
         let poses = [pose([-0.5, 0.5, 0.5, -0.5], [1.5, -2.25, 0.1])];
-        let table = RunTable::new(&poses, true, &[]);
+        let table = RunTable::new(&poses, (false, true), &[]);
         assert_eq!(
             text(&table),
             "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
@@ -151,7 +152,7 @@ mod tests {
             pose_terms: values,
             ..pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])
         };
-        let objects = RunTable::new(&[row], false, &[]).objects([0]);
+        let objects = RunTable::new(&[row], (false, false), &[]).objects([0]);
         let object = objects[0].as_object().unwrap();
         for (term, number) in POSE_TERMS.iter().zip(1..) {
             assert_eq!(object[term.id], number, "{}", term.id);
@@ -166,7 +167,7 @@ mod tests {
     #[test]
     fn rows_as_objects_carry_types() {
         let poses = [pose([1.0, 0.0, 0.0, 0.0], [0.0; 3])];
-        let table = RunTable::new(&poses, true, &[]);
+        let table = RunTable::new(&poses, (false, true), &[]);
         let objects = table.objects([0, 7]);
         assert_eq!(objects.len(), 1);
         assert_eq!(objects[0]["rank"], 1);
@@ -184,7 +185,7 @@ mod tests {
             pose([0.0, -1.0, 2.0, 3.0], [0.0; 3]),
         ];
         let mut file = std::fs::File::create(&path).unwrap();
-        RunTable::new(&poses, false, &[])
+        RunTable::new(&poses, (false, false), &[])
             .write_to(&mut file)
             .unwrap();
         let read = PoseTable::read(&path).unwrap();

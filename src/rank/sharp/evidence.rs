@@ -85,7 +85,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     match values.get(middle.saturating_sub(1)..=middle) {
-        Some([low, high]) if values.len() % 2 == 0 => 0.5 * (low + high),
+        Some([low, high]) if values.len().is_multiple_of(2) => 0.5 * (low + high),
         _ => values.get(middle).copied().unwrap_or(0.0),
     }
 }
