@@ -15,6 +15,7 @@ mod messages;
 mod morph;
 mod obstacle;
 mod refine;
+mod refining;
 mod sample;
 mod score;
 mod se3;

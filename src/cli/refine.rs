@@ -4,23 +4,16 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use knotdock::evaluate::{Evaluator, PoseQuality};
 use knotdock::options::Threads;
-use knotdock::output::files::complexes::{file_names, write_complexes};
+use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
 use knotdock::output::files::whole_file::write_whole;
 use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::refined::{self, RefinedRow};
-use knotdock::output::tables::report;
+use knotdock::output::tables::refined;
+use knotdock::output::tables::report::counted;
 use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::progress::Progress;
-use knotdock::refine::{RefineOptions, Refined, Refiner};
+use knotdock::refine::RefineOptions;
 use knotdock::threads;
-use knotdock_scoring::sharp::PairList;
-use knotdock_structures::knots::KnotsError;
-use knotdock_structures::molecule::{ChainMap, Molecule};
-use rayon::prelude::*;
 use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce};
@@ -32,6 +25,7 @@ use crate::cli::inputs::ranked_rows::ranked_rows;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::refining::{Known, Refining, Written};
 
 /// Refine chosen poses of a run at atomic resolution: the ligand moves, and side chains of the interface are packed.
 ///
@@ -64,22 +58,6 @@ pub struct Refine {
 
 /// Name of the table.
 const TABLE: &str = "refined.csv";
-
-/// What was written of a pose.
-struct Written {
-    row: RefinedRow,
-    /// Name of the complex.
-    name: String,
-    chains: ChainMap,
-    /// Time of one thread.
-    seconds: f64,
-}
-
-/// A known complex, matched with the molecules as docked.
-struct Known {
-    files: NativeFiles,
-    evaluator: Evaluator,
-}
 
 impl Refine {
     /// Refines.
@@ -123,49 +101,14 @@ impl Refine {
             ph: run.options.terms.ph,
         };
         let export = ExportFolder::open(&folder, &self.run)?;
-        let task = Task {
-            refiner: Refiner::new(pair, options).map_err(|error| unusable(&error))?,
-            pair,
-            known: known.as_ref(),
-            staged: export.staged(),
-        };
-        let written = task.all(&rows, console)?;
-        let seconds = written.iter().map(|written| written.seconds).sum::<f64>();
-        let mut chains = None;
-        let (mut table, mut names) = (Vec::new(), Vec::new());
-        for written in written {
-            table.push(written.row);
-            names.push(written.name);
-            chains = Some(written.chains);
-        }
+        let refining = Refining::new(pair, options, known.as_ref(), export.staged())?;
+        let written = refining.all(&rows, console)?;
         write_whole(&export.staged().join(TABLE), |file| {
-            refined::write_to(file, &table)
+            refined::write_to(file, &written.table)
         })?;
         export.place(self.force)?;
-
-        let per_pose = seconds / table.len().max(1) as f64;
-        let wall = start.elapsed().as_secs_f64();
-        let path = |name: &str| folder.join(name).display().to_string();
-        console.say(format!("{}\n", listing(&table)));
-        console.say(format!(
-            "{} refined in {wall:.1} s, {per_pose:.2} s of a thread each, in {}",
-            report::counted(table.len(), "pose"),
-            folder.display()
-        ));
-        let poses = refined::objects(&table).into_iter().zip(&names);
-        let poses = poses.map(|(mut row, name)| {
-            row.insert("path".to_owned(), json!(path(name)));
-            row
-        });
-        console.result(&json!({
-            "directory": folder.display().to_string(),
-            "table": path(TABLE),
-            "poses": poses.collect::<Vec<_>>(),
-            "chains": chains,
-            "match": known.as_ref().map(|known| known.evaluator.report()),
-            "seconds": wall,
-            "seconds_per_pose": per_pose,
-        }))
+        let seconds = start.elapsed().as_secs_f64();
+        report(&written, known.as_ref(), &folder, seconds, console)
     }
 
     /// The directory to write to: not the run's own, whose complexes are those of its ranking.
@@ -211,108 +154,36 @@ fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Fail
     }
 }
 
-fn unusable(error: &KnotsError) -> Failure {
-    Failure::input(error).remedy("dock the molecules again, which names the fault")
-}
-
-impl Known {
-    fn new(files: NativeFiles, [receptor, ligand]: [&Molecule; 2]) -> Result<Self, Failure> {
-        let evaluator = files.evaluator(receptor, ligand)?;
-        Ok(Self { files, evaluator })
-    }
-
-    /// Qualities of a pose and of what it was refined to.
-    fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Failure> {
-        let after = match &refined.packed {
-            None => self.evaluator.evaluate(&refined.pose),
-            // Contacts are of all heavy atoms, so packed molecules are matched anew.
-            Some([receptor, ligand]) => self
-                .files
-                .evaluator(receptor, ligand)?
-                .evaluate(&refined.pose),
-        };
-        Ok([self.evaluator.evaluate(&row.pose), after])
-    }
-}
-
-/// What all poses are refined with.
-struct Task<'a> {
-    refiner: Refiner<'a>,
-    pair: [&'a Molecule; 2],
-    known: Option<&'a Known>,
-    /// Folder that complexes are written into.
-    staged: &'a Path,
-}
-
-impl Task<'_> {
-    /// Refines and writes the poses of some rows, in their order.
-    fn all(&self, rows: &[PoseRow], console: Console) -> Result<Vec<Written>, Failure> {
-        let progress = console.progress();
-        progress.stage("refining", rows.len() as u64);
-        let one = |list: &mut PairList, row: &PoseRow| {
-            let written = self.one(row, list);
-            progress.advance(1);
-            written
-        };
-        rows.par_iter().map_init(PairList::default, one).collect()
-    }
-
-    /// Refines and writes a pose. Its packed molecules are dropped: those of many poses may not fit into the memory.
-    fn one(&self, row: &PoseRow, list: &mut PairList) -> Result<Written, Failure> {
-        let start = Instant::now();
-        let mut refined = self
-            .refiner
-            .refine(&row.pose, list)
-            .map_err(|error| unusable(&error))?;
-        let seconds = start.elapsed().as_secs_f64();
-        let quality = self.known.map(|known| known.qualities(row, &refined));
-        let quality = quality.transpose()?;
-        let packed = refined.packed.take();
-        let molecules = packed
-            .as_ref()
-            .map_or(self.pair, |[receptor, ligand]| [receptor, ligand]);
-        let placed = PoseRow {
-            rank: row.rank,
-            pose: refined.pose,
-        };
-        let mut written =
-            write_complexes(molecules, Arrangement::from(None), &[placed], self.staged)?;
-        Ok(Written {
-            row: RefinedRow {
-                rank: row.rank,
-                refined,
-                quality,
-            },
-            name: written.names.pop().unwrap_or_default(),
-            chains: written.chains,
-            seconds,
-        })
-    }
-}
-
-/// The poses as a table for the terminal.
-fn listing(rows: &[RefinedRow]) -> String {
-    let has_native = rows.iter().any(|row| row.quality.is_some());
-    let mut header = vec!["rank", "moved", "energy", "clashes", "side chains"];
-    if has_native {
-        header.extend(["irmsd", "dockq"]);
-    }
-    let mut lines = vec![header.into_iter().map(str::to_owned).collect()];
-    for row in rows {
-        let Refined { before, after, .. } = &row.refined;
-        let packing = row.refined.packing.as_ref();
-        let mut line = vec![
-            row.rank.to_string(),
-            format!("{:.2}", row.refined.rmsd_moved),
-            format!("{:.1} -> {:.1}", before.total(), after.total()),
-            format!("{} -> {}", before.clashes, after.clashes),
-            packing.map_or(String::new(), |packing| packing.moved.to_string()),
-        ];
-        if let Some([before, after]) = &row.quality {
-            line.push(format!("{:.2} -> {:.2}", before.irmsd, after.irmsd));
-            line.push(format!("{:.3} -> {:.3}", before.dockq, after.dockq));
-        }
-        lines.push(line);
-    }
-    report::align(&lines)
+/// Says what was written where, and what it cost in seconds of wall time.
+fn report(
+    written: &Written,
+    known: Option<&Known>,
+    folder: &Path,
+    seconds: f64,
+    console: Console,
+) -> Result<(), Failure> {
+    let path = |name: &str| folder.join(name).display().to_string();
+    let cpu = written.cpu_seconds_per_pose;
+    let cost = cpu.map(|cpu| format!(", {cpu:.2} s of a processor each,"));
+    console.say(format!("\n{}\n", written.listing()));
+    console.say(format!(
+        "{} refined in {seconds:.1} s{} in {}",
+        counted(written.table.len(), "pose"),
+        cost.unwrap_or_default(),
+        folder.display()
+    ));
+    let rows = refined::objects(&written.table).into_iter();
+    let poses = rows.zip(&written.names).map(|(mut row, name)| {
+        row.insert("path".to_owned(), json!(path(name)));
+        row
+    });
+    console.result(&json!({
+        "directory": folder.display().to_string(),
+        "table": path(TABLE),
+        "poses": poses.collect::<Vec<_>>(),
+        "chains": written.chains,
+        "match": known.map(|known| known.evaluator.report()),
+        "seconds": seconds,
+        "cpu_seconds_per_pose": cpu,
+    }))
 }

@@ -204,7 +204,7 @@ fn what_cannot_be_refined_is_refused() {
     for words in [
         "dock receptor.pdb ligand.pdb --rotations 20 -o run",
         "dock receptor.pdb --symmetry C3 --rotations 20 -o ring",
-        "dock a.obj b.obj --offset 0.45 --sample-grid 2^12 --rotations 16 -o parts",
+        "dock a.obj b.obj --offset 0.2 --sample-grid 2^12 --rotations 16 -o parts",
     ] {
         let words = format!("{words} --poses 20 --write-top 0 --quiet");
         succeed(folder.path(), words.split(' '));
