@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use knotdock::options::Threads;
+use knotdock::options::values::not_negative;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
 use knotdock::output::files::whole_file::write_whole;
@@ -38,8 +39,11 @@ pub struct Refine {
     /// Ranks in poses.csv, such as 1-50 or 3,7.
     #[arg(long, value_name = "RANKS")]
     ranks: Ranks,
+    /// Farthest that the ligand may move, as the RMSD of its atoms, in Å; a lower energy farther away is another pose.
+    #[arg(long, value_name = "ANGSTROM", default_value_t = 3.0, value_parser = not_negative)]
+    max_move: f64,
     /// Leave the ligand where it is.
-    #[arg(long, conflicts_with = "no_side_chains")]
+    #[arg(long, conflicts_with_all = ["no_side_chains", "max_move"])]
     no_move: bool,
     /// Leave the side chains as they are.
     #[arg(long)]
@@ -97,6 +101,7 @@ impl Refine {
         }
         let options = RefineOptions {
             moves: !self.no_move,
+            max_move: self.max_move,
             side_chains: !self.no_side_chains,
             ph: run.options.terms.ph,
         };

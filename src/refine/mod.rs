@@ -1,9 +1,10 @@
 //! Refinement of poses at atomic resolution: the ligand moved as a rigid body, side chains of the interface packed.
 //!
 //! For each pose three stages follow one another. Each is kept only if it lowers the energy of the sharp fit
-//! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began:
+//! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began. None takes the ligand farther from the pose
+//! than [`RefineOptions::max_move`]: unbound molecules clash where they belong, and what is lowest is then elsewhere.
 //!
-//! 1. The rigid optimum near the pose ([`SharpFit::best_near`]).
+//! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
 //! 2. The side chains of the interface, packed for that place by energies of their own ([`crate::side_chains`]).
 //! 3. The rigid optimum of the packed molecules. Packing is judged after it, for new side chains need a new place.
 //!
@@ -13,7 +14,7 @@
 mod tests;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::sharp::{Energy, PairList, SharpFit};
+use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::Molecule;
@@ -26,6 +27,8 @@ use crate::side_chains::{RepackOptions, Repacker};
 pub struct RefineOptions {
     /// Whether the ligand may move.
     pub moves: bool,
+    /// Farthest that it may move, as the root mean square distance of its atoms, in Å.
+    pub max_move: f64,
     /// Whether side chains are packed.
     pub side_chains: bool,
     /// pH that charges are for.
@@ -98,7 +101,7 @@ impl<'a> Refiner<'a> {
             pose: *pose,
             energy: self.fit.energy(pose),
         };
-        let mut place = self.settled(&self.fit, start, list);
+        let mut place = self.settled(&self.fit, start, pose, list);
         let (mut packing, mut packed) = (None, None);
         if let Some(repacker) = &self.repacker {
             let found = repacker.repack(&place.pose);
@@ -109,7 +112,7 @@ impl<'a> Refiner<'a> {
                     pose: place.pose,
                     energy: fit.energy(&place.pose),
                 };
-                let after = self.settled(&fit, unmoved, list);
+                let after = self.settled(&fit, unmoved, pose, list);
                 if after.energy.total() < place.energy.total() {
                     place = after;
                     moved = found.moved.len();
@@ -131,18 +134,19 @@ impl<'a> Refiner<'a> {
         })
     }
 
-    /// The rigid optimum near a place, or the place itself where that is no higher or the ligand may not move.
-    fn settled(&self, fit: &SharpFit, from: Place, list: &mut PairList) -> Place {
+    /// The rigid optimum near a place; the place itself where none is lower and near enough to the pose that is refined.
+    fn settled(&self, fit: &SharpFit, from: Place, pose: &Pose, list: &mut PairList) -> Place {
         if !self.options.moves {
             return from;
         }
-        match fit.best_near(&from.pose, list) {
-            Some(best) if best.energy.total() < from.energy.total() => Place {
-                pose: best.pose,
-                energy: best.energy,
-            },
-            _ => from,
-        }
+        let ligand = self.molecules[1];
+        let is_better = |found: &Optimum| {
+            found.energy.total() < from.energy.total()
+                && rmsd_between(ligand, pose, &found.pose) <= self.options.max_move
+        };
+        let best = fit.best_near(&from.pose, list).filter(is_better);
+        let best = best.or_else(|| fit.descend(&from.pose, list).filter(is_better));
+        best.map_or(from, |Optimum { pose, energy }| Place { pose, energy })
     }
 }
 

@@ -6,6 +6,7 @@ use super::*;
 
 const ALL: RefineOptions = RefineOptions {
     moves: true,
+    max_move: 3.0,
     side_chains: true,
     ph: 7.0,
 };
@@ -44,6 +45,7 @@ fn stages_lower_the_energy_that_is_reported() {
         assert_eq!((packed.pose, packed.rmsd_moved), (pose, 0.0));
         assert!(moved.packed.is_none() && moved.packing.is_none());
         for refined in [both, moved, packed] {
+            assert!(refined.rmsd_moved <= ALL.max_move);
             let [receptor, ligand] = match &refined.packed {
                 Some([receptor, ligand]) => [receptor, ligand],
                 None => [receptor, ligand],
@@ -69,6 +71,19 @@ fn a_bound_complex_returns_to_its_place() {
     assert!(left < 0.3, "{left}");
     assert!((refined.rmsd_moved - 1.0).abs() < 0.3);
     assert_eq!(refined.after.clashes, 0);
+}
+
+#[test]
+fn no_move_is_longer_than_allowed() {
+    let molecules = ["receptor_bound", "ligand_bound"].map(example);
+    let [receptor, ligand] = &molecules;
+    for max_move in [0.0, 0.3, 2.0] {
+        let options = RefineOptions { max_move, ..ALL };
+        let refiner = Refiner::new([receptor, ligand], options).unwrap();
+        let refined = refiner.refine(&shifted(1.0), &mut PairList::default());
+        let moved = refined.unwrap().rmsd_moved;
+        assert!(moved <= max_move && (moved > 0.5) == (max_move == 2.0));
+    }
 }
 
 #[test]

@@ -115,8 +115,8 @@ fn poses_improve_and_the_run_stays() {
         .zip(poses.rows())
         .zip(object["poses"].as_array().unwrap())
     {
-        assert!(number(row, "energy_after") < number(row, "energy_before"));
-        assert!(number(row, "rmsd_moved") < 10.0);
+        assert!(number(row, "energy_after") <= number(row, "energy_before"));
+        assert!(number(row, "rmsd_moved") <= 3.0);
         assert!(number(row, "side_chains_moved") >= 0.0);
         assert!(["true", "false"].contains(&row["exact"].as_str()));
         let of_run = &before[pose.rank - 1];
@@ -211,6 +211,8 @@ fn what_cannot_be_refined_is_refused() {
     }
     for (words, reason) in [
         ("run --ranks 99999", "there is no rank 99999"),
+        ("run --ranks 1 --max-move -1", "--max-move"),
+        ("run --ranks 1 --max-move nan", "--max-move"),
         ("run --ranks 0", "ranks are counted from 1"),
         ("ring --ranks 1", "of C3, and rings are not refined"),
         ("parts --ranks 1", "a run of meshes"),
