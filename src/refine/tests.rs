@@ -58,7 +58,7 @@ fn stages_lower_the_energy_that_is_reported() {
     }
 }
 
-/// A crystal complex that was pulled apart by an Ångström goes back to its place, and its side chains stay.
+/// A crystal complex that was moved by an Ångström goes back to its place, and its side chains stay.
 #[test]
 fn a_bound_complex_returns_to_its_place() {
     let molecules = ["receptor_bound", "ligand_bound"].map(example);
@@ -87,7 +87,7 @@ fn no_move_is_longer_than_allowed() {
 }
 
 #[test]
-fn molecules_far_apart_stay() {
+fn molecules_out_of_reach_stay() {
     let molecules = ["receptor_unbound", "ligand_unbound"].map(example);
     let [receptor, ligand] = &molecules;
     let refiner = Refiner::new([receptor, ligand], ALL).unwrap();

@@ -8,7 +8,7 @@ use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use crate::cli::arguments::ranks::Ranks;
 use crate::cli::messages::failure::Failure;
 
-/// The rows of some ranks of the table at a path, in the order in which they are listed.
+/// The rows of some ranks of the table at a path, in the order of the ranks.
 pub fn ranked_rows(table_path: &Path, ranks: &Ranks) -> Result<Vec<PoseRow>, Failure> {
     let table = PoseTable::read(table_path)?;
     let of_rank: HashMap<usize, PoseRow> =
