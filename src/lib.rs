@@ -20,6 +20,7 @@ pub mod pose_space;
 pub mod priors;
 pub mod progress;
 pub mod rank;
+pub mod refine;
 pub mod score;
 pub mod search;
 pub mod side_chains;

@@ -34,6 +34,7 @@ mod memory;
 mod mesh_docking;
 mod paper_figures;
 mod reading;
+mod refine;
 mod residues_by_name;
 mod rings;
 mod sample;

@@ -1,6 +1,5 @@
 //! `knotdock export`: further complexes from a finished run.
 
-use std::collections::HashMap;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -8,7 +7,7 @@ use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
 use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
+use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
 use serde_json::json;
@@ -16,6 +15,7 @@ use serde_json::json;
 use crate::cli::arguments::output_file::check_not_read;
 use crate::cli::arguments::ranks::Ranks;
 use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::ranked_rows::ranked_rows;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
@@ -51,17 +51,7 @@ impl Export {
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         let table_path = self.run.join("poses.csv");
-        let table = PoseTable::read(&table_path)?;
-        let of_rank: HashMap<usize, PoseRow> =
-            table.rows().iter().map(|row| (row.rank, *row)).collect();
-        let rows = self.rank.0.iter().map(|rank| {
-            of_rank.get(rank).copied().ok_or_else(|| {
-                Failure::input(format!("there is no rank {rank} among the {} rows", table.rows().len()))
-                    .at(&table_path)
-                    .remedy("choose ranks that the table lists; `knotdock dock --no-cluster` lists every pose")
-            })
-        });
-        let rows: Vec<PoseRow> = rows.collect::<Result<_, _>>()?;
+        let rows = ranked_rows(&table_path, &self.rank)?;
         let arrangement = Arrangement::from(run.options.search.symmetry);
         let is_no_ring = |row: &&PoseRow| arrangement.images(&row.pose).is_none();
         if let Some(PoseRow { rank, .. }) = rows.iter().find(is_no_ring) {

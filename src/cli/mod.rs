@@ -14,6 +14,8 @@ mod inspect;
 mod messages;
 mod morph;
 mod obstacle;
+mod refine;
+mod refining;
 mod sample;
 mod score;
 mod se3;
@@ -56,6 +58,7 @@ enum Command {
     Dock(Box<dock::Dock>),
     Batch(batch::Batch),
     Export(export::Export),
+    Refine(refine::Refine),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Inspect(inspect::Inspect),
@@ -97,6 +100,7 @@ pub fn main() -> ExitCode {
             Err(failure) => Err(failure),
         },
         Command::Export(command) => command.run(console),
+        Command::Refine(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
         Command::Inspect(command) => command.run(console),

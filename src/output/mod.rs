@@ -6,6 +6,7 @@
 //! | `sample` | `knots.csv`, balls as a mesh, as pseudo-atoms or in a picture |
 //! | `obstacle`, `morph` | balls, a surface, a volume grid, a picture |
 //! | `se3` | a list of poses |
+//! | `refine` | `refined.csv`, and complexes as `dock` writes them |
 //! | `tradeoff` | `tradeoff.csv`, `tradeoff.json` and a picture |
 //! | `batch` | `results.csv`, and the tables of pairs that it reads |
 //!

@@ -74,6 +74,7 @@ BALLS = ("k.csv", "k.obj", "k.svg")
 SWEPT = ("sweep", "sweep/tradeoff.csv", "sweep/tradeoff.json", "sweep/tradeoff.svg")
 BATCHED = ("runs", "runs/results.csv", "runs/one", "runs/one/top", "runs/two/poses.csv")
 MORE = ("more/rank_0002.pdb", "more/rank_0012.pdb")
+REFINED = ("run/refined/rank_0001.pdb", "run/refined/rank_0002.pdb", "run/refined/refined.csv")
 SCENES = [
     Scene("dock", DOCK, units=("run",), outputs=RUN),
     Scene("dock --force", [*DOCK, "--force"], [OLD], ("run",), RUN),
@@ -85,6 +86,9 @@ SCENES = [
           ("run/top/rank_0011.pdb", "run/top")),
     Scene("export --force", ["export", "run", "--rank", "2,12", "-o", "more", "--force"],
           [DOCK, ["export", "run", "--rank", "2", "-o", "more"]], MORE, ("more", *MORE)),
+    Scene("refine", ["refine", "run", "--ranks", "1,2"], [DOCK], REFINED, ("run/refined", REFINED[0], REFINED[2])),
+    Scene("refine --force", ["refine", "run", "--ranks", "1,2", "--force"],
+          [DOCK, ["refine", "run", "--ranks", "2", "--no-move"]], REFINED, ("run/refined", REFINED[0], REFINED[2])),
     Scene("tradeoff", SWEEP, units=("sweep",), outputs=SWEPT),
     Scene("tradeoff --force", [*SWEEP, "--force"], [SWEEP], ("sweep",), SWEPT),
     Scene("inspect", INSPECT, units=("atoms.csv", "kept.pdb"), outputs=("atoms.csv", "kept.pdb")),

@@ -21,7 +21,7 @@ def check_failed_cleanly(trial, scene, call, before):
     if call.code == 0:
         wrong = differences(comparable(found, trial.folder), comparable(common.new, trial.folder))
         trial.check(not wrong, f"ended well, but {wrong}")
-    elif scene.words[0] in ("batch", "export", "sample", "inspect"):
+    elif scene.words[0] in ("batch", "export", "refine", "sample", "inspect"):
         # Each file, and each pair of a batch, is a result by itself: those before the failure may stand.
         there = comparable(found, trial.folder)
         check_units(trial, scene, common, there)

@@ -185,7 +185,7 @@ impl Bodies {
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                let written = write_complexes(molecules, arrangement, rows, folder)?;
+                let written = write_complexes(molecules, arrangement, rows, "", folder)?;
                 Ok(WrittenBodies {
                     names: written.names,
                     chains: Some(written.chains),

@@ -6,6 +6,7 @@ pub mod bodies;
 pub mod meshes;
 pub mod molecules;
 pub mod poses;
+pub mod ranked_rows;
 pub mod request;
 pub mod room;
 pub mod shapes;

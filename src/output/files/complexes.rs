@@ -34,7 +34,7 @@ pub fn file_names(rank: usize) -> [String; 3] {
 }
 
 /// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
-/// complex does not fit the PDB format. Of a ring all copies are written.
+/// complex does not fit the PDB format. Of a ring all copies are written. `note` follows the rank in the remarks.
 ///
 /// # Errors
 /// [`FileError`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
@@ -43,6 +43,7 @@ pub fn write_complexes(
     [receptor, ligand]: [&Molecule; 2],
     arrangement: Arrangement,
     rows: &[PoseRow],
+    note: &str,
     folder: &Path,
 ) -> Result<Written, FileError> {
     if !rows.is_empty() {
@@ -76,7 +77,7 @@ pub fn write_complexes(
     for (row, poses) in rows.iter().zip(&copies) {
         let name = file_name(row.rank, format.extension());
         let others = placed(poses);
-        let remarks = remarks(row, arrangement);
+        let remarks = remarks(row, arrangement, note);
         let path = folder.join(&name);
         let written = write_new(&path, |mut file| {
             let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
@@ -111,10 +112,10 @@ fn no_ring(arrangement: Arrangement, row: &PoseRow, folder: &Path) -> FileError 
 }
 
 /// Remarks of a complex: its origin, and how its ligand, or each copy of a ring from the one before it, was moved.
-fn remarks(row: &PoseRow, arrangement: Arrangement) -> Vec<String> {
+fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
     let [w, x, y, z] = row.pose.quaternion();
     let t = row.pose.translation;
-    let rank = format!("rank {}{}", row.rank, arrangement.suffix());
+    let rank = format!("rank {}{}{note}", row.rank, arrangement.suffix());
     let what = match arrangement.moved() {
         "copy" => "each copy",
         moved => moved,

@@ -1,4 +1,4 @@
-//! Tables: `poses.csv`, the results of batches, tables of pairs and of atoms.
+//! Tables: `poses.csv`, refined poses, the results of batches, tables of pairs and of atoms.
 
 pub mod atom_table;
 pub mod batch_results;
@@ -12,5 +12,6 @@ pub mod pose_list;
 pub mod poses;
 pub mod poses_reader;
 pub mod quality;
+pub mod refined;
 pub mod report;
 pub mod run_table;

@@ -1,0 +1,194 @@
+//! `knotdock refine`: chosen poses of a finished run, refined at atomic resolution.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use knotdock::options::Threads;
+use knotdock::options::values::not_negative;
+use knotdock::output::files::complexes::file_names;
+use knotdock::output::files::exported::ExportFolder;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::records::recorded_run::RecordedRun;
+use knotdock::output::tables::refined;
+use knotdock::output::tables::report::counted;
+use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::refine::RefineOptions;
+use knotdock::threads;
+use serde_json::json;
+
+use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce};
+use crate::cli::arguments::output_file::{check_not_read, is_same};
+use crate::cli::arguments::ranks::Ranks;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::molecules::Input;
+use crate::cli::inputs::ranked_rows::ranked_rows;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::refining::{Known, Refining, Written};
+
+/// Refine chosen poses of a run at atomic resolution: the ligand moves, and side chains of the interface are packed.
+///
+/// Writes a complex a rank and the table refined.csv into a directory of its own. The run stays as it is.
+#[derive(Args, Debug)]
+pub struct Refine {
+    /// Directory of the run.
+    #[arg(value_name = "DIR")]
+    run: PathBuf,
+    /// Ranks in poses.csv, such as 1-50 or 3,7.
+    #[arg(long, value_name = "RANKS")]
+    ranks: Ranks,
+    /// Farthest that the ligand may move, as the RMSD of its atoms, in Å; a lower energy farther away is another pose.
+    #[arg(long, value_name = "ANGSTROM", default_value_t = 3.0, value_parser = not_negative)]
+    max_move: f64,
+    /// Leave the ligand where it is.
+    #[arg(long, conflicts_with_all = ["no_side_chains", "max_move"])]
+    no_move: bool,
+    /// Leave the side chains as they are.
+    #[arg(long)]
+    no_side_chains: bool,
+    /// Directory to write to [default: DIR/refined].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace files that are there and differ, be it that someone has edited them.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    native: NativeArguments,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// Name of the table.
+const TABLE: &str = "refined.csv";
+
+impl Refine {
+    /// Refines.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.refine(console))?
+    }
+
+    /// Refines on the threads of the caller.
+    fn refine(self, console: Console) -> Result<(), Failure> {
+        let start = Instant::now();
+        finish_before_reading(&self.run, console)?;
+        let run_path = self.run.join("run.json");
+        let run = RecordedRun::read(&run_path)?;
+        refuse_ring(&run, &run_path)?;
+        let rows = ranked_rows(&self.run.join("poses.csv"), &self.ranks)?;
+        let [receptor, ligand] = &*molecules(&run, &run_path)?;
+        let native = match (self.native.read()?, &run.native) {
+            (Some(files), _) => Some(files),
+            (None, Some(record)) => Some(NativeFiles::recorded(record, &run_path)?),
+            (None, None) => None,
+        };
+        let folder = self.folder()?;
+        let natives = native.iter().flat_map(NativeFiles::inputs);
+        let read: Vec<&Path> = [receptor, ligand]
+            .into_iter()
+            .chain(natives)
+            .map(|input| input.record.path.as_path())
+            .collect();
+        let complexes = rows.iter().flat_map(|row| file_names(row.rank));
+        for name in complexes.chain([TABLE.to_owned()]) {
+            check_not_read(&folder.join(name), read.iter().copied())?;
+        }
+        let pair = [&receptor.molecule, &ligand.molecule];
+        let known = native.map(|files| Known::new(files, pair)).transpose()?;
+        if let Some(known) = &known {
+            announce(&known.evaluator, console);
+        }
+        let options = RefineOptions {
+            moves: !self.no_move,
+            max_move: self.max_move,
+            side_chains: !self.no_side_chains,
+            ph: run.options.terms.ph,
+        };
+        let export = ExportFolder::open(&folder, &self.run)?;
+        let refining = Refining::new(pair, options, known.as_ref(), export.staged())?;
+        let written = refining.all(&rows, console)?;
+        write_whole(&export.staged().join(TABLE), |file| {
+            refined::write_to(file, &written.table)
+        })?;
+        export.place(self.force)?;
+        let seconds = start.elapsed().as_secs_f64();
+        report(&written, known.as_ref(), &folder, seconds, console)
+    }
+
+    /// The directory to write to: not the run's own, whose complexes are those of its ranking.
+    fn folder(&self) -> Result<PathBuf, Failure> {
+        let own = self.run.join("refined");
+        let folder = self.output.clone().unwrap_or(own);
+        let of_run = [self.run.clone(), self.run.join("top")];
+        if of_run.iter().any(|own| is_same(own, &folder)) {
+            return Err(Failure::input(
+                "that directory holds the run itself, and refined complexes have the same names",
+            )
+            .at(&folder)
+            .remedy("choose another directory with -o"));
+        }
+        Ok(folder)
+    }
+}
+
+/// Refuses the run of a ring, whose copies would each need a move and side chains of their own.
+fn refuse_ring(run: &RecordedRun, run_path: &Path) -> Result<(), Failure> {
+    let arrangement = Arrangement::from(run.options.search.symmetry);
+    if !arrangement.is_ring() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "the run is{}, and rings are not refined: a copy that moves by itself leaves the ring, and packed side chains \
+         would differ from copy to copy",
+        arrangement.suffix()
+    ))
+    .at(run_path)
+    .remedy("refine a run of two molecules; `knotdock export` writes complexes of rings"))
+}
+
+/// The two molecules of a run.
+fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Failure> {
+    match Bodies::recorded([&run.receptor, &run.ligand], run_path, &run.options)? {
+        Bodies::Molecules(inputs) => Ok(inputs),
+        Bodies::Meshes(_) => Err(Failure::input(
+            "this is a run of meshes, which have no atoms to refine",
+        )
+        .at(run_path)
+        .remedy("refine a run of two molecules; `knotdock export` writes assemblies of meshes")),
+    }
+}
+
+/// Says what was written where, and what it cost in seconds of wall time.
+fn report(
+    written: &Written,
+    known: Option<&Known>,
+    folder: &Path,
+    seconds: f64,
+    console: Console,
+) -> Result<(), Failure> {
+    let path = |name: &str| folder.join(name).display().to_string();
+    let cpu = written.cpu_seconds_per_pose;
+    let cost = cpu.map(|cpu| format!(", {cpu:.2} s of a processor each,"));
+    console.say(format!("\n{}\n", written.listing()));
+    console.say(format!(
+        "{} refined in {seconds:.1} s{} in {}",
+        counted(written.table.len(), "pose"),
+        cost.unwrap_or_default(),
+        folder.display()
+    ));
+    let rows = refined::objects(&written.table).into_iter();
+    let poses = rows.zip(&written.names).map(|(mut row, name)| {
+        row.insert("path".to_owned(), json!(path(name)));
+        row
+    });
+    console.result(&json!({
+        "directory": folder.display().to_string(),
+        "table": path(TABLE),
+        "poses": poses.collect::<Vec<_>>(),
+        "chains": written.chains,
+        "match": known.map(|known| known.evaluator.report()),
+        "seconds": seconds,
+        "cpu_seconds_per_pose": cpu,
+    }))
+}

@@ -1,0 +1,177 @@
+//! Refinement of poses at atomic resolution: the ligand moved as a rigid body, side chains of the interface packed.
+//!
+//! For each pose three stages follow one another. Each is kept only if it lowers the energy of the sharp fit
+//! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began. None takes the ligand farther from the pose
+//! than [`RefineOptions::max_move`]: unbound molecules clash where they belong, and what is lowest is then elsewhere.
+//!
+//! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
+//! 2. The side chains of the interface, packed for that place by energies of their own ([`crate::side_chains`]).
+//! 3. The rigid optimum of the packed molecules. Packing is judged after it, for new side chains need a new place.
+//!
+//! Lengths are in Å, energies of the sharp fit in RT.
+
+#[cfg(test)]
+mod tests;
+
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
+use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+use knotdock_structures::molecule::Molecule;
+use serde::Serialize;
+
+use crate::side_chains::{RepackOptions, Repacker};
+
+/// What may change in a refinement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RefineOptions {
+    /// Whether the ligand may move.
+    pub moves: bool,
+    /// Farthest that it may move, as the root mean square distance of its atoms, in Å.
+    pub max_move: f64,
+    /// Whether side chains are packed.
+    pub side_chains: bool,
+    /// pH that charges are for.
+    pub ph: f64,
+}
+
+/// Two molecules whose poses are to be refined.
+pub struct Refiner<'a> {
+    molecules: [&'a Molecule; 2],
+    fit: SharpFit,
+    repacker: Option<Repacker<'a>>,
+    options: RefineOptions,
+}
+
+/// A refined pose.
+#[derive(Clone, Debug)]
+pub struct Refined {
+    /// Where the ligand goes now.
+    pub pose: Pose,
+    /// Root mean square distance in Å of the ligand's atoms between the old pose and this one, side chains as they were.
+    pub rmsd_moved: f64,
+    /// Energy of the old pose.
+    pub before: Energy,
+    /// Energy of the refined one; its total is never above that of `before`.
+    pub after: Energy,
+    /// What packing came to; `None` where there was none.
+    pub packing: Option<Packing>,
+    /// Receptor and ligand with the packed side chains, each in its own frame; `None` where all side chains stayed.
+    pub packed: Option<[Molecule; 2]>,
+}
+
+/// What packing the side chains of a pose came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Packing {
+    /// Side chains that moved; 0 if packing did not lower the energy of the sharp fit and was undone.
+    pub moved: usize,
+    /// Whether every search was exact ([`crate::side_chains::Repacked::exact`]).
+    pub exact: bool,
+}
+
+/// A place with its energy.
+#[derive(Clone, Copy)]
+struct Place {
+    pose: Pose,
+    energy: Energy,
+}
+
+impl<'a> Refiner<'a> {
+    /// Prepares receptor and ligand, each in its file's frame.
+    ///
+    /// # Errors
+    /// [`KnotsError`] when a molecule has no usable atom.
+    pub fn new(molecules: [&'a Molecule; 2], options: RefineOptions) -> Result<Self, KnotsError> {
+        let [receptor, ligand] = molecules;
+        let packs = options.side_chains;
+        Ok(Self {
+            molecules,
+            fit: sharp_fit(molecules, options.ph)?,
+            repacker: packs.then(|| Repacker::new(receptor, ligand, RepackOptions::default())),
+            options,
+        })
+    }
+
+    /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with a list of its own.
+    ///
+    /// # Errors
+    /// [`KnotsError`], which no molecule gives that [`Self::new`] took.
+    pub fn refine(&self, pose: &Pose, list: &mut PairList) -> Result<Refined, KnotsError> {
+        let start = Place {
+            pose: *pose,
+            energy: self.fit.energy(pose),
+        };
+        let mut place = self.settled(&self.fit, start, pose, list);
+        let (mut packing, mut packed) = (None, None);
+        if let Some(repacker) = &self.repacker {
+            let found = repacker.repack(&place.pose);
+            let mut moved = 0;
+            if !found.moved.is_empty() {
+                let fit = sharp_fit([&found.receptor, &found.ligand], self.options.ph)?;
+                let unmoved = Place {
+                    pose: place.pose,
+                    energy: fit.energy(&place.pose),
+                };
+                let after = self.settled(&fit, unmoved, pose, list);
+                if after.energy.total() < place.energy.total() {
+                    place = after;
+                    moved = found.moved.len();
+                    packed = Some([found.receptor, found.ligand]);
+                }
+            }
+            packing = Some(Packing {
+                moved,
+                exact: found.exact,
+            });
+        }
+        Ok(Refined {
+            pose: place.pose,
+            rmsd_moved: rmsd_between(self.molecules[1], pose, &place.pose),
+            before: start.energy,
+            after: place.energy,
+            packing,
+            packed,
+        })
+    }
+
+    /// The rigid optimum near a place; the place itself where none is lower and near enough to the pose that is refined.
+    fn settled(&self, fit: &SharpFit, from: Place, pose: &Pose, list: &mut PairList) -> Place {
+        if !self.options.moves {
+            return from;
+        }
+        let ligand = self.molecules[1];
+        let is_better = |found: &Optimum| {
+            found.energy.total() < from.energy.total()
+                && rmsd_between(ligand, pose, &found.pose) <= self.options.max_move
+        };
+        let best = fit.best_near(&from.pose, list).filter(is_better);
+        let best = best.or_else(|| fit.descend(&from.pose, list).filter(is_better));
+        best.map_or(from, |Optimum { pose, energy }| Place { pose, energy })
+    }
+}
+
+/// The sharp fit of two molecules with charges at a pH.
+fn sharp_fit(molecules: [&Molecule; 2], ph: f64) -> Result<SharpFit, KnotsError> {
+    let charged = |molecule: &Molecule| -> Result<Knots, KnotsError> {
+        let charges = molecule.labels(ph).charges;
+        molecule.knots()?.with_labels(charges, Vec::new())
+    };
+    let [receptor, ligand] = molecules;
+    let polar = molecules.map(Molecule::polar_atoms);
+    let [polar_receptor, polar_ligand] = &polar;
+    Ok(SharpFit::new(
+        [&charged(receptor)?, &charged(ligand)?],
+        [polar_receptor, polar_ligand],
+    ))
+}
+
+/// Root mean square distance in Å of a molecule's atoms between two poses; 0 without atoms.
+fn rmsd_between(molecule: &Molecule, one: &Pose, other: &Pose) -> f64 {
+    let square = |x: [f64; 3]| -> f64 {
+        let (a, b) = (one.apply(x), other.apply(x));
+        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
+    };
+    let atoms = &molecule.atoms;
+    let squares: f64 = atoms.iter().map(|atom| square(atom.position)).sum();
+    (squares / atoms.len().max(1) as f64).sqrt()
+}
