@@ -40,4 +40,5 @@ mod rings;
 mod sample;
 mod score;
 mod scoring_table;
+mod sharp_fits;
 mod tradeoff;

@@ -12,7 +12,7 @@ const BACKGROUND: usize = 30;
 /// Fewest of them that say anything.
 const FEWEST: usize = 5;
 /// Margin from which a fit is exact, standard deviations.
-pub const MARGIN: f64 = 5.0;
+pub const MARGIN: f64 = 6.0;
 /// Margin from which fits score at all, as a share of that: neighbours of an exact fit come near it.
 const SCORING_SHARE: f64 = 0.5;
 /// Standard deviations in a median of absolute deviations, where these are normally distributed.
@@ -99,11 +99,11 @@ mod tests {
         // Others -60 to -50: median -55, absolute deviations 0 to 5, of which the median is 3.
         let others: Vec<f64> = (0..11).map(|step| -60.0 + f64::from(step)).collect();
         let with = |best: f64| Evidence::of(&[&[best], &others[..]].concat()).unwrap();
-        let evidence = with(-80.0);
-        assert!((evidence.margin() - 25.0 / (3.0 * NORMAL)).abs() < 1e-12);
+        let evidence = with(-85.0);
+        assert!((evidence.margin() - 30.0 / (3.0 * NORMAL)).abs() < 1e-12);
         assert!(evidence.stands_out() && !with(-75.0).stands_out());
         let begins = -55.0 - SCORING_SHARE * MARGIN * 3.0 * NORMAL;
-        assert!((evidence.score(-80.0) - SCORE_PER_RT * (begins + 80.0)).abs() < 1e-9);
+        assert!((evidence.score(-85.0) - SCORE_PER_RT * (begins + 85.0)).abs() < 1e-9);
         assert_eq!(evidence.score(-55.0), 0.0);
     }
 
