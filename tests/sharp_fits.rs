@@ -1,4 +1,4 @@
-//! Sharp fits: a known complex that was taken apart is found at rank 1, exactly; unbound partners keep their ranking.
+//! Sharp fits: a re-docked complex is found at rank 1, exactly; unbound partners keep their ranking.
 
 use std::fs;
 use std::path::Path;
@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::dock_run::run::{comparable, rows};
 use crate::program::succeed;
+use assert_cmd::cargo::cargo_bin_cmd;
 
 const DOCK: &str = "dock receptor.pdb ligand.pdb --rotations 900 --native-receptor native_receptor.pdb \
                     --native-ligand native_ligand.pdb --quiet";
@@ -26,7 +27,7 @@ fn place(state: &str) -> tempfile::TempDir {
     folder
 }
 
-/// A structure turned, so that its coordinates do not give the answer away: (x, y, z) by a rotation of 2 / 3, 1 / 3.
+/// A structure turned, so that its coordinates do not give the answer away.
 fn turned(text: &str) -> String {
     let pose = knotdock_scoring::se3::Pose::from_parts([0.5, 0.5, -0.1, 0.7], [0.0; 3]);
     let line = |line: &str| {
@@ -53,7 +54,7 @@ fn dock(folder: &Path, options: &str) -> Value {
 /// The bound complex stands first, within half an Ångström and without clashes to speak of, for any number of threads.
 /// The row's score is made of its parts.
 #[test]
-fn a_complex_taken_apart_is_found_exactly() {
+fn a_redocked_complex_is_found_exactly() {
     let folder = place("bound");
     let record = dock(folder.path(), "--threads 1 -o one");
     assert_eq!(record["sharp"]["finding"], "exact-fit");
@@ -112,4 +113,22 @@ fn unbound_partners_keep_their_ranking() {
             .iter()
             .any(|row| row["sharp"].parse::<f64>().is_ok_and(|sharp| sharp > 0.0))
     );
+}
+
+/// Copies of a ring cannot move alone, so sharp fits of them are refused where they are requested.
+#[test]
+fn rings_refuse_sharp_fits() {
+    let folder = place("bound");
+    let output = cargo_bin_cmd!("knotdock")
+        .current_dir(folder.path())
+        .args("dock receptor.pdb --symmetry C2 --sharp on -o ring".split_whitespace())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        text.contains("--sharp") && text.contains("--symmetry"),
+        "{text}"
+    );
+    assert!(!folder.path().join("ring").exists());
 }

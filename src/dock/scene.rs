@@ -168,8 +168,11 @@ impl Scene {
     /// The scene of two meshes, which shape alone scores.
     ///
     /// # Errors
-    /// [`SearchError`] when another effect is requested.
+    /// [`SearchError`] when another effect or sharp fits are requested.
     pub fn of_meshes(pair: &MeshPair, options: &DockOptions) -> Result<Self, SearchError> {
+        if options.ranking.sharp == SharpChoice::On {
+            return Err(no_sharp_fits("of meshes"));
+        }
         let [receptor, ligand] = [0, 1].map(|part| pair.parts[part].knots.clone());
         Ok(Self {
             unit: LengthUnit::File,
@@ -234,12 +237,25 @@ impl Scene {
 
 /// Whether sharp fits are looked for between two molecules: where they are requested, and by default where residue
 /// contacts score as well, which the weights of the ranking were chosen with. Copies of a ring cannot move alone.
-fn sharp_fits(options: &DockOptions, contacts: bool) -> bool {
+///
+/// # Errors
+/// [`SearchError::Option`] when they are requested of a ring.
+fn sharp_fits(options: &DockOptions, contacts: bool) -> Result<bool, SearchError> {
     let is_free = options.search.symmetry.is_none();
     match options.ranking.sharp {
-        SharpChoice::Auto => is_free && contacts,
-        SharpChoice::On => is_free,
-        SharpChoice::Off => false,
+        SharpChoice::Auto => Ok(is_free && contacts),
+        SharpChoice::On if is_free => Ok(true),
+        SharpChoice::On => Err(no_sharp_fits("with --symmetry")),
+        SharpChoice::Off => Ok(false),
+    }
+}
+
+/// Refusal of sharp fits where they cannot be had.
+fn no_sharp_fits(of: &str) -> SearchError {
+    SearchError::Option {
+        name: "sharp",
+        value: "on".to_owned(),
+        bound: format!("auto or off {of}"),
     }
 }
 

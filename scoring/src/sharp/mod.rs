@@ -1,7 +1,7 @@
 //! The sharp fit: the energy of two rigid bodies at atomic resolution, and its optima near a pose.
 //!
 //! The score that a search ranks by is soft: it forgives what unbound surfaces get wrong. Where the two files fit as
-//! they are (a known complex taken apart), an exact fit is strong evidence, and it shows at atomic resolution alone.
+//! they are (a known complex that is docked again), an exact fit is strong evidence, and it shows at atomic resolution alone.
 //!
 //! # Energy
 //!
@@ -12,8 +12,8 @@
 //! - c is the distance of contact: r + s - 0.1 Å, and at most 2.7 Å between a donor and an acceptor.
 //! - W falls from 1 at contact to 0: (1 - t²)² for 0 < t < 1. The depth of a contact is about that of a pair of united
 //!   atoms in a molecular force field (Jorgensen & Tirado-Rives, J. Am. Chem. Soc. 110 (1988) 1657-1666).
-//! - h is a hydrogen bond by its heavy atoms: W((d - 2.8 Å) / 0.9 Å) times a weight of the angle at either atom, which
-//!   is 1 where each points at the other to within 60 degrees, and 0 beyond 90. It counts twice between opposite
+//! - h is a hydrogen bond by its heavy atoms: W((d - 2.8 Å) / 0.9 Å) times a weight of the angle at either atom. The
+//!   weight is 1 where each points at the other to within 60 degrees, and 0 beyond 90. It counts twice between opposite
 //!   charges. Baker & Hubbard (Prog. Biophys. Mol. Biol. 44 (1984) 97-179) describe distances and angles.
 //!
 //! # Descents

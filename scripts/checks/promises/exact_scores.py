@@ -79,7 +79,16 @@ def add_up(trial, row):
     value = {column: float(text) for column, text in row.items() if text not in ("", "true", "false")}
     trial.check(all(map(math.isfinite, value.values())), f"rank {row['rank']}: a number that is none")
     effects = ("shape", "electrostatics", "contact", "restraint")
-    terms = ("fine_contact", "atom_pair", "relaxed", "active_residues", "unresolved", "termini", "other_copies", "sharp")
+    terms = (
+        "fine_contact",
+        "atom_pair",
+        "relaxed",
+        "active_residues",
+        "unresolved",
+        "termini",
+        "other_copies",
+        "sharp",
+    )
     for total, parts in (("search_score", effects), ("pose_score", ("search_score", *terms))):
         added = [value.get(part, 0.0) for part in parts]
         size = max(1.0, *map(abs, added))
