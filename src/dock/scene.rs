@@ -139,7 +139,7 @@ impl Scene {
                 ActiveResidues::assumed(sites, [own, other], options)
             };
         let polar =
-            sharp_fits(options, on(Effect::Contact)).then(|| molecules.map(Molecule::polar_atoms));
+            sharp_fits(options, on(Effect::Contact))?.then(|| molecules.map(Molecule::polar_atoms));
         // The weight of buried atoms is a matter of shape alone, so it comes after the terms.
         let [receptor, ligand] =
             [(receptor, &cores[0]), (ligand, &cores[1])].map(|(knots, core)| {
