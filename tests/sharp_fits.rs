@@ -127,7 +127,7 @@ fn rings_refuse_sharp_fits() {
     assert_eq!(output.status.code(), Some(2));
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(
-        text.contains("--sharp") && text.contains("--symmetry"),
+        text.contains("sharp is on") && text.contains("--symmetry"),
         "{text}"
     );
     assert!(!folder.path().join("ring").exists());
