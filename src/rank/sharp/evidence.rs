@@ -1,7 +1,7 @@
 //! Whether an exact fit stands out from the background of its own run.
 //!
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
-//! The margin of the best place is how far it lies below the median of the next [`BACKGROUND`] ones, in their standard
+//! The margin of the best place is how far it lies below the median of the next thirty ones, in their standard
 //! deviations (by the median of absolute deviations, which copies of the best place in a symmetric partner do not
 //! move). Bound and unbound training pairs are its two classes (docs/defaults.md, "Sharp fits").
 
