@@ -84,7 +84,6 @@ fn a_redocked_complex_is_found_exactly() {
         .filter_map(|name| first[name].parse::<f64>().ok())
         .sum();
     assert!((sum - number("pose_score")).abs() < 1e-9 * sum.abs());
-    // The complex that is written is the optimum.
     assert!(run.join("top/rank_0001.pdb").exists());
 }
 

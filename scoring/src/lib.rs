@@ -54,6 +54,7 @@ pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
 pub mod quantity;
+mod rigid_move;
 pub mod se3;
 pub mod sharp;
 pub mod so3;

@@ -25,8 +25,6 @@ pub(crate) struct Candidate {
     pub terms: Option<Box<ExactScore>>,
     /// Whether `pose` was moved off the grid.
     pub refined: bool,
-    /// Whether it was moved into the optimum of its sharp fit.
-    pub settled: bool,
     /// Its sharp fit, where it has been looked for.
     pub sharp: Option<SharpPose>,
     /// Index of the rotation that it came from.
@@ -59,7 +57,6 @@ pub(crate) fn candidates(
                 start: placed.start,
                 terms: at_start.get(index).copied().map(Box::new),
                 refined: placed.refined,
-                settled: false,
                 sharp: None,
                 rotation: peak.rotation as usize,
                 score_grid: peak.score,
@@ -79,9 +76,15 @@ impl Candidate {
         self.score - sharp.unwrap_or(0.0)
     }
 
+    /// Whether it was moved into the optimum of its sharp fit, as those are whose fits score.
+    pub fn is_settled(&self) -> bool {
+        let score = self.sharp.and_then(|sharp| sharp.score);
+        score.is_some_and(|score| score > 0.0)
+    }
+
     /// Whether the pose has left the grid of the search.
     fn is_off_grid(&self) -> bool {
-        self.refined || self.settled
+        self.refined || self.is_settled()
     }
 }
 

@@ -230,7 +230,7 @@ impl Candidate {
             cluster: None,
             cluster_size: None,
             cluster_score: None,
-            refined: refined || self.settled,
+            refined: refined || self.is_settled(),
             sharp: self.sharp,
             rotation: self.rotation,
             score_grid: self.score_grid,

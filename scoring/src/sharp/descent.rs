@@ -1,8 +1,9 @@
 //! Levenberg-Marquardt descents over rigid moves, and several of them about a pose.
 
 use super::energy::{Energy, STIFFNESS};
-use super::rigid_move::{Move, Slope};
+use super::slope::Slope;
 use super::{PairList, SharpFit};
+use crate::rigid_move::Move;
 use crate::se3::Pose;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -72,7 +73,9 @@ impl SharpFit {
         for (stiffness, steps) in ROUNDS {
             at = self.round(&at, stiffness, steps, list);
         }
-        let pose = self.moved(pose, &at, list);
+        let moved = self.moved(pose, &at, list);
+        // At its printed digits, which give back the energy.
+        let pose = Pose::from_parts(moved.quaternion(), moved.translation.into());
         Optimum {
             pose,
             energy: self.energy(&pose),
@@ -127,13 +130,16 @@ impl SharpFit {
 impl Slope {
     /// A step downhill of at most [`LONGEST`], its rotation as an arc in Å; `None` if a number is not finite.
     fn step(&self, scale: &Vector6<f64>, damping: f64) -> Option<Vector6<f64>> {
-        let mut matrix: Matrix6<f64> = self.curvature.component_mul(&(scale * scale.transpose()));
+        let mut matrix: Matrix6<f64> = self
+            .by_step
+            .curvature
+            .component_mul(&(scale * scale.transpose()));
         for axis in 0..6 {
             matrix[(axis, axis)] += damping * (DAMPING[0] * self.energy.contacts + DAMPING[1]);
         }
         let step = -matrix
             .cholesky()?
-            .solve(&self.gradient.component_mul(scale));
+            .solve(&self.by_step.gradient.component_mul(scale));
         let length = step.norm();
         Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
     }

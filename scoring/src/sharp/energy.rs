@@ -1,7 +1,6 @@
 //! The energy of a pose, and the functions of a distance and an angle that make it.
 
 use super::Site;
-use super::hydrogen_bond::is_bridge;
 use nalgebra::Vector3;
 
 /// Depth of a contact, RT.
@@ -18,7 +17,7 @@ pub(super) const BOND: f64 = 1.5;
 pub(super) const BOND_LENGTH: f64 = 2.8;
 /// Distance beyond it at which it ends, Å.
 pub(super) const BOND_RANGE: f64 = 0.9;
-/// Charges whose product is below this attract each other, e².
+/// Product of charges below which a hydrogen bond is a salt bridge, e².
 const OPPOSITE: f64 = -0.05;
 /// Overlap from which two atoms clash, Å. MolProbity counts overlaps of 0.4 Å between all atoms as clashes (Chen et al.,
 /// Acta Cryst. D66 (2010) 12-21); united atoms with their tolerance leave 0.5 Å.
@@ -67,21 +66,22 @@ impl Energy {
         self.clashes += usize::from(lack > CLASH);
         if receptor.polar.may_bond(&ligand.polar) && distance > 0.0 {
             let along = between / distance;
-            let angles =
-                weight_of(&receptor.polar.direction.into(), &along) * weight_of(direction, &-along);
-            let count = if is_bridge(receptor, ligand) {
-                2.0
-            } else {
-                1.0
-            };
-            self.bonds += count * well(distance - BOND_LENGTH, BOND_RANGE).0 * angles;
+            let of_receptor = Vector3::from(receptor.polar.direction);
+            let (first, _) = angle_weight(&of_receptor, of_receptor.dot(&along));
+            let (second, _) = angle_weight(direction, -direction.dot(&along));
+            let (depth, _) = well(distance - BOND_LENGTH, BOND_RANGE);
+            self.bonds += bond_count(receptor, ligand) * depth * first * second;
         }
     }
 }
 
-/// Whether two charges attract each other as those of a salt bridge do.
-pub(super) fn are_opposite(a: f64, b: f64) -> bool {
-    a * b < OPPOSITE
+/// How often a hydrogen bond of two atoms counts: twice between opposite charges.
+pub(super) fn bond_count(receptor: &Site, ligand: &Site) -> f64 {
+    if receptor.charge * ligand.charge < OPPOSITE {
+        2.0
+    } else {
+        1.0
+    }
 }
 
 /// Distance of contact of two atoms, Å.
@@ -105,17 +105,12 @@ pub(super) fn well(beyond: f64, range: f64) -> (f64, f64) {
     (rest * rest, -4.0 * rest * t / range)
 }
 
-/// Weight of an angle by its cosine and the derivative: 0 from a right angle on, 1 below 60 degrees.
-pub(super) fn angle(cosine: f64) -> (f64, f64) {
+/// Weight of the angle between an atom's direction and a bond, by its cosine, and the derivative: 0 from a right angle
+/// on, 1 below 60 degrees, and 1 of an atom without a direction.
+pub(super) fn angle_weight(direction: &Vector3<f64>, cosine: f64) -> (f64, f64) {
+    if direction.norm_squared() == 0.0 {
+        return (1.0, 0.0);
+    }
     let t = (cosine / STRAIGHT).clamp(0.0, 1.0);
     (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t) / STRAIGHT)
-}
-
-/// Weight of the angle between a direction and a line; 1 where an atom has no direction.
-fn weight_of(direction: &Vector3<f64>, along: &Vector3<f64>) -> f64 {
-    if direction.norm_squared() == 0.0 {
-        1.0
-    } else {
-        angle(direction.dot(along)).0
-    }
 }

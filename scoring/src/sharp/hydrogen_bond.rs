@@ -1,8 +1,8 @@
 //! Donors and acceptors near each other: their energy with its slope.
 
-use super::Site;
-use super::energy::{BOND, BOND_LENGTH, BOND_RANGE, angle, are_opposite, well};
-use super::rigid_move::{Move, Slope};
+use super::energy::{BOND, BOND_LENGTH, BOND_RANGE, angle_weight, well};
+use super::slope::Slope;
+use crate::rigid_move::Move;
 use nalgebra::{Matrix3, Vector3};
 
 /// A donor and an acceptor that a move may bring together.
@@ -22,11 +22,6 @@ pub(super) struct BondPair {
 /// Distance in Å from which no hydrogen bond has an energy.
 pub(super) const BOND_REACH: f64 = BOND_LENGTH + BOND_RANGE;
 
-/// Whether two atoms carry opposite charges.
-pub(super) fn is_bridge(a: &Site, b: &Site) -> bool {
-    are_opposite(a.charge, b.charge)
-}
-
 impl BondPair {
     /// Adds the energy and slope of the pair at a move.
     pub fn add(&self, turn: &Matrix3<f64>, at: &Move, slope: &mut Slope) {
@@ -41,11 +36,8 @@ impl BondPair {
         let direction = turn * self.direction;
         let (depth, by_distance) = well(distance - BOND_LENGTH, BOND_RANGE);
         let cosines = [self.other_direction.dot(&along), -direction.dot(&along)];
-        let [(first, by_first), (second, by_second)] = [
-            (&self.other_direction, cosines[0]),
-            (&direction, cosines[1]),
-        ]
-        .map(weighted);
+        let (first, by_first) = angle_weight(&self.other_direction, cosines[0]);
+        let (second, by_second) = angle_weight(&direction, cosines[1]);
         let value = depth * first * second;
         if value == 0.0 {
             return;
@@ -58,15 +50,6 @@ impl BondPair {
         let scale = -BOND * self.count;
         let gradient = scale * by_position;
         let torque = arm.cross(&gradient) + direction.cross(&(scale * by_direction));
-        slope.push(&gradient, &torque);
-    }
-}
-
-/// Weight of an angle and its derivative by the cosine; 1 and 0 where an atom has no direction.
-fn weighted((direction, cosine): (&Vector3<f64>, f64)) -> (f64, f64) {
-    if direction.norm_squared() == 0.0 {
-        (1.0, 0.0)
-    } else {
-        angle(cosine)
+        slope.by_step.push(&gradient, &torque);
     }
 }

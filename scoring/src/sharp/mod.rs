@@ -30,7 +30,7 @@ mod energy;
 mod hydrogen_bond;
 mod nearness;
 mod pair_list;
-mod rigid_move;
+mod slope;
 #[cfg(test)]
 mod tests;
 

@@ -1,10 +1,11 @@
 //! Lists of the pairs of atoms near an interface.
 
 use super::contacts::{Block, LANES, atom_sums};
-use super::energy::distance_of;
-use super::hydrogen_bond::{BOND_REACH, BondPair, is_bridge};
-use super::rigid_move::{Move, Slope};
+use super::energy::{bond_count, distance_of};
+use super::hydrogen_bond::{BOND_REACH, BondPair};
+use super::slope::Slope;
 use super::{SharpFit, Site};
+use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use nalgebra::{Matrix3, Vector3};
@@ -41,8 +42,8 @@ pub struct PairList {
     pub(super) axes: Matrix3<f64>,
     /// Rotation of the ligand before any move.
     matrix: Matrix3<f64>,
-    /// The move at which pairs were listed.
-    listed: Option<Move>,
+    /// The move at which the list was made.
+    made_at: Option<Move>,
 }
 
 impl PairList {
@@ -50,7 +51,7 @@ impl PairList {
     pub(super) fn begin(&mut self, fit: &SharpFit, pose: &Pose) -> bool {
         let (matrix, place) = fit.placed(pose);
         self.matrix = matrix;
-        self.listed = None;
+        self.made_at = None;
         let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), Matrix3::zeros());
         self.reachable.clear();
         for (index, site) in fit.ligand.iter().enumerate() {
@@ -85,10 +86,10 @@ impl PairList {
         true
     }
 
-    /// Lists pairs anew where a move has left the one at which they were listed.
+    /// Makes the list anew where a move is too far from the one at which it was made.
     pub(super) fn renew(&mut self, fit: &SharpFit, at: &Move) {
-        let holds = self.listed.is_some_and(|listed| {
-            (at.shift - listed.shift).norm() <= SHIFT && at.turn.angle_to(&listed.turn) <= ANGLE
+        let holds = self.made_at.is_some_and(|made_at| {
+            (at.shift - made_at.shift).norm() <= SHIFT && at.turn.angle_to(&made_at.turn) <= ANGLE
         });
         if !holds {
             self.list(fit, at);
@@ -97,7 +98,7 @@ impl PairList {
 
     /// Lists every pair that may come within reach before the list is renewed.
     fn list(&mut self, fit: &SharpFit, at: &Move) {
-        self.listed = Some(*at);
+        self.made_at = Some(*at);
         self.mobile.clear();
         self.blocks.clear();
         self.bonds.clear();
@@ -154,7 +155,7 @@ impl PairList {
                         direction,
                         other: position,
                         other_direction: other.polar.direction.into(),
-                        count: if is_bridge(other, site) { 2.0 } else { 1.0 },
+                        count: bond_count(other, site),
                     });
                 }
             });
@@ -164,7 +165,7 @@ impl PairList {
         }
     }
 
-    /// Energy with its slope at a move over the listed pairs; clashes are not counted.
+    /// Energy with its slope at a move over the pairs of the list; clashes are not counted.
     pub(super) fn slope(&self, stiffness: f64, at: &Move) -> Slope {
         let turn = *at.turn.to_rotation_matrix().matrix();
         let mut slope = vectorized(
@@ -192,9 +193,11 @@ impl PairList {
             }
             slope.energy.contacts += sums.contacts;
             slope.energy.overlap += sums.overlap;
-            slope.push(&sums.gradient, &arm.cross(&sums.gradient));
+            slope
+                .by_step
+                .push(&sums.gradient, &arm.cross(&sums.gradient));
             if sums.overlap > 0.0 {
-                slope.curve(&arm, &sums.curvature);
+                slope.by_step.curve(&arm, &sums.curvature);
             }
         }
         slope

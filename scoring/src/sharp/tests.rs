@@ -2,8 +2,8 @@
 
 use super::energy::STIFFNESS;
 use super::pair_list::PairList;
-use super::rigid_move::Move;
 use super::*;
+use crate::rigid_move::Move;
 use crate::test_support::Numbers;
 use nalgebra::{UnitQuaternion, Vector6};
 
@@ -106,7 +106,7 @@ fn well_at(beyond: f64) -> f64 {
 
 /// Lists and lanes in f32 add up to the double sum in f64, before any move and after moves with and without a new list.
 #[test]
-fn listed_pairs_add_up_to_the_double_sum() {
+fn pairs_of_a_list_add_up_to_the_double_sum() {
     let (fit, _) = bodies(0.0);
     let mut list = PairList::default();
     let mut touching = 0;
@@ -118,12 +118,12 @@ fn listed_pairs_add_up_to_the_double_sum() {
         let mut at = Move::none();
         for step in 0..6 {
             list.renew(&fit, &at);
-            let listed = list.slope(STIFFNESS, &at).energy;
+            let in_list = list.slope(STIFFNESS, &at).energy;
             let exact = fit.energy(&fit.moved(&pose, &at, &list));
             for (a, b) in [
-                (listed.contacts, exact.contacts),
-                (listed.overlap, exact.overlap),
-                (listed.bonds, exact.bonds),
+                (in_list.contacts, exact.contacts),
+                (in_list.overlap, exact.overlap),
+                (in_list.bonds, exact.bonds),
             ] {
                 assert!((a - b).abs() < 1e-4 * b.abs().max(1.0), "{a} {b} at {step}");
             }
@@ -152,18 +152,19 @@ fn slopes_are_those_of_the_energy() {
             let mut step = Vector6::zeros();
             step[row] = 1e-5;
             let difference = (energy(&step) - energy(&-step)) / 2e-5;
-            let size = slope.gradient.norm();
+            let size = slope.by_step.gradient.norm();
             assert!(
-                (difference - slope.gradient[row]).abs() <= 1e-3 * size,
+                (difference - slope.by_step.gradient[row]).abs() <= 1e-3 * size,
                 "{row}"
             );
         }
         seen += usize::from(slope.energy.bonds > 0.0);
         assert!(
-            (slope.curvature - slope.curvature.transpose()).norm() <= 1e-6 * slope.curvature.norm()
+            (slope.by_step.curvature - slope.by_step.curvature.transpose()).norm()
+                <= 1e-6 * slope.by_step.curvature.norm()
         );
-        let least = slope.curvature.symmetric_eigenvalues().min();
-        assert!(least >= -1e-6 * slope.curvature.norm());
+        let least = slope.by_step.curvature.symmetric_eigenvalues().min();
+        assert!(least >= -1e-6 * slope.by_step.curvature.norm());
     }
     assert!(seen > 3, "{seen}");
 }
@@ -184,8 +185,7 @@ fn neither_exchange_nor_offsets_matter() {
     }
 }
 
-/// A descent never ends above its start, and ends where no small move gains; further starts only gain. What is out of
-/// reach has no optimum.
+/// Most descents end where no small move gains; further starts only gain. What is out of reach has no optimum.
 #[test]
 fn descents_end_in_optima() {
     let (fit, _) = bodies(0.0);

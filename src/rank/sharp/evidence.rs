@@ -2,8 +2,8 @@
 //!
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
 //! The margin of the best place is how far it lies below the median of the next thirty ones, in their standard
-//! deviations (by the median of absolute deviations, which copies of the best place in a symmetric partner do not
-//! move). Bound and unbound training pairs are its two classes (docs/defaults.md, "Sharp fits").
+//! deviations. These follow from the median of absolute deviations, which copies of the best place in a symmetric
+//! partner do not move. Bound and unbound training pairs are its two classes (docs/defaults.md, "Sharp fits").
 
 use serde::Serialize;
 

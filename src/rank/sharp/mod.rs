@@ -10,15 +10,12 @@ mod settle;
 mod stage;
 
 pub use evidence::{Evidence, SharpFinding};
-pub use stage::{DESCENDING, SEVERAL};
 
 pub(crate) use settle::settle;
 pub(crate) use stage::{SharpInputs, optima};
 
-use serde::Serialize;
-
 /// The sharp fit of one pose.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharpPose {
     /// Energy of the optimum that the pose descends to, RT.
     pub energy: f64,

@@ -42,7 +42,6 @@ pub(crate) fn settle(
             if let Some(score) = score.filter(|score| *score > 0.0) {
                 candidate.pose = optimum.pose;
                 candidate.start = optimum.pose;
-                candidate.settled = true;
                 candidate.refined = false;
                 rescore(candidate, score, (scorer, rescorer), workspace);
             }

@@ -1,7 +1,6 @@
 //! Optima of the best poses of a run, and the evidence that they are.
 
 use super::evidence::Evidence;
-use crate::pose_space::refine::printed;
 use crate::rank::candidates::Candidate;
 use crate::rank::cluster::{RigidBody, greedy};
 use knotdock_scoring::sharp::{Optimum, PairList, SharpFit};
@@ -9,9 +8,9 @@ use knotdock_structures::{Knots, PolarAtom};
 use rayon::prelude::*;
 
 /// Poses that descend: the best of the run by the soft score.
-pub const DESCENDING: usize = 250;
+const DESCENDING: usize = 250;
 /// Places whose neighbourhood is tried, too: those of the best optima.
-pub const SEVERAL: usize = 20;
+const SEVERAL: usize = 20;
 /// RMSD of the ligand in Å within which two optima are one place.
 const PLACE: f64 = 2.5;
 
@@ -40,7 +39,6 @@ pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &Rigi
     best.par_iter()
         .map_init(PairList::default, |list, candidate| {
             fit.descend(&candidate.pose, list)
-                .map(|found| rounded(&fit, found))
         })
         .collect_into_vec(&mut of_candidates);
     let firsts = first_of_places(&of_candidates, body);
@@ -49,9 +47,7 @@ pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &Rigi
         .unwrap_or(&firsts)
         .par_iter()
         .map_init(PairList::default, |list, &(index, first)| {
-            let near = fit
-                .best_near(&first.pose, list)
-                .map(|found| rounded(&fit, found));
+            let near = fit.best_near(&first.pose, list);
             let better = near.filter(|near| near.energy.total() < first.energy.total());
             (index, better.unwrap_or(first))
         })
@@ -68,15 +64,6 @@ pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &Rigi
     Optima {
         evidence: Evidence::of(&energies),
         of_candidates,
-    }
-}
-
-/// An optimum at the printed digits of its pose, with the energy that these have.
-fn rounded(fit: &SharpFit, found: Optimum) -> Optimum {
-    let pose = printed(&found.pose);
-    Optimum {
-        pose,
-        energy: fit.energy(&pose),
     }
 }
 

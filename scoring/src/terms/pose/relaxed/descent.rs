@@ -4,7 +4,8 @@
 //! So where it ends depends continuously on the atoms and the pose. Trials would not do: one that is accepted here and
 //! refused a hair beside parts two descents for good.
 
-use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3, Vector6};
+use crate::rigid_move::{Derivatives, Move};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 /// Longest steps in Å, one after the other; their sum bounds the whole move.
 ///
@@ -14,40 +15,10 @@ pub(super) const LONGEST: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
 /// potential, which has either sign.
 const DAMPING: [f64; 2] = [0.05, 2.0];
 
-/// A rigid move of the ligand relative to the receptor: an atom at `a` from the interface's centre goes to
-/// `turn a + shift`.
-#[derive(Clone, Copy)]
-pub(super) struct Move {
-    pub turn: UnitQuaternion<f64>,
-    pub shift: Vector3<f64>,
-}
-
-impl Move {
-    /// No move.
-    pub fn none() -> Self {
-        Self {
-            turn: UnitQuaternion::identity(),
-            shift: Vector3::zeros(),
-        }
-    }
-
-    /// The move after a further step: a shift (Å), then a rotation (radians), of which each body makes one half.
-    ///
-    /// Seen from the ligand the step is its own opposite, so the bodies may be exchanged.
-    pub fn then(&self, shift: Vector3<f64>, turn: Vector3<f64>) -> Self {
-        Self {
-            turn: UnitQuaternion::new(turn) * self.turn,
-            shift: UnitQuaternion::new(0.5 * turn) * (self.shift + shift),
-        }
-    }
-}
-
-/// Derivatives of the energy of a move (RT), by the shift (per Å) and rotation (per radian) of a further step.
+/// Derivatives of the energy of a move, and its contacts.
 pub(super) struct Slope {
-    /// First derivatives: force, then torque.
-    pub gradient: Vector6<f64>,
-    /// Second derivatives of the overlaps along the lines between their atoms: positive semidefinite.
-    pub curvature: Matrix6<f64>,
+    /// Derivatives; the curvature is that of the overlaps along the lines between their atoms: positive semidefinite.
+    pub by_step: Derivatives,
     /// Number of contacts, by a smooth weight.
     pub contacts: f64,
 }
@@ -56,8 +27,7 @@ impl Slope {
     /// Slope of nothing.
     pub fn zero() -> Self {
         Self {
-            gradient: Vector6::zeros(),
-            curvature: Matrix6::zeros(),
+            by_step: Derivatives::zero(),
             contacts: 0.0,
         }
     }
@@ -65,27 +35,18 @@ impl Slope {
     /// Adds an atom at `arm`, with the gradient and curvature by its position.
     #[inline(always)]
     pub fn add(&mut self, arm: &Vector3<f64>, gradient: &Vector3<f64>, curvature: &Matrix3<f64>) {
-        let torque = arm.cross(gradient);
-        let cross = arm.cross_matrix();
-        let mixed = cross * curvature;
-        let turned = mixed * cross.transpose();
-        for row in 0..3 {
-            self.gradient[row] += gradient[row];
-            self.gradient[row + 3] += torque[row];
-            for column in 0..3 {
-                self.curvature[(row, column)] += curvature[(row, column)];
-                self.curvature[(row + 3, column)] += mixed[(row, column)];
-                self.curvature[(column, row + 3)] += mixed[(row, column)];
-                self.curvature[(row + 3, column + 3)] += turned[(row, column)];
-            }
-        }
+        self.by_step.push(gradient, &arm.cross(gradient));
+        self.by_step.curve(arm, curvature);
     }
 
     /// The move after a step downhill from `at`, shorter than `longest` (Å), at an interface of `radius` (Å).
     pub fn step(&self, at: &Move, radius: f64, longest: f64) -> Move {
         let arc = 1.0 / radius;
         let scale = Vector6::new(1.0, 1.0, 1.0, arc, arc, arc);
-        let mut matrix = self.curvature.component_mul(&(scale * scale.transpose()));
+        let mut matrix = self
+            .by_step
+            .curvature
+            .component_mul(&(scale * scale.transpose()));
         let damping = DAMPING[0] * self.contacts + DAMPING[1];
         for axis in 0..6 {
             matrix[(axis, axis)] += damping;
@@ -94,10 +55,10 @@ impl Slope {
         let Some(factors) = matrix.cholesky() else {
             return *at;
         };
-        let step = -factors.solve(&self.gradient.component_mul(&scale));
+        let step = -factors.solve(&self.by_step.gradient.component_mul(&scale));
         let step = step / (1.0 + step.norm_squared() / (longest * longest)).sqrt();
         let step = step.component_mul(&scale);
-        at.then(
+        at.then_by_halves(
             step.fixed_rows::<3>(0).into(),
             step.fixed_rows::<3>(3).into(),
         )

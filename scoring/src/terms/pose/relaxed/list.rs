@@ -1,6 +1,6 @@
 //! Lists of the pairs of atoms near an interface, and the interface's centre and radius.
 
-use super::descent::Move;
+use crate::rigid_move::Move;
 use crate::se3::Pose;
 use knotdock_structures::neighbours::CellList;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

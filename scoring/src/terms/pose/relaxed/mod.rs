@@ -13,13 +13,14 @@ mod list;
 #[cfg(test)]
 mod tests;
 
-use self::descent::{LONGEST, Move, Slope};
+use self::descent::{LONGEST, Slope};
 pub use self::list::Workspace;
 use self::list::{Atoms, Interface, Site};
 use super::atom_pair_potential::AtomPairPotential;
 use super::energy_table::{EnergyTable, SMOOTH_REACH};
 use super::{CELL_EDGE, PoseTerm, TermDefinition};
 use crate::exact::center;
+use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
 use crate::vectorized::vectorized;

@@ -104,23 +104,24 @@ fn the_slope_is_that_of_the_energy() {
         Vector3::new(0.3, -0.2, 0.1),
         Vector3::new(0.02, 0.05, -0.03),
     );
-    for at in [Move::none(), Move::none().then(shift, turn)] {
+    for at in [Move::none(), Move::none().then_by_halves(shift, turn)] {
         let slope = relaxation.slope(&workspace, &at);
-        let energy = |shift, turn| soft_energy(&relaxation, &workspace, &at.then(shift, turn));
+        let energy =
+            |shift, turn| soft_energy(&relaxation, &workspace, &at.then_by_halves(shift, turn));
         let none = Vector3::zeros();
-        let sizes = [0, 3].map(|row| slope.gradient.fixed_rows::<3>(row).norm());
+        let sizes = [0, 3].map(|row| slope.by_step.gradient.fixed_rows::<3>(row).norm());
         assert!(sizes.iter().all(|size| *size > 1.0), "{sizes:?}");
         for axis in 0..3 {
             let step = 1e-6 * Vector3::ith(axis, 1.0);
             let shifted = energy(step, none) - energy(-step, none);
             let turned = energy(none, step) - energy(none, -step);
-            assert!((shifted / 2e-6 - slope.gradient[axis]).abs() < 1e-5 * sizes[0]);
-            assert!((turned / 2e-6 - slope.gradient[axis + 3]).abs() < 1e-5 * sizes[1]);
+            assert!((shifted / 2e-6 - slope.by_step.gradient[axis]).abs() < 1e-5 * sizes[0]);
+            assert!((turned / 2e-6 - slope.by_step.gradient[axis + 3]).abs() < 1e-5 * sizes[1]);
         }
         // Symmetric, and no direction curves downward.
-        assert!((slope.curvature - slope.curvature.transpose()).norm() < 1e-9);
-        let least = slope.curvature.symmetric_eigenvalues().min();
-        assert!(least > -1e-9 * slope.curvature.norm(), "{least}");
+        assert!((slope.by_step.curvature - slope.by_step.curvature.transpose()).norm() < 1e-9);
+        let least = slope.by_step.curvature.symmetric_eigenvalues().min();
+        assert!(least > -1e-9 * slope.by_step.curvature.norm(), "{least}");
     }
 }
 
@@ -141,7 +142,7 @@ fn collected_pairs_add_up_to_the_energy() {
         let steps = [0.0, 0.1, 0.3, 1.2].map(|by| Vector3::new(by, 0.4 * by, -by));
         let mut at = was;
         for step in steps {
-            at = at.then(step, 0.1 * step);
+            at = at.then_by_halves(step, 0.1 * step);
             relaxation
                 .atoms
                 .renew(&mut was, &at, widest, (&start, &middle), &mut workspace);

@@ -1,12 +1,14 @@
-//! Small rigid moves, and the slope of the energy over them.
+//! Small rigid moves of one body against another, and derivatives of an energy by them.
 
-use super::energy::Energy;
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3, Vector6};
 
-/// A rigid move of the ligand: an atom at `a` from the centre of the interface goes to `turn a + shift`.
+/// A rigid move of the ligand relative to the receptor: an atom at `a` from the interface's centre goes to
+/// `turn a + shift`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Move {
+pub(crate) struct Move {
+    /// The rotation.
     pub turn: UnitQuaternion<f64>,
+    /// The shift, Å.
     pub shift: Vector3<f64>,
 }
 
@@ -28,22 +30,31 @@ impl Move {
             shift: self.shift + shift,
         }
     }
+
+    /// The move after a further step: a shift (Å), then a rotation (radians), of which each body makes one half.
+    ///
+    /// Seen from the ligand the step is its own opposite, so the bodies may be exchanged.
+    pub fn then_by_halves(&self, shift: Vector3<f64>, turn: Vector3<f64>) -> Self {
+        Self {
+            turn: UnitQuaternion::new(turn) * self.turn,
+            shift: UnitQuaternion::new(0.5 * turn) * (self.shift + shift),
+        }
+    }
 }
 
-/// Energy of a move with its first derivatives by a further step, and the curvature that overlaps give it.
-pub(super) struct Slope {
-    pub energy: Energy,
-    /// By the shift (RT/Å), then by the rotation (RT per radian).
+/// First and second derivatives of an energy (RT) by the shift (per Å) and rotation (per radian) of a further step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Derivatives {
+    /// First derivatives: force, then torque.
     pub gradient: Vector6<f64>,
-    /// Second derivatives of the overlaps along the lines between their atoms: positive semidefinite.
+    /// Second derivatives.
     pub curvature: Matrix6<f64>,
 }
 
-impl Slope {
-    /// Slope of nothing.
+impl Derivatives {
+    /// Those of nothing.
     pub fn zero() -> Self {
         Self {
-            energy: Energy::default(),
             gradient: Vector6::zeros(),
             curvature: Matrix6::zeros(),
         }
@@ -51,9 +62,9 @@ impl Slope {
 
     /// Adds a force with its torque.
     #[inline(always)]
-    pub fn push(&mut self, gradient: &Vector3<f64>, torque: &Vector3<f64>) {
+    pub fn push(&mut self, force: &Vector3<f64>, torque: &Vector3<f64>) {
         for row in 0..3 {
-            self.gradient[row] += gradient[row];
+            self.gradient[row] += force[row];
             self.gradient[row + 3] += torque[row];
         }
     }
