@@ -178,8 +178,10 @@ fn report(
         folder.display()
     ));
     let rows = refined::objects(&written.table).into_iter();
-    let poses = rows.zip(&written.names).map(|(mut row, name)| {
+    let of_rows = written.names.iter().zip(&written.table);
+    let poses = rows.zip(of_rows).map(|(mut row, (name, written))| {
         row.insert("path".to_owned(), json!(path(name)));
+        row.insert("held".to_owned(), json!(written.refined.held));
         row
     });
     console.result(&json!({

@@ -20,7 +20,7 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
-use crate::side_chains::{RepackOptions, Repacker};
+use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
 /// What may change in a refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,8 @@ pub struct Refined {
     pub before: Energy,
     /// Energy of the refined one; its total is never above that of `before`.
     pub after: Energy,
+    /// Side chains of the interface that had to stay, and why; none where none were packed.
+    pub held: Vec<HeldResidue>,
     /// What packing came to; `None` where there was none.
     pub packing: Option<Packing>,
     /// Receptor and ligand with the packed side chains, each in its own frame; `None` where all side chains stayed.
@@ -102,7 +104,7 @@ impl<'a> Refiner<'a> {
             energy: self.fit.energy(pose),
         };
         let mut place = self.settled(&self.fit, start, pose, list);
-        let (mut packing, mut packed) = (None, None);
+        let (mut packing, mut packed, mut held) = (None, None, Vec::new());
         if let Some(repacker) = &self.repacker {
             let found = repacker.repack(&place.pose);
             let mut moved = 0;
@@ -123,12 +125,14 @@ impl<'a> Refiner<'a> {
                 moved,
                 exact: found.exact,
             });
+            held = found.held;
         }
         Ok(Refined {
             pose: place.pose,
             rmsd_moved: rmsd_between(self.molecules[1], pose, &place.pose),
             before: start.energy,
             after: place.energy,
+            held,
             packing,
             packed,
         })

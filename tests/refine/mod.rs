@@ -110,6 +110,7 @@ fn poses_improve_and_the_run_stays() {
     let poses = PoseTable::read(&at("run/refined/refined.csv")).unwrap();
     let before = rows(&at("run/poses.csv"));
     let ligand = molecule(example("ligand_unbound"));
+    let mut held = Vec::new();
     for ((row, pose), printed) in table
         .iter()
         .zip(poses.rows())
@@ -127,6 +128,7 @@ fn poses_improve_and_the_run_stays() {
         let complex = molecule(at("run/refined").join(format!("rank_{:04}.pdb", pose.rank)));
         assert!(off(&complex, &ligand, &pose.pose) < 1e-3);
         assert_eq!(printed["rank"], pose.rank);
+        held.extend(printed["held"].as_array().unwrap().iter().cloned());
         assert_eq!(
             printed["energy_after"].as_f64(),
             Some(number(row, "energy_after"))
@@ -138,6 +140,10 @@ fn poses_improve_and_the_run_stays() {
                 .is_file()
         );
     }
+    // Cysteines of trypsin's disulphides line its active site.
+    let is_bonded =
+        |side_chain: &Value| side_chain["name"] == "CYS" && side_chain["reason"] == "disulphide";
+    assert!(held.iter().any(is_bonded), "{held:?}");
     let total = |column: &str| table.iter().map(|row| number(row, column)).sum::<f64>();
     assert!(total("clashes_after") < total("clashes_before"));
 
