@@ -1,6 +1,6 @@
-//! Time of one rotation of the example pair beside bare Fourier transforms of the planned sizes, in the same run.
+//! Time of one rotation of a pair beside bare Fourier transforms of the planned sizes, in the same run.
 //!
-//! `cargo bench --bench rotation` prints medians over rotations: each stage, the whole rotation, and the stock
+//! `cargo bench --bench rotation [-- RECEPTOR LIGAND]`, of the example pair unless two files are named, prints medians over rotations: each stage, the whole rotation, and the stock
 //! transforms for comparison. Those are q forward real transforms of the fine grid and one inverse of the mode grid,
 //! unpruned and out of place. They are computed by realfft and rustfft, with the `transpose` crate between axes.
 
@@ -17,13 +17,23 @@ use std::sync::Arc;
 use std::time::Instant;
 
 const ROTATIONS: usize = 101;
+/// Shape alone takes 2 or 3 components, and all effects of proteins about 7.
+const RANKS: [usize; 3] = [2, 3, 7];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let [receptor, ligand] = example::knots()?;
+    let files: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| !argument.starts_with("--"))
+        .collect();
+    let [receptor, ligand] = match files.as_slice() {
+        [] => example::knots()?,
+        [receptor, ligand] => [example::load(receptor)?, example::load(ligand)?],
+        _ => return Err("name a receptor and a ligand, or neither".into()),
+    };
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
     let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
-    for rank in [2, 3] {
+    for rank in RANKS {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let mut work = engine.workspace();
         let mut stages: [Vec<f64>; 6] = Default::default();
