@@ -38,3 +38,9 @@ example:
 benchmark dir *options:
     cargo build --release
     python3 scripts/benchmark/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}
+
+# A graphics processor: checked against the CPU, then timed beside it
+gpu:
+    cargo test -p knotdock-scoring --features gpu --test all gpu
+    cargo test --test all graphics
+    cargo bench --bench graphics

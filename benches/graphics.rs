@@ -1,9 +1,11 @@
 //! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run,
 //! peaks included.
 //!
-//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. For
-//! two ranks of the lifted axis it prints the milliseconds of a rotation on either device, their ratio, and the
-//! stages on the card, each submitted by itself.
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name and the
+//! bandwidth of its memory when it copies. For two ranks of the lifted axis, that of shape alone and about that of all
+//! effects of proteins, it prints the milliseconds of a rotation on either device, their ratio, the bytes that a rotation
+//! moves at the least as a share of that bandwidth, and the stages on the card, each submitted by itself. A card other
+//! than a program that plays one also searches 54,000 rotations.
 
 mod example;
 
@@ -19,6 +21,8 @@ use std::time::Instant;
 
 /// Fours of rotations.
 const TURNS: usize = 900;
+/// Rotations of a fine search.
+const FINE_ROTATIONS: usize = 54_000;
 /// Peaks of a rotation, and their least distance, as in a search.
 const PEAKS: (usize, usize) = (3, 2);
 
@@ -42,10 +46,23 @@ fn main() -> Result<(), Box<dyn Error>> {
             wanted: [true; 4],
         })
         .collect();
-    for rank in [2, 6] {
+    let bandwidth = gpu.copy_bandwidth()?;
+    println!(
+        "{} ({}): its memory copies at {:.1} GB/s, reading and writing",
+        gpu.name(),
+        gpu.backend(),
+        1e-9 * bandwidth
+    );
+    for rank in [2, 7] {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
-        let on_card = least_seconds(2, || card.best(&turns, |_| {}).map(drop))?;
+        let search = |rounds: usize| -> Result<(), Box<dyn Error>> {
+            for _ in 0..rounds {
+                card.best(&turns, |_| {})?;
+            }
+            Ok(())
+        };
+        let on_card = least_seconds(2, || search(1))?;
         let mut work = engine.workspace();
         let on_core = least_seconds(2, || {
             let mut found = Vec::new();
@@ -63,14 +80,24 @@ fn main() -> Result<(), Box<dyn Error>> {
         let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (4 * turns) as f64;
         let (card_ms, core_ms) = (of_rotation(on_card, TURNS), of_rotation(on_core, TURNS / 9));
         println!(
-            "rank {} on {} ({}), {} rotations in flight: {card_ms:.4} ms a rotation; \
+            "rank {}, {} rotations in flight: {} rotations in {on_card:.3} s, {card_ms:.4} ms each; \
              one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
             engine.rank(),
-            gpu.name(),
-            gpu.backend(),
             card.in_flight(),
+            4 * TURNS,
             core_ms / card_ms
         );
+        let traffic = card.least_traffic() as f64;
+        println!(
+            "  a rotation moves {:.2} MB at the least: {:.1} GB/s, {:.0}% of the copies",
+            1e-6 * traffic,
+            1e-6 * traffic / card_ms,
+            1e5 * traffic / card_ms / bandwidth
+        );
+        if !gpu.is_software() {
+            let fine = least_seconds(1, || search(FINE_ROTATIONS / (4 * TURNS)))?;
+            println!("  {FINE_ROTATIONS} rotations in {fine:.3} s");
+        }
         for (name, seconds) in card.stage_seconds(&turns[0].rotation)? {
             println!("  {name}: {:.4} ms a rotation", 1e3 * seconds);
         }

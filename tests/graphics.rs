@@ -120,6 +120,24 @@ fn the_same_bytes_each_time() {
     }
 }
 
+/// Where memory and not threads limits the rotations that cores would have in flight, the card still gets its share: all
+/// of it used to be planned for the cores.
+#[test]
+fn cores_leave_the_card_its_share_of_the_memory() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = place();
+    let words = "dock receptor.pdb ligand.pdb --rotations 1000 --engine gpu --quiet -o run";
+    run(
+        folder.path(),
+        &format!("{words} --threads 1000 --memory 400M"),
+    );
+    let record = record(&folder.path().join("run"));
+    let in_flight = record["machine"]["adapter"]["rotations_in_flight"].as_u64();
+    assert!(in_flight.is_some_and(|count| count > 4), "{record}");
+}
+
 /// With or without an adapter: nothing is left behind, and the words say what to do.
 #[test]
 fn what_cannot_be_had_is_refused() {

@@ -48,8 +48,16 @@ impl MemoryPlan {
             let limits = (named(needed), allowed);
             return Err(too_little(scene, options, (space, refined), limits));
         }
+        // The card comes first: with few rotations in flight there it stands idle, while cores only prepare.
+        let graphics = match options.search.engine {
+            EngineChoice::Cpu => 0,
+            EngineChoice::Gpu => {
+                let left = allowed.map(|allowed| allowed.saturating_sub(needed));
+                left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
+            }
+        };
         let fits = |rotations, effects| {
-            let needed = sizes.peak(AtOnce { rotations, effects });
+            let needed = graphics + sizes.peak(AtOnce { rotations, effects });
             allowed.is_none_or(|allowed| needed <= allowed)
         };
         let threads = options.machine.threads.count().min(MAX_IN_FLIGHT);
@@ -58,14 +66,6 @@ impl MemoryPlan {
         let at_once = AtOnce {
             rotations,
             effects: most(rotations, |effects| fits(rotations, effects)),
-        };
-        let graphics = match options.search.engine {
-            EngineChoice::Cpu => 0,
-            EngineChoice::Gpu => {
-                let taken = sizes.peak(at_once);
-                let left = allowed.map(|allowed| allowed.saturating_sub(taken));
-                left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
-            }
         };
         Ok(Self {
             sizes,
@@ -99,7 +99,7 @@ impl MemoryPlan {
     /// Rotations in flight at the rank that the engine turned out to have, at least one.
     pub fn in_flight_at(&self, rank: usize) -> usize {
         most(self.in_flight(), |count| {
-            let needed = self.sizes.search_peak(count, rank);
+            let needed = self.graphics + self.sizes.search_peak(count, rank);
             self.allowed.is_none_or(|allowed| needed <= allowed)
         })
     }

@@ -94,6 +94,15 @@ impl Sizes {
         (of_turn, of_image)
     }
 
+    /// Bytes that an image reads and writes at the least, its share of a turn's four images included: every buffer
+    /// written once and read once, and the receptor's spectra read.
+    pub fn least_traffic(&self) -> u64 {
+        let (of_turn, of_image) = self.bytes();
+        let [turn, image] =
+            [of_turn.as_slice(), &of_image].map(|bytes| bytes.iter().sum::<usize>());
+        (2 * (turn / 4 + image) + 8 * self.fields * self.modes) as u64
+    }
+
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.
     pub fn batch(&self, gpu: &GpuDevice, memory: u64) -> Result<Batch, GpuError> {
         let limits = gpu.device.limits();
