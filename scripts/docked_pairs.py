@@ -38,7 +38,7 @@ def fold(text):
 
 
 def names(text):
-    """Pairs of a command line, separated by commas."""
+    """Names on a command line, separated by commas."""
     return text.split(",")
 
 

@@ -17,6 +17,9 @@ The --out folder gets two files for the ranking of all poses and two for that of
 Runs that are done are kept, and repeated only if the program, its options or the input changed. A pair that fails is
 named and costs no other.
 
+With --bound ligand, receptor or both the bound structures of these sides are docked, as when a known complex is taken
+apart and docked again.
+
 With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
 contact in the known complex, and are drawn by the pair's id and the seed.
 
@@ -103,11 +106,14 @@ def parse_arguments():
     add("--knotdock", default="knotdock", help="the program (default: the one on the path)")
     add("--jobs", type=int, default=1, help="runs at a time (default: 1; a run uses all cores)")
     add("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
+    add("--bound", type=names, default=[], metavar="SIDES", help="dock the bound structure of receptor, ligand or both")
     add("--active", type=int, default=0, metavar="N", help="known contact residues of either side (default: 0)")
     options = parser.parse_args(arguments)
     for owned in OWNED:
         if owned in dock_options:
             parser.error(f"this script sets {owned} itself")
+    if not set(options.bound) <= {"receptor", "ligand"}:
+        parser.error("--bound takes receptor, ligand, or both separated by a comma")
     options.dock_options = dock_options
     options.knotdock = find_program(parser, options.knotdock)
     # By content: a table that was written anew under its name makes old results stale, too.
@@ -149,6 +155,7 @@ def run_one(options, program, pair, seed):
         settings["active"] = options.active
     try:
         files = {part: find_part(options.folder / pair["id"], part) for part in PARTS}
+        files |= {f"{side}_unbound": files[f"{side}_bound"] for side in options.bound}
         settings["inputs"] = {part: checksum(path) for part, path in files.items()}
         if record.exists():
             old = json.loads(record.read_text())
