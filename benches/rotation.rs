@@ -1,8 +1,9 @@
 //! Time of one rotation of a pair beside bare Fourier transforms of the planned sizes, in the same run.
 //!
-//! `cargo bench --bench rotation [-- RECEPTOR LIGAND]`, of the example pair unless two files are named, prints medians over rotations: each stage, the whole rotation, and the stock
-//! transforms for comparison. Those are q forward real transforms of the fine grid and one inverse of the mode grid,
-//! unpruned and out of place. They are computed by realfft and rustfft, with the `transpose` crate between axes.
+//! `cargo bench --bench rotation [-- RECEPTOR LIGAND]` takes the example pair unless two files are named. It prints medians
+//! over rotations: each stage, the whole rotation, and the stock transforms for comparison. Those are q forward real
+//! transforms of the fine grid and one inverse of the mode grid, unpruned and out of place. They are computed by realfft
+//! and rustfft, with the `transpose` crate between axes.
 
 mod example;
 

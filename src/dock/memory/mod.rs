@@ -48,7 +48,8 @@ impl MemoryPlan {
             let limits = (named(needed), allowed);
             return Err(too_little(scene, options, (space, refined), limits));
         }
-        // The card comes first: with few rotations in flight there it stands idle, while cores only prepare.
+        // The card takes its memory first, because it searches: the cores prepare and rescore, and fewer rotations in
+        // flight on them cost little.
         let graphics = match options.search.engine {
             EngineChoice::Cpu => 0,
             EngineChoice::Gpu => {
