@@ -11,9 +11,9 @@ mod example;
 
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::find_peaks;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::so3::rotation_set;
 use std::error::Error;
 use std::sync::Arc;
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut found = Vec::new();
             for turn in &turns[..TURNS / 9] {
                 engine.transform_ligand(&turn.rotation, &mut work);
-                for half_turn in HalfTurn::ALL {
+                for half_turn in GridTurn::HALF_TURNS {
                     engine.correlate_turned(half_turn, &mut work);
                     let (grid, rows) = (&mut work.grid, &mut work.row_best);
                     find_peaks(plan.size(), grid, rows, 0, PEAKS.0, &mut found);

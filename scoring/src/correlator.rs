@@ -13,10 +13,11 @@ use crate::engine::{
     ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
 };
 use crate::exact::ExactScorer;
+use crate::grid_turn::GridTurn;
 use crate::peaks::{Peak, find_peaks};
 use crate::potential_grid::PotentialGrid;
 use crate::quantity::Quantity;
-use crate::se3::{HalfTurn, Pose};
+use crate::se3::Pose;
 use crate::so3::rotation_set;
 use crate::terms::effect::Term;
 use crate::transform::Real;
@@ -191,7 +192,7 @@ impl<T: Real> Correlation<'_, T> {
     /// The pose of a voxel.
     pub fn pose(&self, voxel: usize) -> Pose {
         let plan = self.engine.plan();
-        let place = plan.receptor_center() + self.engine.position_after(HalfTurn::None, voxel);
+        let place = plan.receptor_center() + self.engine.position_after(GridTurn::NONE, voxel);
         Pose::about(self.rotation, plan.ligand_center(), place)
     }
 

@@ -39,6 +39,7 @@
 //! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
+//! | [`grid_turn`] | turns that map a grid onto itself |
 //! | [`sharp`] | the energy of rigid bodies at atomic resolution, and its optima near a pose |
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
 //! | [`terms::pose`] | terms that score the poses which a search keeps |
@@ -48,6 +49,7 @@ mod correlator;
 pub mod engine;
 pub mod exact;
 pub mod exact_sum;
+pub mod grid_turn;
 pub mod kernel;
 pub mod lifted_axis;
 pub mod overlap;

@@ -5,51 +5,6 @@
 
 use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
 
-/// A turn by 180 degrees about an axis of the grid, or none: the turns that map every box onto itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HalfTurn {
-    /// No turn.
-    None,
-    /// About x: (x, -y, -z).
-    X,
-    /// About y: (-x, y, -z).
-    Y,
-    /// About z: (-x, -y, z).
-    Z,
-}
-
-impl HalfTurn {
-    /// All four, in the order in which rotation sets hold them.
-    pub const ALL: [Self; 4] = [Self::None, Self::X, Self::Y, Self::Z];
-
-    /// What each coordinate is multiplied by.
-    pub fn signs(self) -> [f64; 3] {
-        match self {
-            Self::None => [1.0, 1.0, 1.0],
-            Self::X => [1.0, -1.0, -1.0],
-            Self::Y => [-1.0, 1.0, -1.0],
-            Self::Z => [-1.0, -1.0, 1.0],
-        }
-    }
-
-    /// The rotation that turns by `rotation` first and by the half-turn then: exact, since it only permutes and negates
-    /// the quaternion's parts.
-    pub fn after(self, rotation: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-        let [w, i, j, k] = self.after_parts([rotation.w, rotation.i, rotation.j, rotation.k]);
-        UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k))
-    }
-
-    /// [`Self::after`] of a quaternion's parts (w, x, y, z).
-    pub fn after_parts(self, [w, x, y, z]: [f64; 4]) -> [f64; 4] {
-        match self {
-            Self::None => [w, x, y, z],
-            Self::X => [-x, w, -z, y],
-            Self::Y => [-y, z, w, -x],
-            Self::Z => [-z, -y, x, w],
-        }
-    }
-}
-
 /// A rigid motion x -> R(q) x + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -135,19 +90,6 @@ impl Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn half_turns_negate_two_coordinates() {
-        let rotation = UnitQuaternion::from_euler_angles(0.3, -1.1, 2.0);
-        let x = Vector3::new(0.7, -2.0, 5.0);
-        for turn in HalfTurn::ALL {
-            let y = turn.after(&rotation) * x;
-            let z = rotation * x;
-            for axis in 0..3 {
-                assert!((y[axis] - turn.signs()[axis] * z[axis]).abs() < 1e-12);
-            }
-        }
-    }
 
     #[test]
     fn inverse_and_composition_undo_each_other() {

@@ -8,9 +8,10 @@ use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::kernel::Trim;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_structures::Knots;
@@ -21,7 +22,7 @@ use std::sync::Arc;
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
 fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, quantity: Quantity) -> f64 {
-    worst_after::<T>(a, b, tolerance, quantity, HalfTurn::None)
+    worst_after::<T>(a, b, tolerance, quantity, GridTurn::NONE)
 }
 
 /// The same where a half-turn of the grid follows the rotation, so that the ligand's transform is read mirrored.
@@ -30,7 +31,7 @@ fn worst_after<T: Real>(
     b: &Knots,
     tolerance: f64,
     quantity: Quantity,
-    half_turn: HalfTurn,
+    half_turn: GridTurn,
 ) -> f64 {
     worst_of::<T>(a, b, options(tolerance), quantity, half_turn)
 }
@@ -41,7 +42,7 @@ fn worst_of<T: Real>(
     b: &Knots,
     options: EngineOptions,
     quantity: Quantity,
-    half_turn: HalfTurn,
+    half_turn: GridTurn,
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(plan.kernel(), a, b).unwrap();
@@ -93,7 +94,7 @@ fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let mut options = options(tolerance);
             options.kernel.trim = Trim::BehandishIlies { length };
-            let error = worst_of::<f64>(&a, &b, options, Quantity::Score, HalfTurn::None);
+            let error = worst_of::<f64>(&a, &b, options, Quantity::Score, GridTurn::NONE);
             println!("{length} {tolerance:e}: {error:.2e}");
             assert!(error <= tolerance, "{length} at {tolerance:e}: {error:e}");
         }
@@ -176,7 +177,7 @@ fn cut_modes_stay_within_the_tolerance() {
 #[test]
 fn half_turns_read_the_same_transform() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
-    for half_turn in HalfTurn::ALL {
+    for half_turn in GridTurn::HALF_TURNS {
         for tolerance in [1e-2, 1e-4] {
             let error = worst_after::<f64>(&a, &b, tolerance, Quantity::Score, half_turn);
             assert!(

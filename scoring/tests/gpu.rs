@@ -8,7 +8,8 @@ use crate::scene::{Numbers, Pair, RADII, cloud, engine_options, some_rotation};
 use adapter::adapter;
 use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
 use knotdock_scoring::engine::{EngineOptions, Plan};
-use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_scoring::grid_turn::GridTurn;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::UnitQuaternion;
 
@@ -33,7 +34,7 @@ fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> 
     let rotation = some_rotation();
     pair.engine.transform_ligand(&rotation, &mut work);
     let (mut worst, mut best) = (0.0f64, 0.0f64);
-    for half_turn in HalfTurn::ALL {
+    for half_turn in GridTurn::HALF_TURNS {
         pair.engine.correlate_turned(half_turn, &mut work);
         let grid = engine.correlate(&rotation, half_turn).unwrap();
         assert_eq!(grid.len(), work.grid.len());
@@ -162,7 +163,7 @@ fn peaks_are_those_of_a_sorted_grid() {
             let mut expected = Vec::new();
             for half_turn in (0..4).filter(|&half_turn| wanted[half_turn]) {
                 let grid = engine
-                    .correlate(&rotation, HalfTurn::ALL[half_turn])
+                    .correlate(&rotation, GridTurn::HALF_TURNS[half_turn])
                     .unwrap();
                 for (voxel, score) in greedy(&grid, size, count, reach) {
                     expected.push(GridPeak {
@@ -197,7 +198,7 @@ fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
     for turn in turns {
         match engine.best(&[turn], |_| {}) {
             Ok(peaks) => {
-                let grid = engine.correlate(&turn.rotation, HalfTurn::None).unwrap();
+                let grid = engine.correlate(&turn.rotation, GridTurn::NONE).unwrap();
                 let found: Vec<_> = peaks.iter().map(|peak| (peak.voxel, peak.score)).collect();
                 assert_eq!(found, greedy(&grid, size, 1500, 1));
             }

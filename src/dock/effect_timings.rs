@@ -6,7 +6,7 @@ use crate::dock::outcome::EffectCost;
 use crate::dock::plan::DockPlan;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::{ChosenRank, CpuEngine, ReceptorSpectra, choose_rank};
-use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
@@ -92,8 +92,8 @@ pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) ->
 /// Least milliseconds of a rotation on one thread, over a few.
 fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     let rotations = &plan.search.rotations;
-    let images = &HalfTurn::ALL[..rotations.images];
-    let mut work = engine.workspace();
+    let images = &GridTurn::HALF_TURNS[..rotations.images];
+    let mut work = engine.workspace_of(images.len());
     let start_of_all = Instant::now();
     let times = (0..TIMED)
         .take_while(|&index| index == 0 || start_of_all.elapsed().as_millis() < ENOUGH)
@@ -101,9 +101,7 @@ fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
             let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
             let start = Instant::now();
             engine.transform_ligand(rotation, &mut work);
-            for half_turn in images {
-                engine.correlate_turned(*half_turn, &mut work);
-            }
+            engine.correlate_each(images, &mut work, |_, _| ());
             1e3 * start.elapsed().as_secs_f64() / images.len() as f64
         });
     times.fold(f64::INFINITY, f64::min)

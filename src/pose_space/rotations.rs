@@ -1,6 +1,6 @@
 //! The rotations that a search samples, in groups that share a transform of the ligand.
 
-use knotdock_scoring::se3::HalfTurn;
+use knotdock_scoring::grid_turn::GridTurn;
 use nalgebra::UnitQuaternion;
 
 /// Rotations of a search: a set, and a finer one about whose best parts a second search may go.
@@ -30,20 +30,25 @@ pub struct RotationGroup {
 }
 
 impl RotationGroup {
+    /// The images that are searched, by their place in the group.
+    pub fn images(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.wanted.len()).filter(|&image| self.wanted[image])
+    }
+
     /// Number of rotations that are searched.
     pub fn count(&self) -> usize {
-        self.wanted.iter().filter(|wanted| **wanted).count()
+        self.images().count()
     }
 }
 
 impl RotationSample {
     /// A rotation by its index, and which half-turn of the first of its group it is.
-    pub fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, HalfTurn) {
+    pub fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, GridTurn) {
         let (set, index) = match index.checked_sub(self.coarse.len()) {
             None => (&self.coarse, index),
             Some(fine) => (&self.fine, fine),
         };
-        (set[index], HalfTurn::ALL[index % self.images])
+        (set[index], GridTurn::HALF_TURNS[index % self.images])
     }
 
     /// All groups of the coarse set.

@@ -8,8 +8,8 @@ use crate::search::plan::SearchPlan;
 use crate::search::scan_engine::ScanEngine;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::{Peak, find_peaks};
-use knotdock_scoring::se3::HalfTurn;
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -113,16 +113,15 @@ fn scan_on_cores<T: Real>(
         .into_par_iter()
         .with_max_len(1)
         .map(|_| {
-            let mut work = engine.workspace();
+            let mut work = engine.workspace_of(plan.rotations.images);
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
                 engine.transform_ligand(&rotation, &mut work);
-                for (image, half_turn) in HalfTurn::ALL.into_iter().enumerate() {
-                    if !group.wanted[image] {
-                        continue;
-                    }
-                    engine.correlate_turned(half_turn, &mut work);
+                let wanted: Vec<usize> = group.images().collect();
+                let turns: Vec<GridTurn> =
+                    wanted.iter().map(|&image| GridTurn::ALL[image]).collect();
+                engine.correlate_each(&turns, &mut work, |place, work| {
                     if let Some(filter) = &filter {
                         filter.keep(&rotation, &mut work.grid, &mut work.row_best);
                     }
@@ -130,7 +129,7 @@ fn scan_on_cores<T: Real>(
                         plan.engine.size(),
                         &mut work.grid,
                         &mut work.row_best,
-                        (group.first + image) as u32,
+                        (group.first + wanted[place]) as u32,
                         plan.per_rotation,
                         &mut found,
                     );
@@ -139,7 +138,7 @@ fn scan_on_cores<T: Real>(
                         found.truncate(most);
                     }
                     progress.advance(1);
-                }
+                });
                 searched.fetch_add(group.count(), Ordering::Relaxed);
             }
             // The lists of all threads are joined: each is no longer than what is kept.

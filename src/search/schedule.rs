@@ -46,7 +46,7 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_scoring::se3::HalfTurn;
+    use knotdock_scoring::grid_turn::GridTurn;
     use knotdock_scoring::so3::{covering_radius, rotation_set};
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
             let four = |index: usize| (4 * index..4 * index + 4).map(|index| set[index]);
             quartets.into_iter().flat_map(four).collect()
         };
-        assert_eq!(HalfTurn::ALL.len(), 4);
+        assert_eq!(GridTurn::HALF_TURNS.len(), 4);
         for part in [90, 225, 450, 700] {
             let own = covering_radius(&rotation_set(4 * part));
             let first = covering_radius(&of_quartets(evenly_spread(900).take(part).collect()));

@@ -9,10 +9,11 @@
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_options, some_rotation};
 use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
@@ -131,7 +132,7 @@ fn the_grids_mean_is_the_same_for_all_rotations() {
     for turn in 0..5 {
         let rotation = Pose::from_parts([0.4, 0.3 * f64::from(turn), -0.5, 0.2], [0.0; 3]).rotation;
         pair.engine.transform_ligand(&rotation, &mut work);
-        for half_turn in HalfTurn::ALL {
+        for half_turn in GridTurn::HALF_TURNS {
             pair.engine.correlate_turned(half_turn, &mut work);
             let mean = work.grid.iter().sum::<f64>() / work.grid.len() as f64;
             // The spreading window is good to the plan's tolerance; its own error turns with the knots.

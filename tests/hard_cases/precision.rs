@@ -3,10 +3,11 @@
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::se3::{HalfTurn, Pose};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -152,7 +153,7 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
         let pose = pair.pose(some_rotation(), voxel);
         let [x, y, z] = pose.translation.into();
         let image = Pose {
-            rotation: HalfTurn::Z.after(&pose.rotation),
+            rotation: GridTurn::Z.after(&pose.rotation),
             translation: Vector3::new(-x, -y, z),
         };
         let (own, twin) = (

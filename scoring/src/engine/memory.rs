@@ -1,6 +1,6 @@
 //! Memory of an engine's parts in bytes, from its plan: known before any of them is made.
 
-use super::cpu::{COLUMNS, PLANES};
+use super::cpu::{COLUMNS, PLANES, SIDE, TOGETHER};
 use super::packed::{LANES, Packing};
 use super::plan::Plan;
 use super::preparation::ligand_forward;
@@ -21,8 +21,10 @@ pub struct EngineMemory {
     pub spectrum: u64,
     /// One component of an engine: the receptor's part, packed, and the ligand's weights.
     pub component: u64,
-    /// A workspace without components.
+    /// A workspace of one image without components.
     pub workspace: u64,
+    /// Each further image of a workspace.
+    pub workspace_image: u64,
     /// One component of a workspace.
     pub workspace_component: u64,
     /// What choosing a rank takes beside engines and their workspace: places of the voxels, multiplicities of the modes.
@@ -49,11 +51,13 @@ impl EngineMemory {
         let modes = plan.modes().count as u64;
         let voxels = plan.modes().size.iter().product::<usize>() as u64;
         let packed = (LANES * Packing::new(plan.modes()).count()) as u64;
-        let [one, two] = [1, 2].map(|rank| workspace_bytes::<T>(plan, ligand, rank));
+        let [one, two] = [1, 2].map(|rank| workspace_bytes::<T>(plan, ligand, rank, 1));
+        let two_images = workspace_bytes::<T>(plan, ligand, 1, 2);
         Self {
             spectrum: 2 * real * modes,
             component: real * (2 * packed + ligand.len() as u64),
             workspace: one.saturating_sub(two - one),
+            workspace_image: two_images - one,
             workspace_component: two - one,
             probing: size_of::<u32>() as u64 * voxels + size_of::<f64>() as u64 * modes,
             transform: 2 * real * modes + ligand_forward::<T>(plan, 1).workspace_bytes() as u64,
@@ -82,9 +86,15 @@ impl EngineMemory {
             .map_or_else(EffectSize::default, |(_, size)| *size)
     }
 
-    /// A workspace at a rank.
+    /// A workspace of one image at a rank.
     pub fn workspace_at(&self, rank: usize) -> u64 {
         self.workspace + rank as u64 * self.workspace_component
+    }
+
+    /// A workspace of so many images, as many of them together as can be.
+    pub fn workspace_of(&self, rank: usize, images: usize) -> u64 {
+        let further = images.clamp(1, TOGETHER) as u64 - 1;
+        self.workspace_at(rank) + further * self.workspace_image
     }
 
     /// The choice of a rank among so many components, most of which it leaves out: the whole engine, with its workspace
@@ -98,13 +108,14 @@ impl EngineMemory {
 }
 
 /// Bytes of a workspace at a rank.
-fn workspace_bytes<T: Real>(plan: &Plan, ligand: &Knots, rank: usize) -> u64 {
+fn workspace_bytes<T: Real>(plan: &Plan, ligand: &Knots, rank: usize, images: usize) -> u64 {
     let [nx, ny, nz] = plan.modes().size;
     let forward = ligand_forward::<T>(plan, rank);
-    let reals = 2 * COLUMNS * rank * forward.line_length()
+    let of_image = 2 * 2 * SIDE * nx + 2 * PLANES * nx * ny + nx * ny * nz;
+    let reals = 2 * (COLUMNS * forward.line_length() + 2 * LANES)
         + 2 * rank * LANES * Packing::new(plan.modes()).count()
-        + 2 * PLANES * nx * ny
-        + nx * ny * nz
+        + 4 * (nx / 2).next_multiple_of(LANES)
+        + images * of_image
         + nx * ny * (nz + 1);
     let points = size_of::<[f64; 3]>() * ligand.len();
     (forward.workspace_bytes() + reals * size_of::<T>() + points) as u64

@@ -3,7 +3,7 @@
 //! The components of the lifted axis follow one another, so that a product is summed over them in registers.
 
 use crate::transform::Real;
-use crate::transform::modes::ModeSet;
+use crate::transform::modes::{Column, ModeSet};
 use num_complex::Complex;
 use std::ops::Range;
 
@@ -27,29 +27,56 @@ impl<T: Real> Packet<T> {
         }
     }
 
-    /// Separates the parts of eight values; where they are fewer, zeros follow.
+    /// Separates the parts of eight values.
     #[inline(always)]
-    pub fn of(values: &[Complex<T>]) -> Self {
-        let mut packet = Self::zero();
-        for (lane, value) in values.iter().enumerate().take(LANES) {
-            packet.re[lane] = value.re;
-            packet.im[lane] = value.im;
+    pub fn of(values: &[Complex<T>; LANES]) -> Self {
+        Self {
+            re: std::array::from_fn(|lane| values[lane].re),
+            im: std::array::from_fn(|lane| values[lane].im),
         }
-        packet
+    }
+
+    /// The same of values in falling order.
+    #[inline(always)]
+    pub fn reversed(values: &[Complex<T>; LANES]) -> Self {
+        Self {
+            re: std::array::from_fn(|lane| values[LANES - 1 - lane].re),
+            im: std::array::from_fn(|lane| values[LANES - 1 - lane].im),
+        }
     }
 
     /// The value in a lane.
+    #[cfg(feature = "gpu")]
     pub fn get(&self, lane: usize) -> Complex<T> {
         Complex::new(self.re[lane], self.im[lane])
     }
 
+    /// The eight values.
+    #[inline(always)]
+    pub fn values(&self) -> [Complex<T>; LANES] {
+        std::array::from_fn(|lane| Complex::new(self.re[lane], self.im[lane]))
+    }
+
+    /// The eight values in falling order.
+    #[inline(always)]
+    pub fn falling(&self) -> [Complex<T>; LANES] {
+        std::array::from_fn(|lane| {
+            let lane = LANES - 1 - lane;
+            Complex::new(self.re[lane], self.im[lane])
+        })
+    }
+
     /// Writes a lane.
-    fn set(&mut self, lane: usize, value: Complex<T>) {
+    pub fn set(&mut self, lane: usize, value: Complex<T>) {
         (self.re[lane], self.im[lane]) = (value.re, value.im);
     }
 }
 
-/// Where the packets of each column lie: [column][packet][component].
+/// Where the packets of each column lie: [column][half][packet][component].
+///
+/// The first half of a column holds kx = 0, 1, ..., `kx_max`, the second 0, -1, ..., -`kx_max`, so that a column that
+/// is read in falling order is the same packets with the halves exchanged. What fills the last packet of a half is of
+/// no column, and whatever comes of it is not looked at.
 #[derive(Clone, Debug)]
 pub(super) struct Packing {
     /// For each column the packets before it, for one component; then their number.
@@ -61,7 +88,7 @@ impl Packing {
         let mut starts = vec![0];
         let mut count = 0;
         for column in &modes.columns {
-            count += column.len().div_ceil(LANES) as u32;
+            count += 2 * packets_of_half(column) as u32;
             starts.push(count);
         }
         Self { starts }
@@ -79,57 +106,43 @@ impl Packing {
     }
 }
 
-/// Packets with the modes of each column in falling order.
-pub(super) fn reversed<T: Real>(
-    modes: &ModeSet,
-    packing: &Packing,
-    components: usize,
-    packets: &[Packet<T>],
-) -> Vec<Packet<T>> {
-    let mut turned_round = vec![Packet::zero(); packets.len()];
-    for (index, column) in modes.columns.iter().enumerate() {
-        let range = packing.range(index, components);
-        let (from, to) = (&packets[range.clone()], &mut turned_round[range]);
-        let last = column.len() - 1;
-        for (place, opposite) in (0..=last).zip((0..=last).rev()) {
-            for component in 0..components {
-                let value = from[opposite / LANES * components + component].get(opposite % LANES);
-                to[place / LANES * components + component].set(place % LANES, value);
-            }
-        }
-    }
-    turned_round
+/// Packets of half a column, kx = 0 to `kx_max`.
+#[inline(always)]
+pub(super) fn packets_of_half(column: &Column) -> usize {
+    (column.kx_max as usize + 1).div_ceil(LANES)
 }
 
 /// Sums over the components of a b (`CONJUGATED` false) or a conj(b) (true), mode by mode.
+///
+/// The sums stay packed: written as complex numbers here, the compiler would shuffle each component's parts.
 #[inline(always)]
 pub(super) fn products<T: Real, const CONJUGATED: bool>(
     components: usize,
     a: &[Packet<T>],
     b: &[Packet<T>],
-    sums: &mut [Complex<T>],
+    sums: &mut [Packet<T>],
 ) {
     let packets = a.chunks_exact(components).zip(b.chunks_exact(components));
-    for ((a, b), sums) in packets.zip(sums.chunks_exact_mut(LANES)) {
-        let mut sum = Packet::zero();
+    for ((a, b), sum) in packets.zip(sums) {
+        let (mut re, mut im) = ([T::zero(); LANES], [T::zero(); LANES]);
         for (a, b) in a.iter().zip(b) {
             for lane in 0..LANES {
                 let (same, cross) = (a.re[lane] * b.re[lane], a.im[lane] * b.im[lane]);
-                let (back, forth) = (a.im[lane] * b.re[lane], a.re[lane] * b.im[lane]);
-                sum.re[lane] += if CONJUGATED {
+                re[lane] += if CONJUGATED {
                     same + cross
                 } else {
                     same - cross
                 };
-                sum.im[lane] += if CONJUGATED {
+            }
+            for lane in 0..LANES {
+                let (back, forth) = (a.im[lane] * b.re[lane], a.re[lane] * b.im[lane]);
+                im[lane] += if CONJUGATED {
                     back - forth
                 } else {
                     back + forth
                 };
             }
         }
-        for (lane, value) in sums.iter_mut().enumerate() {
-            *value = Complex::new(sum.re[lane], sum.im[lane]);
-        }
+        *sum = Packet { re, im };
     }
 }

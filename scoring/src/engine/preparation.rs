@@ -1,15 +1,17 @@
 //! Preparing the engine on CPU cores: everything that does not turn, for a rank of the lifted axis.
 
+use super::columns::Reading;
 use super::cpu::CpuEngine;
-use super::packed::{LANES, Packet, Packing};
+use super::packed::{LANES, Packet, Packing, packets_of_half};
 use super::plan::Plan;
 use super::receptor_spectra::{Factors, ReceptorSpectra};
+use crate::grid_turn::GridTurn;
 use crate::transform::Real;
 use crate::transform::pruned_type1::Forward;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
 use num_complex::Complex;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 impl<T: Real> CpuEngine<T> {
     /// Prepares the engine at a rank of the lifted axis (1 to `receptor.full_rank()`).
@@ -53,6 +55,7 @@ impl<T: Real> CpuEngine<T> {
                 * factors[2][column.kz as usize]
                 / modes.volume();
             let range = packing.range(index, rank);
+            let half = packets_of_half(column);
             for q in 0..rank {
                 values.clear();
                 values.extend((-column.kx_max..=column.kx_max).enumerate().map(|(i, k)| {
@@ -63,9 +66,11 @@ impl<T: Real> CpuEngine<T> {
                     let factor = outer * factors[0][k.unsigned_abs() as usize];
                     sum.scale(T::of(factor))
                 }));
-                let packets = spectra[range.clone()][q..].iter_mut().step_by(rank);
-                for (packet, values) in packets.zip(values.chunks(LANES)) {
-                    *packet = Packet::of(values);
+                let (up, down) = spectra[range.clone()].split_at_mut(half * rank);
+                let side = column.kx_max as usize;
+                for k in 0..=side {
+                    up[k / LANES * rank + q].set(k % LANES, values[side + k]);
+                    down[k / LANES * rank + q].set(k % LANES, values[side - k]);
                 }
             }
         }
@@ -75,7 +80,12 @@ impl<T: Real> CpuEngine<T> {
             .collect();
         let scale = forward.cells_per_length();
         let center = forward.center();
-        let mirrors = modes.mirrors();
+        let turns = if modes.has_quarter_turns() && plan.fine()[1] == plan.fine()[2] {
+            &GridTurn::ALL[..]
+        } else {
+            &GridTurn::HALF_TURNS
+        };
+        let readings = turns.iter().map(|&turn| Reading::after(turn, &modes));
         let largest = singular
             .first()
             .copied()
@@ -85,7 +95,6 @@ impl<T: Real> CpuEngine<T> {
             forward,
             packing,
             spectra,
-            reversed: OnceLock::new(),
             weights,
             ligand: ligand
                 .centers
@@ -94,7 +103,7 @@ impl<T: Real> CpuEngine<T> {
                 .collect(),
             block_center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
             receptor_center: receptor.center,
-            mirrors,
+            readings: readings.collect(),
             inverse_x: T::inverse_fft(modes.size[0]),
             inverse_y: T::inverse_fft(modes.size[1]),
             inverse_z: T::inverse_fft(modes.size[2]),
@@ -118,13 +127,12 @@ impl<T: Real> CpuEngine<T> {
             forward: ligand_forward::<T>(&self.plan, rank),
             packing: self.packing.clone(),
             spectra,
-            reversed: OnceLock::new(),
             weights: weights
                 .flat_map(|components| &components[..rank])
                 .copied()
                 .collect(),
             ligand: self.ligand.clone(),
-            mirrors: self.mirrors.clone(),
+            readings: Arc::clone(&self.readings),
             inverse_x: Arc::clone(&self.inverse_x),
             inverse_y: Arc::clone(&self.inverse_y),
             inverse_z: Arc::clone(&self.inverse_z),

@@ -10,7 +10,7 @@ mod spiral;
 
 pub use covering::covering_radius;
 
-use crate::se3::HalfTurn;
+use crate::grid_turn::GridTurn;
 use nalgebra::{Quaternion, UnitQuaternion};
 use relaxation::relax;
 use spiral::{Point, domain};
@@ -50,7 +50,7 @@ fn with_images(base: &[Point], count: usize) -> Vec<UnitQuaternion<f64>> {
             let rotation = UnitQuaternion::from_quaternion(Quaternion::from(
                 nalgebra::Vector4::new(point[1], point[2], point[3], point[0]),
             ));
-            HalfTurn::ALL.map(|turn| turn.after(&rotation))
+            GridTurn::HALF_TURNS.map(|turn| turn.after(&rotation))
         })
         .take(count)
         .collect()
@@ -101,7 +101,10 @@ mod tests {
             let set = rotation_set(count);
             assert_eq!(set.len(), count);
             for (index, q) in set.iter().enumerate() {
-                assert_eq!(*q, HalfTurn::ALL[index % 4].after(&set[index - index % 4]));
+                assert_eq!(
+                    *q,
+                    GridTurn::HALF_TURNS[index % 4].after(&set[index - index % 4])
+                );
                 assert!((q.norm() - 1.0).abs() < 1e-12);
             }
         }

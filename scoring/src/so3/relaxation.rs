@@ -1,7 +1,7 @@
 //! Relaxation of rotations, which evens out how they cover SO(3).
 
 use super::spiral::Point;
-use crate::se3::HalfTurn;
+use crate::grid_turn::GridTurn;
 use knotdock_structures::neighbours::Bins;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -22,7 +22,7 @@ pub(super) fn relax(base: &mut [Point]) {
     for step in 0..STEPS {
         let all: Vec<(usize, Point)> = base
             .iter()
-            .flat_map(|&point| HalfTurn::ALL.map(|turn| turn.after_parts(point)))
+            .flat_map(|&point| GridTurn::HALF_TURNS.map(|turn| turn.after_parts(point)))
             .flat_map(|point| [point, point.map(|part| -part)])
             .map(|point| (place(&point), point))
             .collect();

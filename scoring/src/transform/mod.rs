@@ -14,6 +14,7 @@ pub mod nufft;
 pub mod pruned_type1;
 pub mod real_fft_3d;
 pub mod spreading;
+pub(crate) mod transpose;
 pub mod truncation;
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};

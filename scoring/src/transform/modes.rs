@@ -57,7 +57,8 @@ impl ModeSet {
             let wz = f64::from(kz) / lengths[2];
             for ky in (0..=limit(1)).chain(-limit(1)..=-1) {
                 let wy = f64::from(ky) / lengths[1];
-                let rest = cut * cut - wy * wy - wz * wz;
+                // Alike for (y, z) and (z, y), so that quarter turns about x map the set onto itself.
+                let rest = cut * cut - (wy * wy + wz * wz);
                 if rest <= 0.0 {
                     continue;
                 }
@@ -112,6 +113,11 @@ impl ModeSet {
             }
         }
         mirrors
+    }
+
+    /// Whether quarter turns about x map the modes onto themselves: the box is as long in y as in z.
+    pub fn has_quarter_turns(&self) -> bool {
+        self.size[1] == self.size[2] && self.lengths[1] == self.lengths[2]
     }
 
     /// Volume of the box in Å^3.

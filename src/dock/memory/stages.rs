@@ -158,7 +158,12 @@ impl Sizes {
     /// Bytes of a rotation in flight at a rank: its workspace, and the peaks of its thread.
     pub fn in_flight(&self, rank: usize) -> u64 {
         let peaks = 2 * self.scanned() + self.per_rotation;
-        self.engine.workspace_at(rank) + size_of::<Peak>() as u64 * peaks + THREAD
+        self.workspace(rank) + size_of::<Peak>() as u64 * peaks + THREAD
+    }
+
+    /// Bytes of a workspace for all images of a rotation.
+    fn workspace(&self, rank: usize) -> u64 {
+        self.engine.workspace_of(rank, self.images as usize)
     }
 
     /// Bytes of a rotation in flight at the expected rank.
@@ -295,8 +300,12 @@ impl Sizes {
             .collect();
         parts.sort_unstable_by(|a, b| b.cmp(a));
         let timed = match parts.len() {
-            1 => engine.component * rank as u64 + engine.workspace_at(rank),
-            _ => engine.component * rank as u64 + parts.iter().take(at_once.effects).sum::<u64>(),
+            1 => engine.component * rank as u64 + self.workspace(rank),
+            _ => {
+                let images = self.workspace(rank) - engine.workspace_at(rank);
+                let parts = parts.iter().take(at_once.effects).map(|part| part + images);
+                engine.component * rank as u64 + parts.sum::<u64>()
+            }
         };
         let transforms = at_once.rotations.max(1) as u64 * engine.transform;
         self.stage(
@@ -329,10 +338,8 @@ impl Sizes {
         )
     }
 
-    /// The engine, and its spectra reversed for half-turns.
     fn engines(&self, rank: usize) -> u64 {
-        let copies = if self.images > 1 { 2 } else { 1 };
-        copies * rank as u64 * self.engine.component
+        rank as u64 * self.engine.component
     }
 
     /// The finer search keeps all peaks.
@@ -342,7 +349,7 @@ impl Sizes {
         let found = (self.searched_finer + self.images) * self.per_rotation;
         let cells = coarse * self.per_rotation;
         let groups = size_of::<RotationGroup>() as u64 * finer.div_ceil(self.images);
-        let in_flight = self.engine.workspace_at(rank) + THREAD;
+        let in_flight = self.workspace(rank) + THREAD;
         self.stage(
             "fine",
             &[

@@ -261,8 +261,8 @@ fn columns<T: Real>(engine: &CpuEngine<T>, sizes: &Sizes) -> Vec<Column> {
     modes
         .columns
         .iter()
-        .zip(&engine.mirrors)
-        .map(|(column, &mirror)| Column {
+        .zip(modes.mirrors())
+        .map(|(column, mirror)| Column {
             fine_y: place(column.ky, sizes.fine[1]) as u32,
             y: place(column.ky, sizes.grid[1]) as u32,
             side: column.kx_max as u32,

@@ -14,9 +14,9 @@ mod stages;
 
 pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 
-use super::columns::Reading;
+use super::columns::HALF_TURN_BITS;
 use super::cpu::CpuEngine;
-use crate::se3::HalfTurn;
+use crate::grid_turn::GridTurn;
 use crate::transform::Real;
 use buffers::{Batch, Buffers, Sizes};
 use nalgebra::UnitQuaternion;
@@ -41,7 +41,7 @@ pub struct GpuEngine {
 pub struct Turn {
     /// The rotation.
     pub rotation: UnitQuaternion<f64>,
-    /// In the order of [`HalfTurn::ALL`].
+    /// In the order of [`GridTurn::HALF_TURNS`].
     pub wanted: [bool; 4],
 }
 
@@ -50,7 +50,7 @@ pub struct Turn {
 pub struct GridPeak {
     /// Index of the turn among those given.
     pub turn: usize,
-    /// Index in [`HalfTurn::ALL`].
+    /// Index in [`GridTurn::HALF_TURNS`].
     pub half_turn: usize,
     /// Voxel, row-major.
     pub voxel: u32,
@@ -187,9 +187,9 @@ impl GpuEngine {
     pub fn correlate(
         &self,
         rotation: &UnitQuaternion<f64>,
-        half_turn: HalfTurn,
+        half_turn: GridTurn,
     ) -> Result<Vec<f32>, GpuError> {
-        let wanted = HalfTurn::ALL.map(|one| one == half_turn);
+        let wanted = GridTurn::HALF_TURNS.map(|one| one == half_turn);
         let turn = Turn {
             rotation: *rotation,
             wanted,
@@ -290,7 +290,7 @@ impl GpuEngine {
             table.extend(
                 group
                     .iter()
-                    .map(|image| [slot, Reading::after(HalfTurn::ALL[image.half_turn]).bits()]),
+                    .map(|image| [slot, HALF_TURN_BITS[image.half_turn]]),
             );
         }
         let queue = &self.gpu.queue;
