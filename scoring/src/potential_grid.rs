@@ -18,7 +18,7 @@ use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use crate::transform::{Real, fast_size};
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use num_complex::Complex;
 use realfft::ComplexToReal;
 use rustfft::Fft;
@@ -49,6 +49,8 @@ pub struct PotentialGrid {
     kernel: SpreadingKernel<f32>,
     grids: Vec<Vec<f32>>,
     knots: Vec<GridKnot>,
+    /// From the axes of the receptor's file to the grid's.
+    frame: Rotation3<f64>,
     receptor_center: Vector3<f64>,
     ligand_center: Vector3<f64>,
 }
@@ -101,6 +103,7 @@ impl PotentialGrid {
             kernel,
             grids,
             knots,
+            frame: plan.frame().to_rotation_matrix(),
             receptor_center: plan.receptor_center(),
             ligand_center: plan.ligand_center(),
         }
@@ -118,6 +121,7 @@ impl PotentialGrid {
     fn gradient_inline(&self, pose: &Pose) -> (f64, PoseGradient) {
         let rotation = pose.rotation.to_rotation_matrix();
         let center = rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let (rotation, center) = (self.frame * rotation, self.frame * center);
         let mut score = 0.0;
         let mut gradient = PoseGradient::default();
         for (y, weights) in &self.knots {
@@ -131,6 +135,8 @@ impl PotentialGrid {
             gradient.force += force;
             gradient.torque += arm.cross(&force);
         }
+        gradient.force = self.frame.inverse() * gradient.force;
+        gradient.torque = self.frame.inverse() * gradient.torque;
         (score, gradient)
     }
 

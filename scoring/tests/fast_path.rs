@@ -3,7 +3,7 @@
 //! Errors of G are relative to the best exact score, errors of a slice to its largest value.
 
 use crate::scene;
-use crate::scene::{RADII, cloud, engine_options as options};
+use crate::scene::{Pair, RADII, cloud, engine_options as options, moved};
 use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
@@ -185,6 +185,49 @@ fn half_turns_read_the_same_transform() {
                 "{half_turn:?} at {tolerance:e}: {error:e}"
             );
         }
+    }
+}
+
+/// Eight rotations share one transform where the grid is as long in y as in z, and its axes may lie askew in the
+/// receptor's file: poses are of the files all the same.
+#[test]
+fn turns_of_a_fitted_grid_read_the_same_transform() {
+    // Flat and askew, so that another frame has fewer points.
+    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
+    let mut a = cloud(160, 12.0, &RADII, 1);
+    for x in &mut a.centers {
+        x[2] *= 0.3;
+    }
+    let (a, b) = (moved(&a, &askew), cloud(60, 8.0, &RADII, 2));
+    for tolerance in [1e-2, 1e-4] {
+        let pair = Pair::<f64>::fitted(&a, &b, options(tolerance));
+        let (frame, engine) = (pair.plan.frame(), &pair.engine);
+        assert!(frame.angle() > 0.1, "{}", frame.angle());
+        assert_eq!(engine.turns(), GridTurn::ALL);
+        let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
+        let mut together = engine.workspace_of(4);
+        engine.transform_ligand(&turned, &mut together);
+        let mut one = engine.workspace();
+        engine.transform_ligand(&turned, &mut one);
+        engine.correlate_each(&GridTurn::ALL, &mut together, |place, work| {
+            let turn = GridTurn::ALL[place];
+            engine.correlate_turned(turn, &mut one);
+            assert_eq!(one.grid, work.grid, "{turn:?}: alone and with others");
+            assert_eq!(one.row_best, work.row_best);
+            let rotation = frame.inverse() * turn.after(&(frame * turned));
+            let mut order: Vec<usize> = (0..work.grid.len()).collect();
+            order.sort_by(|&x, &y| work.grid[y].total_cmp(&work.grid[x]));
+            let sweep = order.iter().copied().step_by(order.len() / 150);
+            let (mut error, mut best) = (0.0f64, 0.0f64);
+            for voxel in order[..100].iter().copied().chain(sweep) {
+                let place = pair.plan.receptor_center() + engine.position_after(turn, voxel);
+                let pose = Pose::about(rotation, pair.plan.ligand_center(), place);
+                let exact = pair.scorer.score_only(&pose);
+                error = error.max((exact - work.grid[voxel]).abs());
+                best = best.max(exact);
+            }
+            assert!(error <= tolerance * best, "{turn:?}: {:e}", error / best);
+        });
     }
 }
 

@@ -4,7 +4,7 @@
 #[path = "scene/adapter.rs"]
 mod adapter;
 
-use crate::scene::{Numbers, Pair, RADII, cloud, engine_options, some_rotation};
+use crate::scene::{Numbers, Pair, RADII, cloud, engine_options, moved, some_rotation};
 use adapter::adapter;
 use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
 use knotdock_scoring::engine::{EngineOptions, Plan};
@@ -28,7 +28,10 @@ fn rotations(count: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
 /// Largest difference of the card's grid from the CPU's in f64 over all voxels and half-turns, as a share of the
 /// largest score there.
 fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
-    let pair = Pair::<f64>::new(a, b, options);
+    difference_of(gpu, &Pair::<f64>::new(a, b, options))
+}
+
+fn difference_of(gpu: &GpuDevice, pair: &Pair<f64>) -> f64 {
     let engine = GpuEngine::new(gpu, &pair.engine, 1, 2, MEMORY).unwrap();
     let mut work = pair.engine.workspace();
     let rotation = some_rotation();
@@ -82,6 +85,25 @@ fn the_grid_is_that_of_the_cpu_in_double_precision() {
         println!("tolerance {tolerance:e}: {share:.1e}, {cpu:.1e} on the CPU");
         assert!(share < 3e-5, "{tolerance}: {share}");
     }
+}
+
+/// The card turns knots to the grid's axes as the cores do.
+#[test]
+fn a_grid_turned_to_fit_the_receptor() {
+    let Some(gpu) = adapter() else { return };
+    let mut a = cloud(150, 12.0, &RADII, 1);
+    for x in &mut a.centers {
+        x[2] *= 0.3;
+    }
+    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
+    let pair = Pair::<f64>::fitted(
+        &moved(&a, &askew),
+        &cloud(40, 6.0, &RADII, 2),
+        engine_options(1e-2),
+    );
+    assert!(pair.plan.frame().angle() > 0.1);
+    let share = difference_of(&gpu, &pair);
+    assert!(share < 3e-5, "{share}");
 }
 
 /// Every radix that grids are made of, on every axis and both ways: needles along each axis, the shortest with a length

@@ -1,6 +1,6 @@
 //! The potential grid against the sum of the same modes, and its gradient against its own values.
 
-use crate::scene::{Numbers, RADII, cloud, engine_options};
+use crate::scene::{Numbers, RADII, cloud, engine_options, moved};
 use knotdock_scoring::engine::{Plan, ReceptorSpectra};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -87,6 +87,34 @@ fn follows_the_sum_over_modes() {
         );
         assert!(value_error < 1e-4 && slope_error < 2e-3 && torque_error < 5e-3);
     }
+}
+
+/// On a grid whose axes lie askew in the receptor's file, value, force and torque are the same vectors of the file but
+/// for the tolerance of the plan.
+#[test]
+fn a_fitted_grid_has_the_same_potentials() {
+    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
+    let mut a = cloud(160, 12.0, &RADII, 1);
+    for x in &mut a.centers {
+        x[2] *= 0.3;
+    }
+    let (a, b) = (moved(&a, &askew), cloud(60, 8.0, &RADII, 2));
+    let tolerance = 1e-4;
+    let pair = Pair::new(&a, &b, tolerance);
+    let fitted = pair.plan.fitted(&a).unwrap();
+    assert!(fitted.frame().angle() > 0.1);
+    let spectra = ReceptorSpectra::<f64>::new(&fitted, &a, &b, Quantity::Score);
+    let potentials = PotentialGrid::new(&fitted, &spectra, &b);
+    let mut nonzero = 0;
+    for pose in pair.poses(60, 3) {
+        let (value, slope) = potentials.gradient(&pose);
+        let (expected, gradient) = pair.potentials.gradient(&pose);
+        nonzero += usize::from(gradient.force.norm() > 0.1 * pair.scale);
+        assert!((value - expected).abs() < 1e-3 * pair.scale);
+        assert!((slope.force - gradient.force).norm() < 5e-3 * pair.scale);
+        assert!((slope.torque - gradient.torque).norm() < 1e-2 * pair.scale);
+    }
+    assert!(nonzero > 20, "{nonzero}");
 }
 
 /// The gradient is that of the values: central differences over translation, and over rotation about the ligand's

@@ -92,13 +92,13 @@ pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) ->
 /// Least milliseconds of a rotation on one thread, over a few.
 fn milliseconds<T: Real>(plan: &DockPlan, engine: &CpuEngine<T>) -> f64 {
     let rotations = &plan.search.rotations;
-    let images = &GridTurn::HALF_TURNS[..rotations.images];
+    let images = &GridTurn::ALL[..rotations.images];
     let mut work = engine.workspace_of(images.len());
     let start_of_all = Instant::now();
     let times = (0..TIMED)
         .take_while(|&index| index == 0 || start_of_all.elapsed().as_millis() < ENOUGH)
         .map(|index| {
-            let rotation = &rotations.coarse[(4 * index) % rotations.coarse.len()];
+            let rotation = &rotations.coarse[(rotations.images * index) % rotations.coarse.len()];
             let start = Instant::now();
             engine.transform_ligand(rotation, &mut work);
             engine.correlate_each(images, &mut work, |_, _| ());

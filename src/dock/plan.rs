@@ -107,8 +107,8 @@ pub fn plan(
 /// As [`plan`].
 pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
     options.check()?;
-    let engine = scene.engine_plan(options)?;
     let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
+    let engine = space.grid_of(scene.engine_plan(options)?, &scene.receptor)?;
     let refined = refined(&space, &scene.decisions, options);
     let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
     let limits = (memory.in_flight(), memory.graphics);

@@ -12,16 +12,19 @@ mod ring;
 pub mod rotations;
 mod voxel_filter;
 
+use crate::options::EngineChoice;
 use axes::{axes_radius, axis_set};
 use equivalents::Equivalents;
-use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::engine::{CpuEngine, Plan, PlanError};
 use knotdock_scoring::exact_sum::ExactSum;
+use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{covering_radius, rotation_set, set_name, spiral_set};
 use knotdock_scoring::symmetry::{RingAxis, Symmetry};
 use knotdock_scoring::transform::Real;
-use nalgebra::{Unit, Vector3};
+use knotdock_structures::Knots;
+use nalgebra::{Unit, UnitQuaternion, Vector3};
 use refine::{AscentLimits, RefinedPose, printed};
 use rotations::RotationSample;
 use voxel_filter::VoxelFilter;
@@ -61,26 +64,61 @@ impl PoseSpace {
         }
     }
 
-    /// `count` rotations, of rings one an axis, and `fine` of a finer set.
-    pub fn rotations(&self, count: usize, fine: Option<usize>) -> RotationSample {
+    /// Rotations that share a transform of the ligand in a search by `device`: turns of the grid, where it has them.
+    pub fn images(&self, plan: &Plan, device: EngineChoice) -> usize {
+        match self {
+            // A ring's rotation that is turned forms no ring.
+            Self::Cyclic(_) | Self::Dihedral(..) => 1,
+            // The graphics processor knows half-turns alone.
+            Self::Free if device == EngineChoice::Cpu && plan.modes().has_quarter_turns() => {
+                GridTurn::ALL.len()
+            }
+            Self::Free => GridTurn::HALF_TURNS.len(),
+        }
+    }
+
+    /// The plan on the grid that serves the space best: turned to fit the receptor, where any rotation is searched.
+    ///
+    /// # Errors
+    /// [`PlanError`] where a grid is too large.
+    pub fn grid_of(&self, plan: Plan, receptor: &Knots) -> Result<Plan, PlanError> {
+        match self {
+            Self::Free => plan.fitted(receptor),
+            // Voxels of rings are found by planes along the file's axes.
+            Self::Cyclic(_) | Self::Dihedral(..) => Ok(plan),
+        }
+    }
+
+    /// `count` rotations, of rings one an axis, and `fine` of a finer set, for a plan's grid.
+    pub fn rotations(
+        &self,
+        plan: &Plan,
+        device: EngineChoice,
+        (count, fine): (usize, Option<usize>),
+    ) -> RotationSample {
+        let images = self.images(plan, device);
         let of_axes = |symmetry: Symmetry, axes: Vec<Unit<Vector3<f64>>>, name, covering_radius| {
             RotationSample {
                 coarse: axes.iter().map(|axis| symmetry.rotation(axis)).collect(),
                 fine: Vec::new(),
-                // Half-turns of a ring's rotation form no ring.
-                images: 1,
+                images,
                 name,
                 covering_radius,
             }
         };
         match self {
             Self::Free => {
+                // Sets are closed under turns of the grid, and rotations are of the files.
+                let back = plan.frame().inverse();
+                let of_files = |set: Vec<UnitQuaternion<f64>>| -> Vec<_> {
+                    set.into_iter().map(|rotation| back * rotation).collect()
+                };
                 let coarse = rotation_set(count);
                 RotationSample {
                     covering_radius: covering_radius(&coarse),
-                    coarse,
-                    fine: fine.map_or_else(Vec::new, spiral_set),
-                    images: 4,
+                    coarse: of_files(coarse),
+                    fine: of_files(fine.map_or_else(Vec::new, spiral_set)),
+                    images,
                     name: set_name(count),
                 }
             }

@@ -12,7 +12,7 @@ pub struct RotationSample {
     pub coarse: Vec<UnitQuaternion<f64>>,
     /// The finer set; empty without a finer search.
     pub fine: Vec<UnitQuaternion<f64>>,
-    /// Rotations in a row that differ by half-turns: four, or one.
+    /// Rotations in a row that differ by turns of the grid, and share a transform of the ligand: eight, four or one.
     pub images: usize,
     /// Name of the set.
     pub name: &'static str,
@@ -20,13 +20,13 @@ pub struct RotationSample {
     pub covering_radius: f64,
 }
 
-/// Rotations that differ by half-turns, so that one transform of the ligand serves them all.
+/// Rotations that differ by turns of the grid, so that one transform of the ligand serves them all.
 #[derive(Clone, Copy, Debug)]
 pub struct RotationGroup {
     /// Index of the first.
     pub first: usize,
-    /// Which of the four are searched.
-    pub wanted: [bool; 4],
+    /// Which of its images are searched.
+    pub wanted: [bool; GridTurn::ALL.len()],
 }
 
 impl RotationGroup {
@@ -42,13 +42,13 @@ impl RotationGroup {
 }
 
 impl RotationSample {
-    /// A rotation by its index, and which half-turn of the first of its group it is.
+    /// A rotation by its index, and which turn of the first of its group it is.
     pub fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, GridTurn) {
         let (set, index) = match index.checked_sub(self.coarse.len()) {
             None => (&self.coarse, index),
             Some(fine) => (&self.fine, fine),
         };
-        (set[index], GridTurn::HALF_TURNS[index % self.images])
+        (set[index], GridTurn::ALL[index % self.images])
     }
 
     /// All groups of the coarse set.

@@ -40,7 +40,11 @@ impl SearchPlan {
         (in_flight, graphics_bytes): (usize, u64),
     ) -> Self {
         Self {
-            rotations: space.rotations(options.search.rotations, options.search.fine_rotations),
+            rotations: space.rotations(
+                &engine,
+                options.search.engine,
+                (options.search.rotations, options.search.fine_rotations),
+            ),
             engine,
             space,
             fine_share: options.search.fine_share,

@@ -36,7 +36,7 @@ pub(crate) fn scan<T: Real>(
     progress: &dyn Progress,
 ) -> Result<Scanned, SearchError> {
     // No list grows beyond all peaks that there are.
-    let most = most.min(4 * groups.len() * plan.per_rotation);
+    let most = most.min(plan.rotations.images * groups.len() * plan.per_rotation);
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
         Some(gpu) => scan_on_card(plan, gpu, groups, most, progress)?,
@@ -68,7 +68,8 @@ fn scan_on_card(
     for groups in groups.chunks(part) {
         let turn = |group: &RotationGroup| Turn {
             rotation: plan.rotations.rotation(group.first).0,
-            wanted: group.wanted,
+            // Its groups are of half-turns.
+            wanted: std::array::from_fn(|image| group.wanted[image]),
         };
         let turns: Vec<Turn> = groups.iter().map(turn).collect();
         let found = gpu.best(&turns, |images| progress.advance(images as u64))?;

@@ -63,16 +63,16 @@ mod tests {
     #[test]
     fn a_first_part_covers_all_orientations() {
         let set = rotation_set(3600);
-        let of_quartets = |quartets: Vec<usize>| -> Vec<_> {
-            let four = |index: usize| (4 * index..4 * index + 4).map(|index| set[index]);
-            quartets.into_iter().flat_map(four).collect()
+        let images = GridTurn::ALL.len();
+        let of_groups = |groups: Vec<usize>| -> Vec<_> {
+            let all = |group: usize| (images * group..images * (group + 1)).map(|index| set[index]);
+            groups.into_iter().flat_map(all).collect()
         };
-        assert_eq!(GridTurn::HALF_TURNS.len(), 4);
-        for part in [90, 225, 450, 700] {
-            let own = covering_radius(&rotation_set(4 * part));
-            let first = covering_radius(&of_quartets(evenly_spread(900).take(part).collect()));
+        for part in [45, 112, 225, 350] {
+            let own = covering_radius(&rotation_set(images * part));
+            let first = covering_radius(&of_groups(evenly_spread(450).take(part).collect()));
             assert!(first < 1.6 * own, "{part}: {first} {own}");
-            let in_order = covering_radius(&of_quartets((0..part).collect()));
+            let in_order = covering_radius(&of_groups((0..part).collect()));
             assert!(first < in_order, "{part}: {first} {in_order}");
         }
     }

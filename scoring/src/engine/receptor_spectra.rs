@@ -253,7 +253,7 @@ struct ClassFunction<T> {
 struct Receptor<T: Real> {
     modes: Arc<ModeSet>,
     forward: Forward<T>,
-    /// Relative to the receptor's centre, Å.
+    /// Relative to the receptor's centre, along the grid's axes, Å.
     points: Vec<[f64; 3]>,
 }
 
@@ -261,6 +261,7 @@ impl<T: Real> Receptor<T> {
     fn new(plan: &Plan, receptor: &Knots) -> Self {
         let modes = plan.modes();
         let fine = plan.fine();
+        let frame = plan.frame().to_rotation_matrix();
         let extent = [0, 1, 2].map(|axis| {
             plan.receptor_extent()[axis] * fine[axis] as f64 / modes.lengths[axis] + 0.5
         });
@@ -269,7 +270,7 @@ impl<T: Real> Receptor<T> {
             points: receptor
                 .centers
                 .iter()
-                .map(|&x| (Vector3::from(x) - plan.receptor_center()).into())
+                .map(|&x| (frame * (Vector3::from(x) - plan.receptor_center())).into())
                 .collect(),
             modes: Arc::clone(modes),
         }

@@ -1,4 +1,4 @@
-//! Rotation sets: near-uniform, of any size, closed under half-turns, the same on every machine.
+//! Rotation sets: near-uniform, of any size, closed under the turns of a grid, the same on every machine.
 //!
 //! [`rotation_set`] starts from a super-Fibonacci spiral (Alexa, CVPR 2022) and relaxes it. [`covering_radius`]
 //! measures how far from its nearest rotation of a set a rotation can lie. Rotations are unit quaternions, angles
@@ -15,27 +15,30 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use relaxation::relax;
 use spiral::{Point, domain};
 
-/// `count` rotations, closed under the half-turns about x, y and z.
+/// Rotations that share a transform of the ligand at the most.
+const IMAGES: usize = GridTurn::ALL.len();
+
+/// `count` rotations, closed under the eight turns of [`GridTurn`].
 ///
-/// Rotation 4 i + f is half-turn f after rotation 4 i, so that one transform of the ligand serves four rotations. Where
-/// `count` is no multiple of four the last images are left out.
+/// Rotation 8 i + f is turn f of [`GridTurn::ALL`] after rotation 8 i, so that one transform of the ligand serves eight
+/// rotations, or four where the grid has no quarter turns. Where `count` is no multiple of eight the last images are
+/// left out.
 ///
-/// The spiral's rotations within one domain of the half-turns (w the largest part of the quaternion) are taken. Up to
-/// [`MAX_RELAXED`] rotations, they and their images are relaxed like charges that repel each other. This evens out the
+/// The spiral's rotations within one domain of the turns, about the identity, are taken. Up to [`MAX_RELAXED`] rotations, they and their images are relaxed like charges that repel each other. This evens out the
 /// domain's edges: the nearest rotation of the set is closer, on average, than in the spiral itself.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
     if count > MAX_RELAXED {
         return spiral_set(count);
     }
-    let mut base = domain(count.div_ceil(4));
-    base.truncate(count.div_ceil(4));
+    let mut base = domain(count.div_ceil(IMAGES));
+    base.truncate(count.div_ceil(IMAGES));
     relax(&mut base);
     with_images(&base, count)
 }
 
 /// `count` rotations as of [`rotation_set`], but never relaxed: quickly made, less even at the edges of the domain.
 pub fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
-    let (points, wanted) = (domain(count.div_ceil(4)), count.div_ceil(4));
+    let (points, wanted) = (domain(count.div_ceil(IMAGES)), count.div_ceil(IMAGES));
     // Thinned evenly: without its last points a spiral has a hole.
     let kept: Vec<Point> = (0..wanted)
         .map(|index| points[index * points.len() / wanted])
@@ -43,14 +46,14 @@ pub fn spiral_set(count: usize) -> Vec<UnitQuaternion<f64>> {
     with_images(&kept, count)
 }
 
-/// Each rotation followed by its half-turns, `count` in all.
+/// Each rotation followed by its images, `count` in all.
 fn with_images(base: &[Point], count: usize) -> Vec<UnitQuaternion<f64>> {
     base.iter()
         .flat_map(|&point| {
             let rotation = UnitQuaternion::from_quaternion(Quaternion::from(
                 nalgebra::Vector4::new(point[1], point[2], point[3], point[0]),
             ));
-            GridTurn::HALF_TURNS.map(|turn| turn.after(&rotation))
+            GridTurn::ALL.map(|turn| turn.after(&rotation))
         })
         .take(count)
         .collect()
@@ -65,9 +68,9 @@ pub const BYTES_RELAXED: u64 = 250;
 /// Name of the set of `count` rotations.
 pub fn set_name(count: usize) -> &'static str {
     if count <= MAX_RELAXED {
-        "super-Fibonacci (Alexa 2022), closed under half-turns, relaxed"
+        "super-Fibonacci (Alexa 2022), closed under the grid's turns, relaxed"
     } else {
-        "super-Fibonacci (Alexa 2022), closed under half-turns"
+        "super-Fibonacci (Alexa 2022), closed under the grid's turns"
     }
 }
 
@@ -96,15 +99,12 @@ mod tests {
     }
 
     #[test]
-    fn half_turns_map_the_set_onto_itself_and_it_has_the_requested_size() {
+    fn turns_map_the_set_onto_itself_and_it_has_the_requested_size() {
         for count in [1, 2, 3, 5, 60, 1201] {
             let set = rotation_set(count);
             assert_eq!(set.len(), count);
             for (index, q) in set.iter().enumerate() {
-                assert_eq!(
-                    *q,
-                    GridTurn::HALF_TURNS[index % 4].after(&set[index - index % 4])
-                );
+                assert_eq!(*q, GridTurn::ALL[index % 8].after(&set[index - index % 8]));
                 assert!((q.norm() - 1.0).abs() < 1e-12);
             }
         }
@@ -117,12 +117,12 @@ mod tests {
         for wanted in (4000..4040).chain([25_003, 25_100]) {
             let points = domain(wanted);
             with_too_many += usize::from(points.len() > wanted);
-            let kept: Vec<Point> = spiral_set(4 * wanted)
+            let kept: Vec<Point> = spiral_set(8 * wanted)
                 .iter()
-                .step_by(4)
+                .step_by(8)
                 .map(|q| [q.w, q.i, q.j, q.k])
                 .collect();
-            let spacing = (2.0 * PI * PI / (8.0 * wanted as f64)).cbrt();
+            let spacing = (2.0 * PI * PI / (16.0 * wanted as f64)).cbrt();
             let last = points.iter().rev().take(points.len() - wanted);
             for point in last {
                 let nearest = kept.iter().map(|other| {

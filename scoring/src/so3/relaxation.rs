@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 /// Takes 40 steps, which shrink to nothing. Independent of the number of threads.
 pub(super) fn relax(base: &mut [Point]) {
     const STEPS: usize = 40;
-    // Each of the 8 images of each point has this much of the sphere's length scale.
-    let spacing = (2.0 * PI * PI / (8.0 * base.len() as f64)).cbrt();
+    // Each of the 16 images of each point, antipodes included, has this much of the sphere's length scale.
+    let spacing = (2.0 * PI * PI / (16.0 * base.len() as f64)).cbrt();
     let cutoff = (2.2 * spacing).min(2.0);
     // Cells no smaller than the cut-off, and few enough for memory.
     let cells = ((2.0 / cutoff) as usize).clamp(1, 40);
@@ -22,7 +22,7 @@ pub(super) fn relax(base: &mut [Point]) {
     for step in 0..STEPS {
         let all: Vec<(usize, Point)> = base
             .iter()
-            .flat_map(|&point| GridTurn::HALF_TURNS.map(|turn| turn.after_parts(point)))
+            .flat_map(|&point| GridTurn::ALL.map(|turn| turn.after_parts(point)))
             .flat_map(|point| [point, point.map(|part| -part)])
             .map(|point| (place(&point), point))
             .collect();

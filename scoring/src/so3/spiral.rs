@@ -4,6 +4,7 @@
 //!
 //! With s = i + 1/2: r = sqrt(s / n), R = sqrt(1 - s / n), a = 2 pi s / sqrt 2 and b = 2 pi s / 1.5337511687....
 
+use crate::grid_turn::GridTurn;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::PI;
 
@@ -27,18 +28,27 @@ pub(super) fn rotation(index: usize, count: usize) -> UnitQuaternion<f64> {
     ))
 }
 
-/// `count` rotations of a spiral whose w is the largest part, or a few more.
+/// `count` rotations of a spiral that are nearer to none than their images under the grid's turns are, or a few more.
 pub(super) fn domain(count: usize) -> Vec<Point> {
-    let mut size = 4 * count;
+    let images = GridTurn::ALL.len();
+    let mut size = images * count;
     loop {
         let points: Vec<Point> = (0..size)
             .map(|index| rotation(index, size))
             .map(|q| [q.w, q.i, q.j, q.k])
-            .filter(|q| q[1..].iter().all(|part| part.abs() < q[0].abs()))
+            .filter(is_nearest)
             .collect();
         if points.len() >= count {
             return points;
         }
         size += count.max(16) / 16;
     }
+}
+
+/// Whether the rotation turns by a smaller angle than each of its images: |w| is the cosine of half the angle.
+fn is_nearest(point: &Point) -> bool {
+    let images = &GridTurn::ALL[1..];
+    images
+        .iter()
+        .all(|turn| turn.after_parts(*point)[0].abs() < point[0].abs())
 }

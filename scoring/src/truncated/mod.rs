@@ -61,6 +61,11 @@ impl TruncatedCorrelation {
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
+        assert_eq!(
+            plan.frame(),
+            UnitQuaternion::identity(),
+            "a plan along the axes of the file is needed"
+        );
         let layout = Layout::new(plan.modes(), selection);
         let components = components::of(plan, spectra, ligand.len());
         let volume = plan.modes().volume();

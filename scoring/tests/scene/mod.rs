@@ -96,7 +96,17 @@ pub struct Pair<T: Real> {
 impl<T: Real> Pair<T> {
     /// The pair with the fast path's full rank.
     pub fn new(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
-        let plan = Arc::new(Plan::new(a, b, options).unwrap());
+        Self::of_plan(Plan::new(a, b, options).unwrap(), a, b)
+    }
+
+    /// The same on the grid that is turned to fit the receptor.
+    pub fn fitted(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
+        let plan = Plan::new(a, b, options).unwrap();
+        Self::of_plan(plan.fitted(a).unwrap(), a, b)
+    }
+
+    fn of_plan(plan: Plan, a: &Knots, b: &Knots) -> Self {
+        let plan = Arc::new(plan);
         let spectra = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
         Self {
             engine: CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank()),

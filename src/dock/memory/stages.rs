@@ -147,10 +147,10 @@ impl Sizes {
             atoms,
             is_of_molecules: scene.unit == LengthUnit::Angstrom,
             rotations: [rotations, finer],
-            images: if space.is_on_grid() { 4 } else { 1 },
+            images: space.images(engine, search.engine) as u64,
             searched_finer: (search.fine_share * finer as f64).ceil() as u64,
             per_rotation,
-            poses: (search.poses as u64).min(4 * (rotations + finer) * per_rotation),
+            poses: (search.poses as u64).min((rotations + finer) * per_rotation),
             is_refined: refined > 0,
         }
     }
@@ -253,7 +253,8 @@ impl Sizes {
 
     /// Peaks that the first search keeps.
     fn scanned(&self) -> u64 {
-        self.poses.min(4 * self.groups() * self.per_rotation)
+        self.poses
+            .min(self.images * self.groups() * self.per_rotation)
     }
 
     /// Groups of the first search.

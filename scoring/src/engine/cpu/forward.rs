@@ -8,7 +8,7 @@ use nalgebra::UnitQuaternion;
 impl<T: Real> CpuEngine<T> {
     #[inline(always)]
     pub(super) fn spread(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
-        let matrix = rotation.to_rotation_matrix();
+        let matrix = (self.plan.frame() * rotation).to_rotation_matrix();
         for (point, y) in work.points.iter_mut().zip(&self.ligand) {
             *point = (matrix * y).into();
         }

@@ -150,18 +150,19 @@ impl<T: Real> CpuEngine<T> {
     }
 
     /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `turn` gave, in Å, in the
-    /// box centred on the receptor.
+    /// box centred on the receptor, along the axes of the receptor's file.
     pub fn position_after(&self, turn: GridTurn, voxel: usize) -> Vector3<f64> {
         let [_, ny, nz] = self.plan.modes().size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
         // The block turns with the ligand in it.
         let block_center = turn.apply(self.block_center);
-        Vector3::from([0, 1, 2].map(|axis| {
+        let along_grid = Vector3::from([0, 1, 2].map(|axis| {
             let length = self.plan.modes().lengths[axis];
             let t = index[axis] as f64 * self.plan.spacing() + block_center[axis]
                 - self.receptor_center[axis];
             t - length * (t / length + 0.5).floor()
-        }))
+        }));
+        self.plan.frame().inverse() * along_grid
     }
 
     /// [`Self::position_after`] no turn.

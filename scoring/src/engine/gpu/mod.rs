@@ -34,6 +34,8 @@ pub struct GpuEngine {
     /// Å to cells of the block, per axis, and where the block's centre lies in it.
     scale: [f64; 3],
     center: [f64; 3],
+    /// From the axes of the receptor's file to the grid's.
+    frame: UnitQuaternion<f64>,
 }
 
 /// One rotation of the ligand, and which of its four half-turns are wanted.
@@ -95,6 +97,7 @@ impl GpuEngine {
             stages,
             scale: engine.forward.cells_per_length(),
             center: engine.forward.center(),
+            frame: engine.plan().frame(),
         })
     }
 
@@ -282,7 +285,7 @@ impl GpuEngine {
         let mut table: Vec<[u32; 2]> = Vec::with_capacity(images.len());
         for group in images.chunk_by(|a, b| a.turn == b.turn) {
             let slot = (rows.len() / 3) as u32;
-            let matrix = turns[group[0].turn].rotation.to_rotation_matrix();
+            let matrix = (self.frame * turns[group[0].turn].rotation).to_rotation_matrix();
             for axis in 0..3 {
                 let row = [0, 1, 2].map(|j| (matrix[(axis, j)] * self.scale[axis]) as f32);
                 rows.push([row[0], row[1], row[2], self.center[axis] as f32]);

@@ -11,12 +11,12 @@ use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use knotdock_structures::Knots;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 /// Where two bodies lie and how far they extend, in Å.
 pub(super) struct Extents {
-    /// Middle of the receptor's bounding box.
+    /// Middle of the receptor's bounding box, which lies along the grid's axes.
     pub receptor_center: Vector3<f64>,
     /// Half the receptor's bounding box.
     pub receptor_extent: [f64; 3],
@@ -47,6 +47,26 @@ impl Extents {
             receptor_extent: [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis])),
             ligand_center,
             ligand_radius: distances.fold(0.0, f64::max),
+        }
+    }
+
+    /// The same with the receptor's knots, or the outermost of them, turned by `frame`, in a box as long in y as in z.
+    pub fn turned(&self, receptor: &[[f64; 3]], frame: UnitQuaternion<f64>) -> Self {
+        let matrix = frame.to_rotation_matrix();
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &x in receptor {
+            let x = matrix * Vector3::from(x);
+            for axis in 0..3 {
+                low[axis] = low[axis].min(x[axis]);
+                high[axis] = high[axis].max(x[axis]);
+            }
+        }
+        let middle = Vector3::from([0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])));
+        let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+        Self {
+            receptor_center: matrix.inverse() * middle,
+            receptor_extent: [x, y.max(z), y.max(z)],
+            ..*self
         }
     }
 

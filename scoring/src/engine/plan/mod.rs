@@ -12,6 +12,7 @@
 //! [`Plan::coupling`] alone.
 
 mod error;
+mod frame;
 mod grid;
 mod options;
 mod pair_kernel;
@@ -26,12 +27,13 @@ use crate::terms::effect::{ActiveTerm, EffectKernel, Term};
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_terms, check_tolerance, checked_spacing};
+use frame::best_frame;
 use grid::{
     Extents, Widest, longest_reach, modes_at, oversampling, product_kernel, ranking_spacing,
     window_width,
 };
 use knotdock_structures::Knots;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use radii::Radii;
 use std::sync::Arc;
 
@@ -57,6 +59,7 @@ pub struct Plan {
     fine: [usize; 3],
     width: usize,
     effective_reach: f64,
+    frame: UnitQuaternion<f64>,
     receptor_center: Vector3<f64>,
     receptor_extent: [f64; 3],
     ligand_center: Vector3<f64>,
@@ -131,12 +134,18 @@ impl Plan {
         self.effective_reach
     }
 
-    /// Middle of the receptor's bounding box, Å.
+    /// The rotation from the axes of the receptor's file to those of the grid: the identity, but of a plan that is
+    /// [`Plan::fitted`].
+    pub fn frame(&self) -> UnitQuaternion<f64> {
+        self.frame
+    }
+
+    /// Middle of the receptor's bounding box along the grid's axes, in the receptor's file, Å.
     pub fn receptor_center(&self) -> Vector3<f64> {
         self.receptor_center
     }
 
-    /// Half the receptor's bounding box, Å.
+    /// Half the receptor's bounding box along the grid's axes, or more, Å.
     pub fn receptor_extent(&self) -> [f64; 3] {
         self.receptor_extent
     }
@@ -306,6 +315,7 @@ impl Plan {
             fine,
             width,
             effective_reach,
+            frame: UnitQuaternion::identity(),
             receptor_center: extents.receptor_center,
             receptor_extent: extents.receptor_extent,
             ligand_center: extents.ligand_center,
@@ -322,18 +332,9 @@ impl Plan {
     /// [`PlanError`] on a spacing that gives no grid.
     pub fn with_spacing(&self, spacing: f64) -> Result<Self, PlanError> {
         checked_spacing(Some(spacing))?;
-        let band = match &self.pair {
-            PairKernel::Lifted => None,
-            PairKernel::Product(product) => Some(product.band()),
-        };
-        let extents = Extents {
-            receptor_center: self.receptor_center,
-            receptor_extent: self.receptor_extent,
-            ligand_center: self.ligand_center,
-            ligand_radius: self.ligand_radius,
-        };
-        let ratio = oversampling(self.options.tolerance, band);
-        let (modes, fine) = modes_at(spacing, &extents, self.effective_reach, self.width, ratio)?;
+        let ratio = self.oversampling();
+        let reach = self.effective_reach;
+        let (modes, fine) = modes_at(spacing, &self.extents(), reach, self.width, ratio)?;
         Ok(Self {
             options: EngineOptions {
                 spacing: Some(spacing),
@@ -342,6 +343,47 @@ impl Plan {
             modes,
             spacing,
             fine,
+            ..self.clone()
+        })
+    }
+
+    fn oversampling(&self) -> f64 {
+        let band = match &self.pair {
+            PairKernel::Lifted => None,
+            PairKernel::Product(product) => Some(product.band()),
+        };
+        oversampling(self.options.tolerance, band)
+    }
+
+    fn extents(&self) -> Extents {
+        Extents {
+            receptor_center: self.receptor_center,
+            receptor_extent: self.receptor_extent,
+            ligand_center: self.ligand_center,
+            ligand_radius: self.ligand_radius,
+        }
+    }
+
+    /// The same correlation on a grid whose axes are turned to where the receptor, that of the plan, needs the fewest
+    /// points. Poses stay in the frames of the files.
+    ///
+    /// # Errors
+    /// [`PlanError`] where a grid is too large.
+    pub fn fitted(&self, receptor: &Knots) -> Result<Self, PlanError> {
+        let (reach, width, spacing) = (self.effective_reach, self.width, self.spacing);
+        let size = |extents: &Extents| extents.grid(reach, width, spacing).ok();
+        let Some(frame) = best_frame(receptor, &self.extents(), size) else {
+            return Ok(self.clone());
+        };
+        let extents = self.extents().turned(&receptor.centers, frame);
+        let ratio = self.oversampling();
+        let (modes, fine) = modes_at(spacing, &extents, reach, width, ratio)?;
+        Ok(Self {
+            frame,
+            modes,
+            fine,
+            receptor_center: extents.receptor_center,
+            receptor_extent: extents.receptor_extent,
             ..self.clone()
         })
     }
