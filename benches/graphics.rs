@@ -70,8 +70,9 @@ fn main() -> Result<(), Box<dyn Error>> {
                 engine.transform_ligand(&turn.rotation, &mut work);
                 for half_turn in GridTurn::HALF_TURNS {
                     engine.correlate_turned(half_turn, &mut work);
-                    let (grid, rows) = (&mut work.grid, &mut work.row_best);
-                    find_peaks(plan.size(), grid, rows, 0, PEAKS.0, &mut found);
+                    let values = (&mut work.grid[..], &mut work.row_best[..]);
+                    let wanted = (PEAKS.0, f64::NEG_INFINITY);
+                    find_peaks(plan.size(), values, 0, wanted, &mut found);
                 }
                 found.clear();
             }

@@ -216,7 +216,13 @@ impl<T: Real> Correlation<'_, T> {
         let mut found: Vec<Peak> = Vec::with_capacity(count);
         let size = self.size();
         let Workspace { grid, row_best, .. } = &mut *self.workspace;
-        find_peaks(size, grid, row_best, 0, count, &mut found);
+        find_peaks(
+            size,
+            (grid, row_best),
+            0,
+            (count, f64::NEG_INFINITY),
+            &mut found,
+        );
         let pose = |peak: &Peak| self.grid_pose(peak.voxel as usize, peak.score);
         found.iter().map(pose).collect()
     }

@@ -1,6 +1,7 @@
 //! Peak picking: the best voxels of one rotation's correlation, at a distance from one another.
 
 use crate::transform::Real;
+use crate::vectorized::vectorized;
 
 /// A grid pose: rotation and voxel, with the fast path's score.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,17 +28,30 @@ impl Peak {
 /// Voxels next to a peak, on each axis and side, that hold no further peak.
 pub const NEIGHBOURS: usize = 2;
 
-/// Appends the `count` best voxels of a periodic grid to `found`, best first.
+/// Appends the `count` best voxels of a periodic grid to `found`, best first, of those that score `floor` or more.
 ///
 /// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis. Ties go to the lower voxel. Fewer are
 /// found where the neighbourhoods of those found leave nothing. `grid` is (nx, ny, nz) row-major, `row_best` holds the
 /// largest value of each row (x, y); both are overwritten with minus infinity around peaks. Values must not be NaN.
 pub fn find_peaks<T: Real>(
     size: [usize; 3],
-    grid: &mut [T],
-    row_best: &mut [T],
+    (grid, row_best): (&mut [T], &mut [T]),
     rotation: u32,
-    count: usize,
+    (count, floor): (usize, f64),
+    found: &mut Vec<Peak>,
+) {
+    vectorized(
+        #[inline(always)]
+        || find(size, (grid, row_best), rotation, (count, floor), found),
+    );
+}
+
+#[inline(always)]
+fn find<T: Real>(
+    size: [usize; 3],
+    (grid, row_best): (&mut [T], &mut [T]),
+    rotation: u32,
+    (count, floor): (usize, f64),
     found: &mut Vec<Peak>,
 ) {
     let [nx, ny, nz] = size;
@@ -46,6 +60,9 @@ pub fn find_peaks<T: Real>(
         let Some((row, score)) = best(row_best) else {
             return;
         };
+        if score.wide() < floor {
+            return;
+        }
         let Some((z, _)) = best(&grid[row * nz..(row + 1) * nz]) else {
             return;
         };
@@ -64,23 +81,33 @@ pub fn find_peaks<T: Real>(
                 for dz in -side(nz)..=side(nz) {
                     values[wrap(z, dz, nz)] = T::neg_infinity();
                 }
-                row_best[row] = values.iter().fold(T::neg_infinity(), |a, &b| a.max(b));
+                row_best[row] = largest(values);
             }
         }
     }
 }
 
-/// First of the largest finite values, with its index.
-fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
-    let mut largest = T::neg_infinity();
-    for chunk in values.chunks(64) {
-        let top = chunk
-            .iter()
-            .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a });
-        if top > largest {
-            largest = top;
+/// Largest of some values, in lanes so that it vectorises.
+#[inline(always)]
+pub(crate) fn largest<T: Real>(values: &[T]) -> T {
+    let larger = |a: T, b: T| if b > a { b } else { a };
+    let (chunks, rest) = values.as_chunks::<16>();
+    let mut lanes = [T::neg_infinity(); 16];
+    for chunk in chunks {
+        for lane in 0..16 {
+            lanes[lane] = larger(lanes[lane], chunk[lane]);
         }
     }
+    lanes
+        .iter()
+        .chain(rest)
+        .fold(T::neg_infinity(), |a, &b| larger(a, b))
+}
+
+/// First of the largest finite values, with its index.
+#[inline(always)]
+fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
+    let largest = largest(values);
     if largest == T::neg_infinity() {
         return None;
     }
@@ -109,7 +136,8 @@ mod tests {
             .map(|r| r.iter().copied().fold(f32::MIN, f32::max))
             .collect();
         let mut found = Vec::new();
-        find_peaks(size, &mut grid, &mut rows, 5, 3, &mut found);
+        let values = (&mut grid[..], &mut rows[..]);
+        find_peaks(size, values, 5, (3, 7.0), &mut found);
         let voxels: Vec<u32> = found.iter().map(|p| p.voxel).collect();
         assert_eq!(
             voxels,
@@ -125,7 +153,7 @@ mod tests {
         for size in [[5, 6, 7], [4, 9, 3], [1, 2, 8], [12, 5, 10]] {
             let [nx, ny, nz] = size;
             // Few distinct values, so that ties are common.
-            let mut grid: Vec<f64> = (0..nx * ny * nz)
+            let grid: Vec<f64> = (0..nx * ny * nz)
                 .map(|_| (40.0 * numbers.next()).floor() - 20.0)
                 .collect();
             let mut expected: Vec<(usize, f64)> = Vec::new();
@@ -146,15 +174,16 @@ mod tests {
                 };
                 expected.push((best, grid[best]));
             }
-            let mut rows: Vec<f64> = grid
-                .chunks(nz)
-                .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-                .collect();
-            let mut found = Vec::new();
-            find_peaks(size, &mut grid, &mut rows, 0, 30, &mut found);
-            let found: Vec<(usize, f64)> =
-                found.iter().map(|p| (p.voxel as usize, p.score)).collect();
-            assert_eq!(found, expected, "{size:?}");
+            let rows: Vec<f64> = grid.chunks(nz).map(largest).collect();
+            for floor in [f64::NEG_INFINITY, 17.0, 100.0] {
+                let (mut grid, mut rows) = (grid.clone(), rows.clone());
+                let mut found = Vec::new();
+                let values = (&mut grid[..], &mut rows[..]);
+                find_peaks(size, values, 0, (30, floor), &mut found);
+                let found = found.iter().map(|p| (p.voxel as usize, p.score));
+                let expected = expected.iter().filter(|(_, score)| *score >= floor);
+                assert!(found.eq(expected.copied()), "{size:?}");
+            }
         }
     }
 
@@ -163,7 +192,8 @@ mod tests {
         let mut grid = vec![1.0f32, 2.0];
         let mut rows = vec![2.0f32];
         let mut found = Vec::new();
-        find_peaks([1, 1, 2], &mut grid, &mut rows, 0, 5, &mut found);
+        let values = (&mut grid[..], &mut rows[..]);
+        find_peaks([1, 1, 2], values, 0, (5, f64::NEG_INFINITY), &mut found);
         assert_eq!(found.len(), 2);
     }
 }

@@ -116,6 +116,8 @@ fn scan_on_cores<T: Real>(
         .map(|_| {
             let mut work = engine.workspace_of(plan.rotations.images);
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
+            // What scores less is not kept whatever else is found.
+            let mut floor = f64::NEG_INFINITY;
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
                 engine.transform_ligand(&rotation, &mut work);
@@ -128,15 +130,15 @@ fn scan_on_cores<T: Real>(
                     }
                     find_peaks(
                         plan.engine.size(),
-                        &mut work.grid,
-                        &mut work.row_best,
+                        (&mut work.grid, &mut work.row_best),
                         (group.first + wanted[place]) as u32,
-                        plan.per_rotation,
+                        (plan.per_rotation, floor),
                         &mut found,
                     );
                     if found.len() >= 2 * most {
                         found.sort_unstable_by(Peak::order);
                         found.truncate(most);
+                        floor = found.last().map_or(floor, |peak| peak.score);
                     }
                     progress.advance(1);
                 });

@@ -7,6 +7,7 @@ use super::{CpuEngine, PLANES, Workspace};
 use crate::engine::columns::Reading;
 use crate::engine::packed::Packet;
 use crate::grid_turn::GridTurn;
+use crate::peaks::largest;
 use crate::transform::Real;
 use crate::transform::transpose::transpose;
 use num_complex::Complex;
@@ -169,25 +170,4 @@ fn separate<T: Real>(pair: &[Complex<T>], even: &mut [T], odd: &mut [T]) {
     for ((value, even), odd) in pairs_left.iter().zip(evens_left).zip(odds_left) {
         (*even, *odd) = (value.re, value.im);
     }
-}
-
-/// Largest of some values, in lanes so that it vectorises.
-#[inline(always)]
-fn largest<T: Real>(values: &[T]) -> T {
-    let mut lanes = [T::neg_infinity(); 16];
-    let chunks = values.chunks_exact(16);
-    let rest = chunks.remainder();
-    for chunk in chunks {
-        for lane in 0..16 {
-            lanes[lane] = if chunk[lane] > lanes[lane] {
-                chunk[lane]
-            } else {
-                lanes[lane]
-            };
-        }
-    }
-    lanes
-        .iter()
-        .chain(rest)
-        .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
 }
