@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Fours of rotations.
-const TURNS: usize = 900;
+const TURNS: usize = 450;
 /// Rotations of a fine search.
 const FINE_ROTATIONS: usize = 54_000;
 /// Peaks of a rotation, and their least distance, as in a search.
@@ -36,14 +36,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let [receptor, ligand] = example::knots()?;
     let options = knotdock::options::DockOptions::default().kernel.engine();
-    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
+    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
+    let images = GridTurn::of(plan.modes()).len();
     let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
-    let turns: Vec<Turn> = rotation_set(4 * TURNS)
+    let turns: Vec<Turn> = rotation_set(images * TURNS)
         .into_iter()
-        .step_by(4)
+        .step_by(images)
         .map(|rotation| Turn {
             rotation,
-            wanted: [true; 4],
+            wanted: std::array::from_fn(|image| image < images),
         })
         .collect();
     let bandwidth = gpu.copy_bandwidth()?;
@@ -63,29 +64,28 @@ fn main() -> Result<(), Box<dyn Error>> {
             Ok(())
         };
         let on_card = least_seconds(2, || search(1))?;
-        let mut work = engine.workspace();
+        let mut work = engine.workspace_of(images);
         let on_core = least_seconds(2, || {
             let mut found = Vec::new();
             for turn in &turns[..TURNS / 9] {
                 engine.transform_ligand(&turn.rotation, &mut work);
-                for half_turn in GridTurn::HALF_TURNS {
-                    engine.correlate_turned(half_turn, &mut work);
+                engine.correlate_each(engine.turns(), &mut work, |_, work| {
                     let values = (&mut work.grid[..], &mut work.row_best[..]);
                     let wanted = (PEAKS.0, f64::NEG_INFINITY);
                     find_peaks(plan.size(), values, 0, wanted, &mut found);
-                }
+                });
                 found.clear();
             }
             Ok::<(), Box<dyn Error>>(())
         })?;
-        let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (4 * turns) as f64;
+        let of_rotation = |seconds: f64, turns: usize| 1e3 * seconds / (images * turns) as f64;
         let (card_ms, core_ms) = (of_rotation(on_card, TURNS), of_rotation(on_core, TURNS / 9));
         println!(
             "rank {}, {} rotations in flight: {} rotations in {on_card:.3} s, {card_ms:.4} ms each; \
              one thread of the CPU {core_ms:.4} ms; ratio {:.2}",
             engine.rank(),
             card.in_flight(),
-            4 * TURNS,
+            images * TURNS,
             core_ms / card_ms
         );
         let traffic = card.least_traffic() as f64;
@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             1e5 * traffic / card_ms / bandwidth
         );
         if !gpu.is_software() {
-            let fine = least_seconds(1, || search(FINE_ROTATIONS / (4 * TURNS)))?;
+            let fine = least_seconds(1, || search(FINE_ROTATIONS / (images * TURNS)))?;
             println!("  {FINE_ROTATIONS} rotations in {fine:.3} s");
         }
         for (name, seconds) in card.stage_seconds(&turns[0].rotation)? {

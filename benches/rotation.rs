@@ -32,20 +32,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err("name a receptor and a ligand, or neither".into()),
     };
     let options = knotdock::options::DockOptions::default().kernel.engine();
-    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?);
+    let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
     let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
     for rank in RANKS {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
-        let mut work = engine.workspace();
+        let mut work = engine.workspace_of(engine.turns().len());
+        let images = engine.turns().len() as f64;
         let mut stages: [Vec<f64>; 6] = Default::default();
         for rotation in knotdock_scoring::so3::rotation_set(ROTATIONS) {
             let seconds = engine.stage_seconds(&rotation, &mut work);
             for (times, value) in stages.iter_mut().zip(seconds) {
                 times.push(value);
             }
-            // Spreading and the forward transform serve four rotations.
+            // Spreading and the forward transform serve all images.
             let [spread, planes, columns, product, rows] = seconds;
-            stages[5].push((spread + planes + columns) / 4.0 + product + rows);
+            stages[5].push((spread + planes + columns) / images + product + rows);
         }
         let [spread, planes, columns, product, rows, whole] = stages.map(median);
         let forward = stock(plan.fine());
@@ -58,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             plan.modes().count
         );
         println!(
-            "  ms for four rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: \
+            "  ms for {images} rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: \
              product with inverse x and y {:.3}, \
              inverse z {:.3}; a rotation in all {:.3}",
             1e3 * spread,
@@ -74,7 +75,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             1e3 * inverse,
             1e3 * bare,
             whole / bare,
-            (whole - spread / 4.0) / bare
+            (whole - spread / images) / bare
         );
     }
     Ok(())

@@ -3,6 +3,7 @@
 //! Half-turns about the axes map every box onto itself. A quarter turn about x does so where the box is as long in y as
 //! in z. Together they are the eight turns of the dihedral group D4.
 
+use crate::transform::modes::ModeSet;
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -48,6 +49,15 @@ impl GridTurn {
         Self::Y.after_quarter(),
         Self::Z.after_quarter(),
     ];
+
+    /// The turns that map a plan's modes onto themselves: the half-turns, or all.
+    pub fn of(modes: &ModeSet) -> &'static [Self] {
+        if modes.has_quarter_turns() {
+            &Self::ALL
+        } else {
+            &Self::HALF_TURNS
+        }
+    }
 
     const fn half(half: Half) -> Self {
         Self {

@@ -25,7 +25,7 @@ fn rotations(count: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
         .collect()
 }
 
-/// Largest difference of the card's grid from the CPU's in f64 over all voxels and half-turns, as a share of the
+/// Largest difference of the card's grid from the CPU's in f64 over all voxels and turns, as a share of the
 /// largest score there.
 fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
     difference_of(gpu, &Pair::<f64>::new(a, b, options))
@@ -37,9 +37,9 @@ fn difference_of(gpu: &GpuDevice, pair: &Pair<f64>) -> f64 {
     let rotation = some_rotation();
     pair.engine.transform_ligand(&rotation, &mut work);
     let (mut worst, mut best) = (0.0f64, 0.0f64);
-    for half_turn in GridTurn::HALF_TURNS {
-        pair.engine.correlate_turned(half_turn, &mut work);
-        let grid = engine.correlate(&rotation, half_turn).unwrap();
+    for &turn in pair.engine.turns() {
+        pair.engine.correlate_turned(turn, &mut work);
+        let grid = engine.correlate(&rotation, turn).unwrap();
         assert_eq!(grid.len(), work.grid.len());
         for (ours, theirs) in grid.iter().zip(&work.grid) {
             worst = worst.max((f64::from(*ours) - theirs).abs());
@@ -47,6 +47,11 @@ fn difference_of(gpu: &GpuDevice, pair: &Pair<f64>) -> f64 {
         }
     }
     worst / best
+}
+
+/// The half-turns that are wanted, and no quarter turn.
+fn of_half_turns(wanted: [bool; 4]) -> [bool; 8] {
+    std::array::from_fn(|image| image < 4 && wanted[image])
 }
 
 /// The greedy choice among all voxels in order of score, none a neighbour of one before it.
@@ -180,7 +185,7 @@ fn peaks_are_those_of_a_sorted_grid() {
     for (count, reach) in [(1, 2), (5, 2), (40, 1), (3, 0)] {
         let engine = GpuEngine::new(&gpu, &pair.engine, count, reach, MEMORY).unwrap();
         for rotation in rotations(3, 9) {
-            let wanted = [true, false, true, true];
+            let wanted = of_half_turns([true, false, true, true]);
             let peaks = engine.best(&[Turn { rotation, wanted }], |_| {}).unwrap();
             let mut expected = Vec::new();
             for half_turn in (0..4).filter(|&half_turn| wanted[half_turn]) {
@@ -190,7 +195,7 @@ fn peaks_are_those_of_a_sorted_grid() {
                 for (voxel, score) in greedy(&grid, size, count, reach) {
                     expected.push(GridPeak {
                         turn: 0,
-                        half_turn,
+                        image: half_turn,
                         voxel,
                         score,
                     });
@@ -214,7 +219,7 @@ fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
         .into_iter()
         .map(|rotation| Turn {
             rotation,
-            wanted: [true, false, false, false],
+            wanted: of_half_turns([true, false, false, false]),
         })
         .collect();
     for turn in turns {
@@ -239,13 +244,11 @@ fn a_grid_gives_no_more_peaks_than_it_has() {
     let engine = GpuEngine::new(&gpu, &pair.engine, 50, longest, MEMORY).unwrap();
     let turn = Turn {
         rotation: some_rotation(),
-        wanted: [true; 4],
+        wanted: of_half_turns([true; 4]),
     };
     let peaks = engine.best(&[turn], |_| {}).unwrap();
-    let distinct: std::collections::HashSet<_> = peaks
-        .iter()
-        .map(|peak| (peak.half_turn, peak.voxel))
-        .collect();
+    let distinct: std::collections::HashSet<_> =
+        peaks.iter().map(|peak| (peak.image, peak.voxel)).collect();
     assert_eq!(distinct.len(), peaks.len());
     assert!(peaks.len() < 4 * 50 && peaks.len() >= 4, "{}", peaks.len());
 }
@@ -262,7 +265,7 @@ fn batches_change_no_bit() {
         .enumerate()
         .map(|(index, rotation)| Turn {
             rotation,
-            wanted: std::array::from_fn(|image| (index >> image) % 3 != 1),
+            wanted: of_half_turns(std::array::from_fn(|image| (index >> image) % 3 != 1)),
         })
         .collect();
     let images: usize = turns

@@ -12,7 +12,6 @@ mod ring;
 pub mod rotations;
 mod voxel_filter;
 
-use crate::options::EngineChoice;
 use axes::{axes_radius, axis_set};
 use equivalents::Equivalents;
 use knotdock_scoring::engine::{CpuEngine, Plan, PlanError};
@@ -64,16 +63,12 @@ impl PoseSpace {
         }
     }
 
-    /// Rotations that share a transform of the ligand in a search by `device`: turns of the grid, where it has them.
-    pub fn images(&self, plan: &Plan, device: EngineChoice) -> usize {
+    /// Rotations that share a transform of the ligand: they differ by turns of the grid.
+    pub fn images(&self, plan: &Plan) -> usize {
         match self {
             // A ring's rotation that is turned forms no ring.
             Self::Cyclic(_) | Self::Dihedral(..) => 1,
-            // The graphics processor knows half-turns alone.
-            Self::Free if device == EngineChoice::Cpu && plan.modes().has_quarter_turns() => {
-                GridTurn::ALL.len()
-            }
-            Self::Free => GridTurn::HALF_TURNS.len(),
+            Self::Free => GridTurn::of(plan.modes()).len(),
         }
     }
 
@@ -90,13 +85,8 @@ impl PoseSpace {
     }
 
     /// `count` rotations, of rings one an axis, and `fine` of a finer set, for a plan's grid.
-    pub fn rotations(
-        &self,
-        plan: &Plan,
-        device: EngineChoice,
-        (count, fine): (usize, Option<usize>),
-    ) -> RotationSample {
-        let images = self.images(plan, device);
+    pub fn rotations(&self, plan: &Plan, (count, fine): (usize, Option<usize>)) -> RotationSample {
+        let images = self.images(plan);
         let of_axes = |symmetry: Symmetry, axes: Vec<Unit<Vector3<f64>>>, name, covering_radius| {
             RotationSample {
                 coarse: axes.iter().map(|axis| symmetry.rotation(axis)).collect(),

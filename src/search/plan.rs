@@ -42,7 +42,6 @@ impl SearchPlan {
         Self {
             rotations: space.rotations(
                 &engine,
-                options.search.engine,
                 (options.search.rotations, options.search.fine_rotations),
             ),
             engine,

@@ -63,19 +63,18 @@ fn scan_on_card(
 ) -> Result<Scanned, SearchError> {
     // Peaks that come back together.
     const TOGETHER: usize = 1 << 20;
-    let part = (TOGETHER / (4 * plan.per_rotation)).max(1);
+    let part = (TOGETHER / (plan.rotations.images * plan.per_rotation)).max(1);
     let mut peaks: Vec<Peak> = Vec::new();
     for groups in groups.chunks(part) {
         let turn = |group: &RotationGroup| Turn {
             rotation: plan.rotations.rotation(group.first).0,
-            // Its groups are of half-turns.
-            wanted: std::array::from_fn(|image| group.wanted[image]),
+            wanted: group.wanted,
         };
         let turns: Vec<Turn> = groups.iter().map(turn).collect();
         let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
         peaks.extend(found.into_iter().map(|peak| Peak {
             score: f64::from(peak.score),
-            rotation: (groups[peak.turn].first + peak.half_turn) as u32,
+            rotation: (groups[peak.turn].first + peak.image) as u32,
             voxel: peak.voxel,
         }));
         peaks.sort_unstable_by(Peak::order);

@@ -48,6 +48,12 @@ impl Reading {
         modes.columns.iter().map(read).collect()
     }
 
+    /// 1 from kx = kx_max down, 2 conjugated.
+    #[cfg(feature = "gpu")]
+    pub fn flags(self) -> u32 {
+        u32::from(self.reversed) + 2 * u32::from(self.conjugate)
+    }
+
     /// Writes sum_q a_q conj(b_q), with b so read, as a column in transform order. `a` and `b` hold a column, modes
     /// from kx = 0 up, then from 0 down; `sums` has room for one.
     #[inline(always)]
@@ -131,11 +137,6 @@ fn copy_few<C: Copy>(to: &mut [C], from: &[C]) {
     }
 }
 
-/// How the half-turns read columns, for the graphics processor: 1 from the column with -ky, 2 from kx = kx_max down, 4
-/// conjugated; in the order of [`GridTurn::HALF_TURNS`].
-#[cfg(feature = "gpu")]
-pub(super) const HALF_TURN_BITS: [u32; 4] = [0, 2 + 4, 1 + 4, 1 + 2];
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,33 +159,6 @@ mod tests {
                     let sign = if reading.conjugate { -1 } else { 1 };
                     assert_eq!(source.map(|k| sign * k), read, "{turn:?}, {column:?}");
                 }
-            }
-        }
-    }
-
-    #[cfg(feature = "gpu")]
-    #[test]
-    fn half_turns_read_all_columns_alike() {
-        let modes = modes([16, 20, 18]);
-        let mirrors = modes.mirrors();
-        for (turn, bits) in GridTurn::HALF_TURNS.into_iter().zip(HALF_TURN_BITS) {
-            let readings = Reading::after(turn, &modes);
-            for (index, (column, reading)) in modes.columns.iter().zip(&readings).enumerate() {
-                // At kz = 0 the mode and its conjugate are both there.
-                if column.kz == 0 {
-                    continue;
-                }
-                let twin = if bits & 1 == 1 {
-                    mirrors[index]
-                } else {
-                    index as u32
-                };
-                let expected = Reading {
-                    column: twin,
-                    reversed: bits & 2 != 0,
-                    conjugate: bits & 4 != 0,
-                };
-                assert_eq!(*reading, expected);
             }
         }
     }

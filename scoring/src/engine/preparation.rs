@@ -80,12 +80,9 @@ impl<T: Real> CpuEngine<T> {
             .collect();
         let scale = forward.cells_per_length();
         let center = forward.center();
-        let turns = if modes.has_quarter_turns() && plan.fine()[1] == plan.fine()[2] {
-            &GridTurn::ALL[..]
-        } else {
-            &GridTurn::HALF_TURNS
-        };
-        let readings = turns.iter().map(|&turn| Reading::after(turn, &modes));
+        let readings = GridTurn::of(&modes)
+            .iter()
+            .map(|&turn| Reading::after(turn, &modes));
         let largest = singular
             .first()
             .copied()

@@ -147,7 +147,7 @@ impl Sizes {
             atoms,
             is_of_molecules: scene.unit == LengthUnit::Angstrom,
             rotations: [rotations, finer],
-            images: space.images(engine, search.engine) as u64,
+            images: space.images(engine) as u64,
             searched_finer: (search.fine_share * finer as f64).ceil() as u64,
             per_rotation,
             poses: (search.poses as u64).min((rotations + finer) * per_rotation),

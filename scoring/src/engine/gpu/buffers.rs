@@ -1,6 +1,7 @@
 //! The sizes of a batch and the buffers that it works in.
 
 use super::device::{GpuDevice, GpuError};
+use crate::engine::columns::Reading;
 use crate::engine::cpu::CpuEngine;
 use crate::transform::Real;
 use crate::transform::modes::place;
@@ -22,6 +23,8 @@ pub(super) struct Sizes {
     pub depth: usize,
     pub columns: usize,
     pub modes: usize,
+    /// Images of a turn at the most.
+    pub images: usize,
     /// Modes of the longest column.
     pub longest: usize,
     /// Peaks of an image, and how far each rules out others on each axis, voxels.
@@ -29,7 +32,7 @@ pub(super) struct Sizes {
     pub reach: [usize; 3],
 }
 
-/// Turns and images of a batch: each turn has up to four images.
+/// Turns and images of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Batch {
     pub turns: usize,
@@ -56,6 +59,7 @@ impl Sizes {
             depth: modes.planes.len(),
             columns: modes.columns.len(),
             modes: modes.count,
+            images: engine.turns().len(),
             longest: modes
                 .columns
                 .iter()
@@ -94,13 +98,13 @@ impl Sizes {
         (of_turn, of_image)
     }
 
-    /// Bytes that an image reads and writes at the least, its share of a turn's four images included: every buffer
+    /// Bytes that an image reads and writes at the least, its share of a turn's images included: every buffer
     /// written once and read once, and the receptor's spectra read.
     pub fn least_traffic(&self) -> u64 {
         let (of_turn, of_image) = self.bytes();
         let [turn, image] =
             [of_turn.as_slice(), &of_image].map(|bytes| bytes.iter().sum::<usize>());
-        (2 * (turn / 4 + image) + 8 * self.fields * self.modes) as u64
+        (2 * (turn / self.images + image) + 8 * self.fields * self.modes) as u64
     }
 
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.
@@ -119,10 +123,10 @@ impl Sizes {
         };
         let of = |turns: usize| Batch {
             turns,
-            images: 4 * turns,
+            images: self.images * turns,
         };
         let chosen = (1..=MAX_TURNS).rev().map(of).find(|&batch| fits(batch));
-        // A grid so large that the four images of one turn do not fit goes image by image.
+        // A grid so large that the images of one turn do not fit goes image by image.
         let least = Batch {
             turns: 1,
             images: 1,
@@ -147,7 +151,6 @@ struct Column {
     y: u32,
     side: u32,
     start: u32,
-    mirror: u32,
 }
 
 /// Everything on the card.
@@ -155,6 +158,7 @@ pub(super) struct Buffers {
     pub columns: wgpu::Buffer,
     pub planes: wgpu::Buffer,
     pub spectra: wgpu::Buffer,
+    pub readings: wgpu::Buffer,
     pub knots: wgpu::Buffer,
     pub weights: wgpu::Buffer,
     pub window: wgpu::Buffer,
@@ -235,6 +239,7 @@ impl Buffers {
             columns: filled("columns", bytemuck::cast_slice(&columns(engine, sizes))),
             planes: filled("planes", bytemuck::cast_slice(&planes)),
             spectra: filled("spectra", bytemuck::cast_slice(&spectra(engine, &units))),
+            readings: filled("readings", bytemuck::cast_slice(&readings(engine))),
             knots: filled("knots", bytemuck::cast_slice(&knots)),
             weights: filled("weights", bytemuck::cast_slice(&weights)),
             window: filled("window", bytemuck::cast_slice(&window)),
@@ -261,15 +266,25 @@ fn columns<T: Real>(engine: &CpuEngine<T>, sizes: &Sizes) -> Vec<Column> {
     modes
         .columns
         .iter()
-        .zip(modes.mirrors())
-        .map(|(column, mirror)| Column {
+        .map(|column| Column {
             fine_y: place(column.ky, sizes.fine[1]) as u32,
             y: place(column.ky, sizes.grid[1]) as u32,
             side: column.kx_max as u32,
             start: column.start as u32,
-            mirror: modes.columns[mirror as usize].start as u32,
         })
         .collect()
+}
+
+/// Where each image reads its columns: the first mode, and how ([`Reading::flags`]), `[image][column]`.
+fn readings<T: Real>(engine: &CpuEngine<T>) -> Vec<[u32; 2]> {
+    let columns = &engine.plan().modes().columns;
+    let of = |reading: &Reading| {
+        [
+            columns[reading.column as usize].start as u32,
+            reading.flags(),
+        ]
+    };
+    engine.readings.iter().flatten().map(of).collect()
 }
 
 /// The receptor's spectra in the units of the fields: `[column][field][mode of the column]`.

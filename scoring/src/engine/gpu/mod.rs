@@ -14,7 +14,6 @@ mod stages;
 
 pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 
-use super::columns::HALF_TURN_BITS;
 use super::cpu::CpuEngine;
 use crate::grid_turn::GridTurn;
 use crate::transform::Real;
@@ -38,13 +37,13 @@ pub struct GpuEngine {
     frame: UnitQuaternion<f64>,
 }
 
-/// One rotation of the ligand, and which of its four half-turns are wanted.
+/// One rotation of the ligand, and which of its images are wanted: turns of the grid that follow it.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
     /// The rotation.
     pub rotation: UnitQuaternion<f64>,
-    /// In the order of [`GridTurn::HALF_TURNS`].
-    pub wanted: [bool; 4],
+    /// In the order of [`GridTurn::ALL`]; of [`CpuEngine::turns`] alone.
+    pub wanted: [bool; GridTurn::ALL.len()],
 }
 
 /// One of the best voxels of one image.
@@ -52,19 +51,19 @@ pub struct Turn {
 pub struct GridPeak {
     /// Index of the turn among those given.
     pub turn: usize,
-    /// Index in [`GridTurn::HALF_TURNS`].
-    pub half_turn: usize,
+    /// Index of the image's turn in [`GridTurn::ALL`].
+    pub image: usize,
     /// Voxel, row-major.
     pub voxel: u32,
     /// G there.
     pub score: f32,
 }
 
-/// An image of a batch: which turn of all, and which half-turn.
+/// An image of a batch: which turn of all, and which turn of the grid.
 #[derive(Clone, Copy)]
 struct Image {
     turn: usize,
-    half_turn: usize,
+    image: usize,
 }
 
 /// Batches that may be under way before the first is waited for.
@@ -128,11 +127,14 @@ impl GpuEngine {
             .iter()
             .enumerate()
             .flat_map(|(turn, wanted)| {
-                (0..4)
-                    .filter(|&half_turn| wanted.wanted[half_turn])
-                    .map(move |half_turn| Image { turn, half_turn })
+                let images = (0..wanted.wanted.len()).filter(|&image| wanted.wanted[image]);
+                images.map(move |image| Image { turn, image })
             })
             .collect();
+        assert!(
+            all.iter().all(|image| image.image < self.sizes.images),
+            "the grid has no such turn"
+        );
         if all.is_empty() {
             return Ok(Vec::new());
         }
@@ -166,7 +168,7 @@ impl GpuEngine {
             let found = records.iter().filter_map(|&[place, bits]| {
                 place.checked_sub(1).map(|voxel| GridPeak {
                     turn: image.turn,
-                    half_turn: image.half_turn,
+                    image: image.image,
                     voxel,
                     score: f32::from_bits(bits),
                 })
@@ -182,7 +184,7 @@ impl GpuEngine {
         Ok(peaks)
     }
 
-    /// G over all translations at one rotation followed by a half-turn, (nx, ny, nz) row-major: for checks, one at a
+    /// G over all translations at one rotation followed by a turn of the grid, (nx, ny, nz) row-major: for checks, one at a
     /// time.
     ///
     /// # Errors
@@ -190,19 +192,15 @@ impl GpuEngine {
     pub fn correlate(
         &self,
         rotation: &UnitQuaternion<f64>,
-        half_turn: GridTurn,
+        turn: GridTurn,
     ) -> Result<Vec<f32>, GpuError> {
-        let wanted = GridTurn::HALF_TURNS.map(|one| one == half_turn);
+        let image = turn.index();
+        let wanted = GridTurn::ALL.map(|one| one == turn);
         let turn = Turn {
             rotation: *rotation,
             wanted,
         };
-        let half_turn = wanted.iter().position(|&one| one).unwrap_or(0);
-        let mut encoder = self.encode(
-            &[turn],
-            &[Image { turn: 0, half_turn }],
-            self.stages.len() - 1,
-        );
+        let mut encoder = self.encode(&[turn], &[Image { turn: 0, image }], self.stages.len() - 1);
         let bytes = 4 * self.sizes.grid.iter().product::<usize>() as u64;
         let results = self.readable(bytes);
         encoder.copy_buffer_to_buffer(&self.buffers.grid, 0, &results, 0, bytes);
@@ -225,12 +223,12 @@ impl GpuEngine {
         const REPEATS: usize = 5;
         let turn = Turn {
             rotation: *rotation,
-            wanted: [true; 4],
+            wanted: [true; GridTurn::ALL.len()],
         };
         let images: Vec<Image> = (0..self.batch.images)
             .map(|index| Image {
-                turn: index / 4,
-                half_turn: index % 4,
+                turn: index / self.sizes.images,
+                image: index % self.sizes.images,
             })
             .collect();
         let turns = vec![turn; self.batch.turns];
@@ -290,11 +288,7 @@ impl GpuEngine {
                 let row = [0, 1, 2].map(|j| (matrix[(axis, j)] * self.scale[axis]) as f32);
                 rows.push([row[0], row[1], row[2], self.center[axis] as f32]);
             }
-            table.extend(
-                group
-                    .iter()
-                    .map(|image| [slot, HALF_TURN_BITS[image.half_turn]]),
-            );
+            table.extend(group.iter().map(|image| [slot, image.image as u32]));
         }
         let queue = &self.gpu.queue;
         queue.write_buffer(&self.buffers.turns, 0, bytemuck::cast_slice(&rows));

@@ -1,4 +1,4 @@
-// sum_q U_q conj(B_q), the ligand's transform read as a half-turn leaves it, and the inverse along x.
+// sum_q U_q conj(B_q), the ligand's transform read as a turn of the grid leaves it, and the inverse along x.
 
 @group(0) @binding(0) var<storage, read> twiddle: array<vec2<f32>>;
 @group(0) @binding(1) var<storage, read> columns: array<Column>;
@@ -6,10 +6,12 @@
 @group(0) @binding(2) var<storage, read> spectra: array<vec2<f32>>;
 // [turn][column][field][kx]
 @group(0) @binding(3) var<storage, read> turned: array<vec2<f32>>;
-// Per image its turn, and how the transform is read: 1 mirrored, 2 reversed, 4 conjugated.
+// Per image the turn of the batch, and which turn of the grid it is.
 @group(0) @binding(4) var<storage, read> images: array<vec2<u32>>;
 // [image][column][x]
 @group(0) @binding(5) var<storage, read_write> along: array<vec2<f32>>;
+// [turn of the grid][column]: the first mode of the column that is read, and how: 1 reversed, 2 conjugated.
+@group(0) @binding(6) var<storage, read> readings: array<vec2<u32>>;
 
 @compute @workgroup_size(WIDTH)
 fn main(
@@ -18,9 +20,6 @@ fn main(
 ) {
     let first = group.x * LINES;
     let image = images[group.y];
-    let mirrored = (image.y & 1u) != 0u;
-    let reversed = (image.y & 2u) != 0u;
-    let sign = select(-1.0, 1.0, (image.y & 4u) != 0u);
     for (var item = lane; item < LINES * NX; item += WIDTH) {
         ping[item] = vec2<f32>(0.0);
     }
@@ -37,7 +36,10 @@ fn main(
             continue;
         }
         let ours = FIELDS * column.start + mode;
-        let theirs = FIELDS * (image.x * MODES + select(column.start, column.mirror, mirrored))
+        let reading = readings[image.y * COLUMNS + first + line];
+        let reversed = (reading.y & 1u) != 0u;
+        let sign = select(-1.0, 1.0, (reading.y & 2u) != 0u);
+        let theirs = FIELDS * (image.x * MODES + reading.x)
             + select(mode, length - 1u - mode, reversed);
         var sum = vec2<f32>(0.0);
         for (var field = 0u; field < FIELDS; field += 1u) {

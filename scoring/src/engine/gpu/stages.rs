@@ -228,7 +228,14 @@ fn inverse_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
             name: "product",
             code: include_str!("product.wgsl"),
             transform: Some((3, nx, Direction::Inverse)),
-            buffers: vec![&b.columns, &b.spectra, &b.turned, &b.images, &b.along],
+            buffers: vec![
+                &b.columns,
+                &b.spectra,
+                &b.turned,
+                &b.images,
+                &b.along,
+                &b.readings,
+            ],
             groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines[3]), images, 1],
         },
         Recipe {
@@ -296,6 +303,6 @@ fn header(sizes: &Sizes) -> String {
         .map(|(name, value)| format!("const {name}: u32 = {value}u;\n"))
         .collect();
     header += &format!("const LOWEST: f32 = {:e};\n", f32::MIN);
-    header += "struct Column { fine_y: u32, y: u32, side: u32, start: u32, mirror: u32 }\n";
+    header += "struct Column { fine_y: u32, y: u32, side: u32, start: u32 }\n";
     header
 }
