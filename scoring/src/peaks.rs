@@ -189,8 +189,8 @@ mod tests {
 
     #[test]
     fn a_tiny_grid_gives_all_its_voxels() {
-        let mut grid = vec![1.0f32, 2.0];
-        let mut rows = vec![2.0f32];
+        let mut grid = [1.0f32, 2.0];
+        let mut rows = [2.0f32];
         let mut found = Vec::new();
         let values = (&mut grid[..], &mut rows[..]);
         find_peaks([1, 1, 2], values, 0, (5, f64::NEG_INFINITY), &mut found);

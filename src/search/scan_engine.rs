@@ -23,7 +23,7 @@ pub struct Adapter {
     pub backend: &'static str,
     /// Whether it is a program on the CPU that plays one.
     pub software: bool,
-    /// Rotations that were in flight at once, half-turns counted.
+    /// Rotations that were in flight at once, images counted.
     pub rotations_in_flight: usize,
 }
 

@@ -126,17 +126,17 @@ pub(super) fn products<T: Real, const CONJUGATED: bool>(
     for ((a, b), sum) in packets.zip(sums) {
         let (mut re, mut im) = ([T::zero(); LANES], [T::zero(); LANES]);
         for (a, b) in a.iter().zip(b) {
-            for lane in 0..LANES {
+            for (lane, re) in re.iter_mut().enumerate() {
                 let (same, cross) = (a.re[lane] * b.re[lane], a.im[lane] * b.im[lane]);
-                re[lane] += if CONJUGATED {
+                *re += if CONJUGATED {
                     same + cross
                 } else {
                     same - cross
                 };
             }
-            for lane in 0..LANES {
+            for (lane, im) in im.iter_mut().enumerate() {
                 let (back, forth) = (a.im[lane] * b.re[lane], a.re[lane] * b.im[lane]);
-                im[lane] += if CONJUGATED {
+                *im += if CONJUGATED {
                     back - forth
                 } else {
                     back + forth

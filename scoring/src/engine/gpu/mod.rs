@@ -3,7 +3,7 @@
 //!
 //! All runs through wgpu (Vulkan, Metal, Direct3D 12), in single precision. A batch of turned ligands goes through the
 //! stages of the engine on the CPU, one dispatch each. They are: spreading, the three pruned forward transforms, the
-//! product with the inverse along x (four half-turns from one transform), the inverses along y and z, and the peaks.
+//! product with the inverse along x (four or eight images from one transform), the inverses along y and z, and the peaks.
 //! Only the peaks come back. Knots are spread in whole numbers, whose sum does not depend on the order of the
 //! additions: one card gives the same bits each time.
 
@@ -100,7 +100,7 @@ impl GpuEngine {
         })
     }
 
-    /// Rotations that go through together, half-turns counted.
+    /// Rotations that go through together, images counted.
     pub fn in_flight(&self) -> usize {
         self.batch.images
     }
