@@ -15,6 +15,9 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+/// Images of a rotation at the most.
+const IMAGES: usize = GridTurn::ALL.len();
+
 /// Peaks that a scan found.
 pub(crate) struct Scanned {
     /// The best peaks, best first.
@@ -120,17 +123,19 @@ fn scan_on_cores<T: Real>(
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
                 engine.transform_ligand(&rotation, &mut work);
-                let wanted: Vec<usize> = group.images().collect();
-                let turns: Vec<GridTurn> =
-                    wanted.iter().map(|&image| GridTurn::ALL[image]).collect();
-                engine.correlate_each(&turns, &mut work, |place, work| {
+                let (mut turns, mut images) = ([GridTurn::NONE; IMAGES], [0; IMAGES]);
+                for ((turn, image), wanted) in turns.iter_mut().zip(&mut images).zip(group.images())
+                {
+                    (*turn, *image) = (GridTurn::ALL[wanted], wanted);
+                }
+                engine.correlate_each(&turns[..group.count()], &mut work, |place, work| {
                     if let Some(filter) = &filter {
                         filter.keep(&rotation, &mut work.grid, &mut work.row_best);
                     }
                     find_peaks(
                         plan.engine.size(),
                         (&mut work.grid, &mut work.row_best),
-                        (group.first + wanted[place]) as u32,
+                        (group.first + images[place]) as u32,
                         (plan.per_rotation, floor),
                         &mut found,
                     );
