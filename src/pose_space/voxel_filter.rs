@@ -59,7 +59,10 @@ impl VoxelFilter {
         Layer {
             normal,
             start: normal.dot(&from) - shift,
-            reach: 0.5 * self.spacing * (normal.x.abs() + normal.y.abs() + normal.z.abs()),
+            // A plane through the corner of a voxel runs through it, whatever rounding does.
+            reach: (0.5 + 1e-12)
+                * self.spacing
+                * (normal.x.abs() + normal.y.abs() + normal.z.abs()),
         }
     }
 
