@@ -3,7 +3,7 @@
 //! Errors of G are relative to the best exact score, errors of a slice to its largest value.
 
 use crate::scene;
-use crate::scene::{Pair, RADII, cloud, engine_options as options, moved};
+use crate::scene::{Pair, RADII, askew_cloud, cloud, engine_options as options};
 use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
@@ -192,13 +192,7 @@ fn half_turns_read_the_same_transform() {
 /// receptor's file: poses are of the files all the same.
 #[test]
 fn turns_of_a_fitted_grid_read_the_same_transform() {
-    // Flat and askew, so that another frame has fewer points.
-    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
-    let mut a = cloud(160, 12.0, &RADII, 1);
-    for x in &mut a.centers {
-        x[2] *= 0.3;
-    }
-    let (a, b) = (moved(&a, &askew), cloud(60, 8.0, &RADII, 2));
+    let (a, b) = (askew_cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for tolerance in [1e-2, 1e-4] {
         let pair = Pair::<f64>::fitted(&a, &b, options(tolerance));
         let (frame, engine) = (pair.plan.frame(), &pair.engine);

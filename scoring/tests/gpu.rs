@@ -4,7 +4,7 @@
 #[path = "scene/adapter.rs"]
 mod adapter;
 
-use crate::scene::{Numbers, Pair, RADII, cloud, engine_options, moved, some_rotation};
+use crate::scene::{Numbers, Pair, RADII, askew_cloud, cloud, engine_options, some_rotation};
 use adapter::adapter;
 use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
 use knotdock_scoring::engine::{EngineOptions, Plan};
@@ -96,16 +96,8 @@ fn the_grid_is_that_of_the_cpu_in_double_precision() {
 #[test]
 fn a_grid_turned_to_fit_the_receptor() {
     let Some(gpu) = adapter() else { return };
-    let mut a = cloud(150, 12.0, &RADII, 1);
-    for x in &mut a.centers {
-        x[2] *= 0.3;
-    }
-    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
-    let pair = Pair::<f64>::fitted(
-        &moved(&a, &askew),
-        &cloud(40, 6.0, &RADII, 2),
-        engine_options(1e-2),
-    );
+    let (a, b) = (askew_cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
+    let pair = Pair::<f64>::fitted(&a, &b, engine_options(1e-2));
     assert!(pair.plan.frame().angle() > 0.1);
     let share = difference_of(&gpu, &pair);
     assert!(share < 3e-5, "{share}");

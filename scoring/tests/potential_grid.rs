@@ -1,6 +1,6 @@
 //! The potential grid against the sum of the same modes, and its gradient against its own values.
 
-use crate::scene::{Numbers, RADII, cloud, engine_options, moved};
+use crate::scene::{Numbers, RADII, askew_cloud, cloud, engine_options};
 use knotdock_scoring::engine::{Plan, ReceptorSpectra};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -93,12 +93,7 @@ fn follows_the_sum_over_modes() {
 /// for the tolerance of the plan.
 #[test]
 fn a_fitted_grid_has_the_same_potentials() {
-    let askew = Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]);
-    let mut a = cloud(160, 12.0, &RADII, 1);
-    for x in &mut a.centers {
-        x[2] *= 0.3;
-    }
-    let (a, b) = (moved(&a, &askew), cloud(60, 8.0, &RADII, 2));
+    let (a, b) = (askew_cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     let tolerance = 1e-4;
     let pair = Pair::new(&a, &b, tolerance);
     let fitted = pair.plan.fitted(&a).unwrap();

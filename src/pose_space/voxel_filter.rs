@@ -33,6 +33,11 @@ impl VoxelFilter {
     /// The filter for the grids of an engine; `across` is the ring's own axis, of Dn.
     pub fn new<T: Real>(engine: &CpuEngine<T>, across: Option<RingAxis>) -> Self {
         let plan = engine.plan();
+        assert_eq!(
+            plan.frame(),
+            UnitQuaternion::identity(),
+            "voxels are found along the axes of the file"
+        );
         let [nx, ny, nz] = plan.size();
         let along = |axis: usize, count: usize, stride: usize| -> Vec<f64> {
             let place = |index| engine.position(index * stride)[axis];

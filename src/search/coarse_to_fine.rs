@@ -103,7 +103,8 @@ fn spaced(
     spacing: f64,
     position: impl Fn(&Peak) -> Vector3<f64>,
 ) -> Vec<Peak> {
-    // Half a voxel over, for the grid's axes may lie askew in the file.
+    // Half a voxel over: positions of different images lie between one another's voxels, and the grid's axes may lie
+    // askew in the file.
     let least = (NEIGHBOURS as f64 + 0.5) * spacing;
     let mut kept: Vec<(Vector3<f64>, Peak)> = Vec::with_capacity(count.min(peaks.len()));
     for peak in peaks {

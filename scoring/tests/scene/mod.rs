@@ -40,6 +40,18 @@ pub fn knots(centers: Vec<[f64; 3]>, radii: &[f64]) -> Knots {
     Knots::new(centers, radii).unwrap()
 }
 
+/// A flat cloud that lies askew: a grid that is turned to fit it has fewer points.
+pub fn askew_cloud(count: usize, size: f64, radii: &[f64], seed: u64) -> Knots {
+    let mut flat = cloud(count, size, radii, seed);
+    for x in &mut flat.centers {
+        x[2] *= 0.3;
+    }
+    moved(
+        &flat,
+        &Pose::from_parts([0.8, 0.3, -0.4, 0.2], [5.0, -3.0, 2.0]),
+    )
+}
+
 /// The knots carried by a rigid motion.
 pub fn moved(knots: &Knots, motion: &Pose) -> Knots {
     Knots {

@@ -77,8 +77,7 @@ impl<T: Real> Forward<T> {
             .fold(f64::INFINITY, f64::min);
         let kernel = SpreadingKernel::new(width, oversampling);
         let block = [0, 1, 2].map(|axis| {
-            // A cell more than the windows need, since the centre is not quite in the middle; even, so that planes pair up
-            // along x.
+            // Even, so that planes pair up along x.
             let points = 2 * extent[axis].ceil() as usize + kernel.width() + 2;
             points.next_multiple_of(2).min(fine[axis])
         });
@@ -95,15 +94,8 @@ impl<T: Real> Forward<T> {
     }
 
     /// Where the block's centre lies, in cells from the box's origin: knots are given relative to it.
-    ///
-    /// It is the place nearest to the middle that is a multiple of half the spacing of the modes' grid: a turn of the grid
-    /// takes it to such a place again, so that the images of all turns have their values at the same points.
     pub fn center(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| {
-            let half = 0.5 * self.fine[axis] as f64 / self.modes.size[axis] as f64;
-            let middle = 0.5 * (self.block[axis] as f64 - 1.0);
-            (middle / half).round() * half
-        })
+        [0, 1, 2].map(|axis| 0.5 * (self.block[axis] as f64 - 1.0))
     }
 
     /// Fine cells per Å on each axis.
