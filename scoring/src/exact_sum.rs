@@ -1,7 +1,7 @@
 //! The exact sum of a plan's kernel over all pairs, whichever of the two kernels that is.
 
 use crate::engine::{PairKernel, Plan};
-use crate::exact::{ExactScore, ExactScorer, PoseGradient};
+use crate::exact::{ExactScore, ExactScorer, PoseGradient, ScoreTerms, ShapeParts};
 use crate::kernel::ProductScorer;
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
@@ -42,22 +42,36 @@ impl ExactSum {
         }
     }
 
-    /// Score, terms, slices and unfiltered score of one pose.
-    pub fn score(&self, pose: &Pose) -> ExactScore {
+    /// Score of one pose by term.
+    pub fn terms(&self, pose: &Pose) -> ScoreTerms {
         match self {
-            Self::Lifted(scorer) => scorer.score(pose),
+            Self::Lifted(scorer) => scorer.terms(pose),
+            Self::Product(scorer) => {
+                let score = scorer.score_only(pose);
+                let mut terms = [0.0; Effect::ALL.len()];
+                terms[Effect::Shape as usize] = score;
+                ScoreTerms { score, terms }
+            }
+        }
+    }
+
+    /// What shape's term is made of at one pose: its slices, and the unfiltered score.
+    pub fn shape(&self, pose: &Pose) -> ShapeParts {
+        match self {
+            Self::Lifted(scorer) => scorer.shape(pose),
             Self::Product(scorer) => {
                 let found = scorer.score(pose);
-                let mut terms = [0.0; Effect::ALL.len()];
-                terms[Effect::Shape as usize] = found.score;
-                ExactScore {
-                    score: found.score,
-                    terms,
+                ShapeParts {
                     slices: found.slices,
                     unfiltered: found.unfiltered,
                 }
             }
         }
+    }
+
+    /// Score and terms of one pose with the parts of shape.
+    pub fn score(&self, pose: &Pose) -> ExactScore {
+        ExactScore::of(self.terms(pose), self.shape(pose))
     }
 
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.

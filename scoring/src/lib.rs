@@ -45,6 +45,7 @@
 //! | [`terms::pose`] | terms that score the poses which a search keeps |
 
 pub mod affinity;
+mod blocks;
 mod correlator;
 pub mod engine;
 pub mod exact;

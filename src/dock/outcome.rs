@@ -4,7 +4,7 @@ use crate::options::Stopped;
 use crate::rank::sharp::{Evidence, SharpFinding, SharpPose};
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
-use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::exact::{ScoreTerms, ShapeParts};
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
@@ -33,13 +33,11 @@ pub struct RankedPose {
     pub rotation: usize,
     /// Score of that grid pose as the fast path computed it.
     pub score_grid: f64,
-    /// B&I's own sum (no low-pass) at `pose`.
-    pub score_unfiltered: f64,
     /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
     /// effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
-    /// Unweighted slices of the low-passed correlation at rho = 0, r0 and 2 r0, at `pose`.
-    pub slices: [f64; 3],
+    /// Slices and unfiltered score of shape at `pose`; `None` without `--diagnostics`.
+    pub shape: Option<ShapeParts>,
     /// Weighted values of the pose terms at `pose`, by id.
     pub pose_terms: TermValues,
     /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
@@ -88,9 +86,13 @@ pub(crate) fn error_scale(scores: impl IntoIterator<Item = f64>, ringing: f64) -
 }
 
 impl MeasuredError {
-    /// The error at the best grid poses, whose exact scores are given in the same order, relative to the best exact
-    /// score.
-    pub(crate) fn over(peaks: &[Peak], exact: &[ExactScore], best: f64) -> Self {
+    /// The error at the best grid poses, relative to the best exact score. Their exact scores and their unfiltered
+    /// ones are given in the same order.
+    pub(crate) fn over(
+        peaks: &[Peak],
+        (exact, unfiltered): (&[ScoreTerms], &[f64]),
+        best: f64,
+    ) -> Self {
         let poses = peaks.len().min(exact.len());
         if best < NOTHING {
             return Self {
@@ -101,11 +103,11 @@ impl MeasuredError {
             };
         }
         let (mut squares, mut worst, mut removed) = (0.0, 0.0f64, 0.0);
-        for (peak, exact) in peaks.iter().zip(exact) {
+        for ((peak, exact), unfiltered) in peaks.iter().zip(exact).zip(unfiltered) {
             let error = (peak.score - exact.score).abs() / best;
             squares += error * error;
             worst = worst.max(error);
-            removed += (exact.terms[Effect::Shape as usize] - exact.unfiltered).abs() / best;
+            removed += (exact.terms[Effect::Shape as usize] - unfiltered).abs() / best;
         }
         Self {
             poses,

@@ -21,7 +21,7 @@ use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
 use crate::threads;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
-use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::exact::ScoreTerms;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
@@ -144,6 +144,7 @@ fn dock_in<T: Real>(
         on,
         space: &plan.search.space,
         cluster_temperature: cluster_temperature(plan.unit),
+        diagnostics: plan.options.output.diagnostics,
     };
     let ranking = report(
         pose_scorer,
@@ -302,7 +303,9 @@ fn refine<T: Real>(
 
 /// Exact scores of the best grid poses, which the fast path is checked against.
 struct Check {
-    at_grid: Vec<ExactScore>,
+    at_grid: Vec<ScoreTerms>,
+    /// Their unfiltered scores.
+    unfiltered: Vec<f64>,
     /// Seconds that one took.
     seconds: f64,
 }
@@ -310,16 +313,19 @@ struct Check {
 impl Check {
     fn new(scorer: &ExactSum, grid_poses: &[Pose]) -> Self {
         let started = Instant::now();
-        let at_grid: Vec<ExactScore> = grid_poses
-            .par_iter()
-            .map(|pose| scorer.score(&printed(pose)))
-            .collect();
+        let poses: Vec<Pose> = grid_poses.iter().map(printed).collect();
+        let at_grid: Vec<ScoreTerms> = poses.par_iter().map(|pose| scorer.terms(pose)).collect();
         let seconds = started.elapsed().as_secs_f64() / at_grid.len() as f64;
-        Self { at_grid, seconds }
+        let unfiltered = poses.par_iter().map(|pose| scorer.shape(pose).unfiltered);
+        Self {
+            unfiltered: unfiltered.collect(),
+            at_grid,
+            seconds,
+        }
     }
 
     /// The exact scores of poses that are candidates as they are; of rings none, for none lies on the grid.
-    fn at_start(&self, plan: &DockPlan) -> &[ExactScore] {
+    fn at_start(&self, plan: &DockPlan) -> &[ScoreTerms] {
         if plan.search.space.is_on_grid() {
             &self.at_grid
         } else {
@@ -333,7 +339,7 @@ impl Check {
         let at_start = self.at_start(plan).iter().map(|exact| exact.score);
         let rows = ranking.poses.iter().map(|row| row.search_score);
         let best = error_scale(rows.chain(at_start), 0.0);
-        MeasuredError::over(peaks, &self.at_grid, best)
+        MeasuredError::over(peaks, (&self.at_grid, &self.unfiltered), best)
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
 use crate::rank::sharp::SharpPose;
-use knotdock_scoring::exact::ExactScore;
+use knotdock_scoring::exact::ScoreTerms;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
@@ -22,7 +22,7 @@ pub(crate) struct Candidate {
     /// The pose that it was refined from.
     pub start: Pose,
     /// All terms at `start`, where they are known already.
-    pub terms: Option<Box<ExactScore>>,
+    pub terms: Option<ScoreTerms>,
     /// Whether `pose` was moved off the grid.
     pub refined: bool,
     /// Its sharp fit, where it has been looked for.
@@ -38,7 +38,7 @@ pub(crate) struct Candidate {
 pub(crate) fn candidates(
     peaks: &[Peak],
     placed: &[RefinedPose],
-    at_start: &[ExactScore],
+    at_start: &[ScoreTerms],
     rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = Vec::new();
@@ -55,7 +55,7 @@ pub(crate) fn candidates(
                 score: placed.score + pose_terms.sum(),
                 pose_terms,
                 start: placed.start,
-                terms: at_start.get(index).copied().map(Box::new),
+                terms: at_start.get(index).copied(),
                 refined: placed.refined,
                 sharp: None,
                 rotation: peak.rotation as usize,

@@ -39,6 +39,8 @@ pub(crate) struct PoseScorer<'a> {
     pub space: &'a PoseSpace,
     /// T of the clusters' scores, as a share of the run's best score.
     pub cluster_temperature: f64,
+    /// Whether rows carry what only the columns for diagnosis show.
+    pub diagnostics: bool,
 }
 
 /// The ranked rows, and the number of clusters.
@@ -105,7 +107,7 @@ pub(crate) fn report(
             (row, cluster)
         })
         .collect_into_vec(&mut rows);
-    rows.retain(|(row, _)| row.pose_score.is_finite() && row.score_unfiltered.is_finite());
+    rows.retain(|(row, _)| row.pose_score.is_finite());
     rows.sort_by(|(a, _), (b, _)| b.pose_score.total_cmp(&a.pose_score));
     // Rows come best first: the first of a cluster is its best.
     let mut order: Vec<(usize, f64)> = Vec::new();
@@ -186,14 +188,12 @@ impl Candidate {
             on,
             space,
             cluster_temperature: _,
+            diagnostics,
         } = pose_scorer;
         let others = |pose: &Pose| space.other_copies(scorer, pose);
-        let at_start = || {
-            let known = self.terms.as_deref().copied();
-            known.unwrap_or_else(|| scorer.score(&self.start))
-        };
+        let at_start = || self.terms.unwrap_or_else(|| scorer.terms(&self.start));
         let (pose, terms, others, refined) = if self.refined {
-            let (terms, beyond) = (scorer.score(&self.pose), others(&self.pose));
+            let (terms, beyond) = (scorer.terms(&self.pose), others(&self.pose));
             // An ascent on the fast path's values that the exact sum does not confirm is undone.
             let before = match &self.terms {
                 Some(terms) => terms.score,
@@ -234,9 +234,8 @@ impl Candidate {
             sharp: self.sharp,
             rotation: self.rotation,
             score_grid: self.score_grid,
-            score_unfiltered: terms.unfiltered,
             terms: std::array::from_fn(|effect| on[effect].then_some(terms.terms[effect])),
-            slices: terms.slices,
+            shape: diagnostics.then(|| scorer.shape(&pose)),
         }
     }
 }
@@ -319,6 +318,7 @@ mod tests {
                 on: [true, false, false, false],
                 space: &PoseSpace::Free,
                 cluster_temperature: 0.1,
+                diagnostics: false,
             };
             let ranking = report(
                 pose_scorer,
@@ -377,6 +377,7 @@ mod tests {
                 on: [true, false, false, false],
                 space: &PoseSpace::Free,
                 cluster_temperature: cluster_temperature(unit),
+                diagnostics: false,
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
             let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &NoProgress);

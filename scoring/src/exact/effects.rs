@@ -1,8 +1,8 @@
 //! Terms beside shape in the pair sum. They share the blocks, distances and panels of shape: a pair that is near is
 //! looked up once, and each term adds a line of its own.
 
-use super::blocks::Blocks;
 use super::tables::{Line, PairTables};
+use crate::blocks::Blocks;
 use crate::terms::effect::{ActiveTerm, Effect, Label};
 
 /// One term, prepared.

@@ -1,8 +1,8 @@
 //! The score's gradient over the six degrees of freedom of a pose.
 
-use super::near::{LANES, Near};
 use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
+use crate::blocks::{LANES, Near};
 use crate::se3::Pose;
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
@@ -18,7 +18,7 @@ impl ExactScorer {
         let (rotation, center) = self.placed(pose);
         let mut score = 0.0;
         let mut gradient = PoseGradient::default();
-        let mut near = Near::new();
+        let mut near = Near::default();
         for (index, knot) in self.ligand.iter().enumerate() {
             let arm = rotation * knot.position;
             let x: [f64; 3] = (arm + center).into();
@@ -35,7 +35,7 @@ impl ExactScorer {
                     for (squares, knots) in near.eights() {
                         let places = self.tables.place(simd, squares);
                         for lane in 0..LANES {
-                            let (panel, u) = (places.panel(lane), places.low(lane)[1]);
+                            let (panel, u) = (places.panel(lane), places.first(lane));
                             let Some(other) = self.knots.get(knots[lane] as usize) else {
                                 debug_assert!(false, "a knot that is not there is near");
                                 continue;

@@ -9,24 +9,40 @@
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
 
-mod blocks;
 mod effects;
 mod gradient;
-mod near;
 mod score;
 mod tables;
 #[cfg(test)]
 mod tests;
 
+use crate::blocks::Blocks;
 use crate::kernel::RankingKernel;
 use crate::se3::Pose;
 use crate::terms::effect::{ActiveTerm, Effect};
-use blocks::Blocks;
 use effects::PairTerm;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::{Rotation3, Vector3};
 use tables::PairTables;
+
+/// The exact score of one pose by term.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScoreTerms {
+    /// The score: the sum of its terms.
+    pub score: f64,
+    /// The weighted terms by effect (`Effect as usize`); shape is G of the ranking kernel.
+    pub terms: [f64; Effect::ALL.len()],
+}
+
+/// What shape's term is made of at one pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShapeParts {
+    /// Unweighted slices at rho = 0, r0, 2 r0.
+    pub slices: [f64; 3],
+    /// G of B&I's own kernel, without low-pass.
+    pub unfiltered: f64,
+}
 
 /// The exact score of one pose and its parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,6 +55,26 @@ pub struct ExactScore {
     pub slices: [f64; 3],
     /// G of B&I's own kernel, without low-pass.
     pub unfiltered: f64,
+}
+
+impl ExactScore {
+    /// The score by term with the parts of shape.
+    pub(crate) fn of(by_term: ScoreTerms, shape: ShapeParts) -> Self {
+        Self {
+            score: by_term.score,
+            terms: by_term.terms,
+            slices: shape.slices,
+            unfiltered: shape.unfiltered,
+        }
+    }
+
+    /// The score by term alone.
+    pub fn by_term(&self) -> ScoreTerms {
+        ScoreTerms {
+            score: self.score,
+            terms: self.terms,
+        }
+    }
 }
 
 /// Gradient of a score: per Å of translation, and per radian of rotation about the ligand's centre.

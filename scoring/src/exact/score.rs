@@ -1,4 +1,4 @@
-//! The score of a pose: alone, for ranking, or with its slices and the unfiltered sum, for the table.
+//! The score of a pose: by term, for ranking and the table, or with its slices and the unfiltered sum, for diagnosis.
 //!
 //! A polynomial sum_k c_k u^k of degree 7 is (c_0..c_3 + u^4 c_4..c_7) . (1, u, u^2, u^3): two vectors of four from one
 //! cache line, and the last product need not be summed across before all pairs are.
@@ -7,38 +7,49 @@
 //! vector features. Vectors are spelt out where it found none of its own: that took the score with its slices from 0.71
 //! to 0.39 of the plain loop's time (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
-use super::near::{LANES, Near, vectors, vectors_mut};
+use super::effects::PairTerm;
 use super::tables::{Line, Places};
-use super::{ExactScore, ExactScorer};
+use super::{ExactScore, ExactScorer, ScoreTerms, ShapeParts};
+use crate::blocks::{LANES, Near, vectors, vectors_mut};
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
 use pulp::{Arch, Simd, WithSimd};
 
 impl ExactScorer {
-    /// The score of one pose, all terms together, and nothing else: what poses are ranked by, at a fraction of
-    /// [`Self::score`]'s price. Agrees with it but for rounding.
+    /// The score of one pose and nothing else: the sum of [`Self::terms`].
     pub fn score_only(&self, pose: &Pose) -> f64 {
-        Arch::new().dispatch(Alone { scorer: self, pose })
+        self.terms(pose).score
     }
 
-    /// Score, terms, slices and unfiltered score of one pose.
+    /// Score of one pose by term.
+    pub fn terms(&self, pose: &Pose) -> ScoreTerms {
+        Arch::new().dispatch(ByTerm { scorer: self, pose })
+    }
+
+    /// What shape's term is made of at one pose: its slices, and the unfiltered score.
+    pub fn shape(&self, pose: &Pose) -> ShapeParts {
+        Arch::new().dispatch(ByPart { scorer: self, pose })
+    }
+
+    /// Score and terms of one pose with the parts of shape.
     pub fn score(&self, pose: &Pose) -> ExactScore {
-        Arch::new().dispatch(InParts { scorer: self, pose })
+        ExactScore::of(self.terms(pose), self.shape(pose))
     }
 
-    /// Sums over all pairs of the shape kernels whose lines `lines` holds, and of the terms beside shape by effect.
+    /// Sums over all pairs of the shape kernels whose lines `lines` holds, and of `effects` by effect.
     #[inline(always)]
     fn sums<'a, S: Simd, const KERNELS: usize>(
         &self,
         simd: S,
         pose: &Pose,
+        effects: &[PairTerm],
         lines: impl Fn(usize) -> Option<&'a [Line; KERNELS]>,
     ) -> ([f64; KERNELS], [f64; Effect::ALL.len()]) {
         let (rotation, center) = self.placed(pose);
         let reach = self.kernel.reach();
         let mut totals = [0.0; KERNELS];
         let mut terms = [0.0; Effect::ALL.len()];
-        let mut near = Near::new();
+        let mut near = Near::default();
         for (index, knot) in self.ligand.iter().enumerate() {
             let x = (rotation * knot.position + center).into();
             let starts = self.tables.starts(knot.class);
@@ -62,7 +73,7 @@ impl ExactScorer {
                     for (total, sum) in totals.iter_mut().zip(sums) {
                         *total += knot.weight * sum;
                     }
-                    for term in &self.effects {
+                    for term in effects {
                         let Some((value, row)) = term.of(index) else {
                             continue;
                         };
@@ -92,13 +103,14 @@ impl ExactScorer {
         pair: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
     ) -> [f64; KERNELS] {
         // Two sums by name, not by index, stay in registers.
-        let (mut even, mut odd) = ([[0.0; 4]; KERNELS], [[0.0; 4]; KERNELS]);
+        let zero = [[simd.splat_f64s(0.0); 4]; KERNELS];
+        let (mut even, mut odd) = (zero, zero);
         for (squares, knots) in near.eights() {
             let places = self.tables.place(simd, squares);
             for lane in (0..LANES).step_by(2) {
                 for (lane, sums) in [(lane, &mut even), (lane + 1, &mut odd)] {
                     if let Some((weight, lines)) = pair(knots[lane], places.panel(lane)) {
-                        let powers = Powers::of(&places, lane, weight);
+                        let powers = Powers::of(simd, &places, lane, weight);
                         for (sum, line) in sums.iter_mut().zip(lines) {
                             powers.add(simd, line, sum);
                         }
@@ -109,7 +121,11 @@ impl ExactScorer {
             }
         }
         std::array::from_fn(|kernel| {
-            let four: [f64; 4] = std::array::from_fn(|k| even[kernel][k] + odd[kernel][k]);
+            let mut four = [0.0; 4];
+            let sums = even[kernel].into_iter().zip(odd[kernel]);
+            for (total, (even, odd)) in vectors_mut::<S>(&mut four).iter_mut().zip(sums) {
+                *total = simd.add_f64s(even, odd);
+            }
             (four[0] + four[2]) + (four[1] + four[3])
         })
     }
@@ -121,7 +137,7 @@ impl ExactScorer {
         let cone = self.kernel.cone();
         let offsets = self.kernel.options().slice_offsets();
         let mut totals = [0.0; 3];
-        let mut near = Near::new();
+        let mut near = Near::default();
         for knot in &self.ligand {
             let x = (rotation * knot.position + center).into();
             let radius_sums = self.tables.sums(knot.class);
@@ -164,86 +180,110 @@ impl ExactScorer {
     }
 }
 
-/// The score of a pose and nothing else.
-struct Alone<'a> {
+/// The score of a pose by term.
+struct ByTerm<'a> {
     scorer: &'a ExactScorer,
     pose: &'a Pose,
 }
 
-impl WithSimd for Alone<'_> {
-    type Output = f64;
+impl WithSimd for ByTerm<'_> {
+    type Output = ScoreTerms;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let tables = &self.scorer.tables;
-        let ([score], terms) = self.scorer.sums(
-            simd,
-            self.pose,
-            #[inline(always)]
-            |index| tables.scores().get(index).map(std::array::from_ref),
-        );
-        score + terms.iter().sum::<f64>()
-    }
-}
-
-/// The score of a pose, its terms and slices and the unfiltered sum.
-struct InParts<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for InParts<'_> {
-    type Output = ExactScore;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> ExactScore {
+    fn with_simd<S: Simd>(self, simd: S) -> ScoreTerms {
         let Self { scorer, pose } = self;
-        let (slices, mut terms) = scorer.sums(
+        let ([shape], mut terms) = scorer.sums(
             simd,
             pose,
+            &scorer.effects,
             #[inline(always)]
-            |index| scorer.tables.slices().get(index),
+            |index| scorer.tables.scores().get(index).map(std::array::from_ref),
         );
-        let weights = scorer.kernel.options().slice_weights();
-        let weighted = |slices: [f64; 3]| (0..3).map(|i| weights[i] * slices[i]).sum();
-        // From the slices, not the score's own table: what the table shows then adds up to the last digit.
-        terms[Effect::Shape as usize] = weighted(slices);
-        ExactScore {
+        terms[Effect::Shape as usize] = shape;
+        ScoreTerms {
             score: terms.iter().sum(),
             terms,
-            slices,
-            unfiltered: weighted(scorer.unfiltered_slices(simd, pose)),
         }
     }
 }
 
-/// Powers of the argument of a pair.
-struct Powers {
-    /// 1, u, u^2, u^3, times the pair's weight.
-    low: [f64; 4],
-    /// u^4.
-    fourth: f64,
+/// The slices of a pose and the unfiltered score.
+struct ByPart<'a> {
+    scorer: &'a ExactScorer,
+    pose: &'a Pose,
 }
 
-impl Powers {
+impl WithSimd for ByPart<'_> {
+    type Output = ShapeParts;
+
     #[inline(always)]
-    fn of(places: &Places, lane: usize, weight: f64) -> Self {
+    fn with_simd<S: Simd>(self, simd: S) -> ShapeParts {
+        let Self { scorer, pose } = self;
+        let (slices, _) = scorer.sums(
+            simd,
+            pose,
+            &[],
+            #[inline(always)]
+            |index| scorer.tables.slices().get(index),
+        );
+        let weights = scorer.kernel.options().slice_weights();
+        let unfiltered = scorer.unfiltered_slices(simd, pose);
+        ShapeParts {
+            slices,
+            unfiltered: (0..3).map(|i| weights[i] * unfiltered[i]).sum(),
+        }
+    }
+}
+
+/// Powers of the argument of a pair, as vectors of which the first ones make four numbers.
+struct Powers<S: Simd> {
+    /// 1, u, u^2, u^3, times the pair's weight.
+    low: [S::f64s; 4],
+    /// u^4.
+    fourth: S::f64s,
+}
+
+impl<S: Simd> Powers<S> {
+    /// Vectors that make four numbers.
+    const VECTORS: usize = 4 / S::F64_LANES;
+
+    /// The powers come from numbers that are spread over a vector: single numbers that are stored side by side and
+    /// loaded as a vector stall, until all of them have left the store buffer.
+    #[inline(always)]
+    fn of(simd: S, places: &Places, lane: usize, weight: f64) -> Self {
+        let (first, square) = (places.first(lane), places.square(lane));
+        let (first, square) = (simd.splat_f64s(first), simd.splat_f64s(square));
+        let weight = simd.splat_f64s(weight);
+        let mut low = [weight; 4];
+        for (index, low) in low.iter_mut().enumerate().take(Self::VECTORS) {
+            let pick = |of: &'static [f64; 4]| vectors::<S>(of)[index];
+            // 1, u, 1, u and 1, 1, u^2, u^2.
+            let by_first = simd.mul_add_e_f64s(
+                first,
+                pick(&[0.0, 1.0, 0.0, 1.0]),
+                pick(&[1.0, 0.0, 1.0, 0.0]),
+            );
+            let by_square = simd.mul_add_e_f64s(
+                square,
+                pick(&[0.0, 0.0, 1.0, 1.0]),
+                pick(&[1.0, 1.0, 0.0, 0.0]),
+            );
+            *low = simd.mul_f64s(simd.mul_f64s(by_first, by_square), weight);
+        }
         Self {
-            low: places.low(lane).map(|power| weight * power),
-            fourth: places.fourth(lane),
+            low,
+            fourth: simd.splat_f64s(places.fourth(lane)),
         }
     }
 
     /// Adds a kernel.
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, Line(line): &Line, sum: &mut [f64; 4]) {
+    fn add(&self, simd: S, Line(line): &Line, sum: &mut [S::f64s; 4]) {
         let (low, high) = line.split_at(4);
         let (low, high) = (vectors::<S>(low), vectors::<S>(high));
-        let powers = vectors::<S>(&self.low);
-        let fourth = simd.splat_f64s(self.fourth);
-        for (index, sum) in vectors_mut::<S>(sum).iter_mut().enumerate() {
-            let value = simd.mul_add_e_f64s(fourth, high[index], low[index]);
-            *sum = simd.mul_add_e_f64s(powers[index], value, *sum);
+        for index in 0..Self::VECTORS {
+            let value = simd.mul_add_e_f64s(self.fourth, high[index], low[index]);
+            sum[index] = simd.mul_add_e_f64s(self.low[index], value, sum[index]);
         }
     }
 }

@@ -6,7 +6,7 @@
 //! weighted sum of the slices' own coefficients, so the score alone and the score from the slices differ by rounding
 //! only.
 
-use super::near::{LANES, vectors, vectors_mut};
+use crate::blocks::{LANES, vectors, vectors_mut};
 use crate::kernel::RankingKernel;
 use crate::kernel::table::{PanelFit, TERMS};
 use pulp::Simd;
@@ -39,8 +39,8 @@ pub(super) struct PairTables {
 pub(super) struct Places {
     /// Numbers of panels, in the low bits.
     panels: [f64; LANES],
-    /// Ways u from the middle of the panel, in panel widths, within [-1/2, 1/2], and u^2, u^3, u^4.
-    powers: [[f64; LANES]; 4],
+    /// Ways u from the middle of the panel, in panel widths, within [-1/2, 1/2], and u^2, u^4.
+    powers: [[f64; LANES]; 3],
 }
 
 impl Places {
@@ -49,17 +49,22 @@ impl Places {
         self.panels[lane].to_bits() as u32
     }
 
-    /// 1, u, u^2, u^3.
+    /// u.
     #[inline(always)]
-    pub fn low(&self, lane: usize) -> [f64; 4] {
-        let [first, square, cube, _] = &self.powers;
-        [1.0, first[lane], square[lane], cube[lane]]
+    pub fn first(&self, lane: usize) -> f64 {
+        self.powers[0][lane]
+    }
+
+    /// u^2.
+    #[inline(always)]
+    pub fn square(&self, lane: usize) -> f64 {
+        self.powers[1][lane]
     }
 
     /// u^4.
     #[inline(always)]
     pub fn fourth(&self, lane: usize) -> f64 {
-        self.powers[3][lane]
+        self.powers[2][lane]
     }
 }
 
@@ -157,9 +162,9 @@ impl PairTables {
     pub fn place<S: Simd>(&self, simd: S, squares: &[f64; LANES]) -> Places {
         let mut places = Places {
             panels: [0.0; LANES],
-            powers: [[0.0; LANES]; 4],
+            powers: [[0.0; LANES]; 3],
         };
-        let [first, second, third, fourth] = places.powers.each_mut();
+        let [first, second, fourth] = places.powers.each_mut();
         let per_unit = simd.splat_f64s(self.panels_per_unit);
         let last = simd.splat_f64s(self.last);
         let rounding = simd.splat_f64s(ROUNDING);
@@ -172,7 +177,6 @@ impl PairTables {
             vectors_mut::<S>(&mut places.panels)[index] = rounded;
             vectors_mut::<S>(first)[index] = u;
             vectors_mut::<S>(second)[index] = square;
-            vectors_mut::<S>(third)[index] = simd.mul_f64s(square, u);
             vectors_mut::<S>(fourth)[index] = simd.mul_f64s(square, square);
         }
         places

@@ -1,10 +1,13 @@
 //! Contacts and overlaps of one ligand atom with the receptor atoms near it, eight at a time in f32.
 
-use super::energy::{DEPTH, RANGE};
+use super::Site;
+use super::energy::{BOND_LENGTH, DEPTH, RANGE, TOLERANCE};
+use crate::blocks::Blocks;
+pub(super) use crate::blocks::LANES;
+use knotdock_structures::PolarAtom;
 use nalgebra::{Matrix3, Vector3};
 
-/// Pairs that are computed side by side.
-pub(super) const LANES: usize = 8;
+/// A number for each of the atoms of a block.
 type Lanes = [f32; LANES];
 
 /// Coordinate of a place in a block that holds no atom, Å.
@@ -14,23 +17,85 @@ const FULL_STIFFNESS: f32 = 0.3;
 /// Keeps the distance of atoms in one place from zero, Å².
 const LEAST: f32 = 1e-6;
 
-/// Receptor atoms near a ligand atom: positions relative to the centre of the interface, and distances of contact (Å).
+/// Positions of the receptor atoms of a block relative to the centre of the interface, Å.
 #[derive(Clone, Copy)]
-pub(super) struct Block {
-    pub x: Lanes,
-    pub y: Lanes,
-    pub z: Lanes,
-    pub contact: Lanes,
+pub(super) struct PositionLanes([Lanes; 3]);
+
+impl PositionLanes {
+    /// Those of all blocks.
+    pub fn of_all(blocks: &Blocks, middle: &Vector3<f64>, all: &mut Vec<Self>) {
+        all.clear();
+        all.extend((0..blocks.len()).map(|index| {
+            let positions = blocks.positions(index);
+            Self(std::array::from_fn(|axis| {
+                positions[axis].map(|x| {
+                    if x.is_finite() {
+                        (x - middle[axis]) as f32
+                    } else {
+                        NOWHERE
+                    }
+                })
+            }))
+        }));
+    }
 }
 
-impl Block {
-    /// A block of places that hold no atom.
-    pub const EMPTY: Self = Self {
-        x: [NOWHERE; LANES],
-        y: [NOWHERE; LANES],
-        z: [NOWHERE; LANES],
-        contact: [1.0; LANES],
-    };
+/// What distances of contact read of the receptor atoms of a block.
+pub(super) struct ContactLanes {
+    /// Radii, Å.
+    radii: Lanes,
+    /// Largest distance of contact before the tolerance by the ligand atom's [`PolarKind`], Å.
+    most: [Lanes; 4],
+}
+
+/// Whether a ligand atom donates (1), accepts (2) or does both (3).
+#[derive(Clone, Copy)]
+pub(super) struct PolarKind(u8);
+
+impl PolarKind {
+    pub fn of(polar: &PolarAtom) -> Self {
+        Self(u8::from(polar.donates) | u8::from(polar.accepts) << 1)
+    }
+
+    fn bonds(self, receptor: &PolarAtom) -> bool {
+        (self.0 & 1 != 0 && receptor.accepts) || (self.0 & 2 != 0 && receptor.donates)
+    }
+}
+
+impl ContactLanes {
+    /// Those of at most eight atoms.
+    pub fn new(sites: &[Site]) -> Self {
+        let most = |kind: PolarKind, site: &Site| {
+            if kind.bonds(&site.polar) {
+                BOND_LENGTH as f32
+            } else {
+                NOWHERE
+            }
+        };
+        let lanes =
+            |of: &dyn Fn(&Site) -> f32| std::array::from_fn(|lane| sites.get(lane).map_or(0.0, of));
+        Self {
+            radii: lanes(&|site| site.radius as f32),
+            most: [0, 1, 2, 3].map(|kind| lanes(&|site| most(PolarKind(kind), site))),
+        }
+    }
+}
+
+/// What sums read of a ligand atom.
+#[derive(Clone, Copy)]
+pub(super) struct LigandAtom {
+    /// Radius, Å.
+    radius: f32,
+    kind: PolarKind,
+}
+
+impl LigandAtom {
+    pub fn new(site: &Site) -> Self {
+        Self {
+            radius: site.radius as f32,
+            kind: PolarKind::of(&site.polar),
+        }
+    }
 }
 
 /// What blocks add up to for one ligand atom.
@@ -43,23 +108,44 @@ pub(super) struct AtomSums {
     pub curvature: Matrix3<f64>,
 }
 
-/// Sums over the blocks of a ligand atom at a place, with a stiffness in RT/Å².
+/// Sums over the listed blocks about a ligand atom at a place, with a stiffness in RT/Å².
 #[inline(always)]
-pub(super) fn atom_sums(blocks: &[Block], at: &Vector3<f64>, stiffness: f64) -> AtomSums {
+pub(super) fn atom_sums(
+    (listed, positions, contacts): (&[u32], &[PositionLanes], &[ContactLanes]),
+    atom: LigandAtom,
+    at: &Vector3<f64>,
+    stiffness: f64,
+) -> AtomSums {
     let at = at.cast::<f32>();
     let (inverse, double) = (1.0 / RANGE as f32, 2.0 * stiffness as f32);
     let slope = 4.0 * DEPTH as f32 * inverse;
     let mut sums = [[0.0f32; LANES]; 11];
-    for block in blocks {
+    let kind = usize::from(atom.kind.0 & 3);
+    for &index in listed {
+        let (Some(PositionLanes([x, y, z])), Some(contact)) =
+            (positions.get(index as usize), contacts.get(index as usize))
+        else {
+            debug_assert!(false, "a block that is not there is listed");
+            continue;
+        };
+        let (radii, most) = (&contact.radii, &contact.most[kind]);
         // One operation at a time on all lanes: the compiler makes each of them one vector instruction.
-        let dx = each(|lane| at.x - block.x[lane]);
-        let dy = each(|lane| at.y - block.y[lane]);
-        let dz = each(|lane| at.z - block.z[lane]);
+        let dx = each(|lane| at.x - x[lane]);
+        let dy = each(|lane| at.y - y[lane]);
+        let dz = each(|lane| at.z - z[lane]);
         let square =
             each(|lane| dx[lane] * dx[lane] + dy[lane] * dy[lane] + dz[lane] * dz[lane] + LEAST);
         let distance = each(|lane| square[lane].sqrt());
         let one = each(|lane| 1.0 / distance[lane]);
-        let beyond = each(|lane| distance[lane] - block.contact[lane]);
+        let sum = each(|lane| radii[lane] + atom.radius);
+        let touching = each(|lane| {
+            if sum[lane] < most[lane] {
+                sum[lane]
+            } else {
+                most[lane]
+            }
+        });
+        let beyond = each(|lane| distance[lane] - touching[lane] + TOLERANCE as f32);
         // Comparisons, not `max`, which would look for NaN.
         let lack = each(|lane| {
             if beyond[lane] < 0.0 {

@@ -86,7 +86,7 @@ impl SharpFit {
     fn round(&self, from: &Move, stiffness: f64, steps: usize, list: &mut PairList) -> Move {
         let mut at = *from;
         list.renew(self, &at);
-        let mut here = list.slope(stiffness, &at);
+        let mut here = list.slope(self, stiffness, &at);
         let mut value = here.energy.at(stiffness);
         let arc = 1.0 / list.radius;
         let scale = Vector6::new(1.0, 1.0, 1.0, arc, arc, arc);
@@ -98,7 +98,7 @@ impl SharpFit {
             let length = step.norm();
             let next = at.then(&step.component_mul(&scale));
             list.renew(self, &next);
-            let there = list.slope(stiffness, &next);
+            let there = list.slope(self, stiffness, &next);
             let reached = there.energy.at(stiffness);
             let gain = value - reached;
             if gain > 0.0 {

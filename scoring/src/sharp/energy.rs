@@ -8,7 +8,7 @@ pub(super) const DEPTH: f64 = 0.25;
 /// Distance beyond contact at which it ends, Å.
 pub(super) const RANGE: f64 = 2.0;
 /// Overlap of two atoms at no cost, Å.
-const TOLERANCE: f64 = 0.1;
+pub(super) const TOLERANCE: f64 = 0.1;
 /// Stiffness of further overlap, RT/Å².
 pub(super) const STIFFNESS: f64 = 6.0;
 /// Depth of a hydrogen bond, RT.

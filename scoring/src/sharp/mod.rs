@@ -38,26 +38,16 @@ pub use descent::Optimum;
 pub use energy::Energy;
 pub use pair_list::PairList;
 
+use crate::blocks::{Blocks, Near};
 use crate::exact::center;
 use crate::se3::Pose;
-use knotdock_structures::neighbours::{CellList, Member};
+use contacts::{ContactLanes, LANES};
 use knotdock_structures::{Knots, PolarAtom};
 use nalgebra::{Matrix3, Vector3};
 use nearness::Nearness;
 
-/// Edge in Å of the cells that hold the receptor's atoms.
-const CELL_EDGE: f64 = 3.0;
 /// Largest radius in Å of a hydrogen, whose bonds hold it inside another atom: it does not count.
 const HYDROGEN: f64 = 1.15;
-
-/// What lists of pairs read of a receptor atom.
-#[derive(Clone, Copy, Debug)]
-struct Near {
-    index: u32,
-    radius: f32,
-    donates: bool,
-    accepts: bool,
-}
 
 /// A heavy atom of a body.
 #[derive(Clone, Copy, Debug)]
@@ -72,10 +62,17 @@ struct Site {
 
 /// Two rigid bodies prepared for sharp fits.
 pub struct SharpFit {
-    receptor: CellList<Near>,
+    receptor: Blocks,
+    /// The receptor's atoms, in the order of the blocks.
+    sites: Vec<Site>,
+    /// Distances of contact by block.
+    contacts: Vec<ContactLanes>,
+    /// The receptor's atoms that may be in hydrogen bonds.
+    polar: Blocks,
+    /// Their places among all, in the order of their blocks.
+    polar_sites: Vec<usize>,
     near: Nearness,
     receptor_center: Vector3<f64>,
-    sites: Vec<Site>,
     ligand: Vec<Site>,
     ligand_center: Vector3<f64>,
     /// Largest radius of a receptor atom, Å.
@@ -93,18 +90,25 @@ impl SharpFit {
                 .iter()
                 .fold(0.0, |most: f64, site| most.max(site.radius))
         };
-        let members = sites_of.iter().zip(0..).map(|(site, index)| Member {
-            position: site.position.into(),
-            item: Near {
-                index,
-                radius: site.radius as f32,
-                donates: site.polar.donates,
-                accepts: site.polar.accepts,
-            },
-        });
+        let positions = |sites: &[Site]| sites.iter().map(|site| site.position).collect::<Vec<_>>();
+        let blocks = Blocks::new(&positions(&sites_of));
+        let sites_of = blocks.arranged(|index| sites_of[index]);
+        let bonds = |site: &Site| site.polar.donates || site.polar.accepts;
+        let polar: Vec<usize> = (0..sites_of.len())
+            .filter(|&index| bonds(&sites_of[index]))
+            .collect();
+        let polar_blocks = Blocks::new(&positions(
+            &polar
+                .iter()
+                .map(|&index| sites_of[index])
+                .collect::<Vec<_>>(),
+        ));
         Self {
             widest: widest(&sites_of),
-            receptor: CellList::new(members.collect(), CELL_EDGE),
+            contacts: sites_of.chunks(LANES).map(ContactLanes::new).collect(),
+            polar_sites: polar_blocks.arranged(|index| polar[index]),
+            polar: polar_blocks,
+            receptor: blocks,
             near: Nearness::new(sites_of.iter().map(|site| site.position)),
             receptor_center,
             sites: sites_of,
@@ -117,15 +121,23 @@ impl SharpFit {
     pub fn energy(&self, pose: &Pose) -> Energy {
         let (matrix, place) = self.placed(pose);
         let mut energy = Energy::default();
+        let mut near = Near::default();
         for site in &self.ligand {
             let at = matrix * site.position + place;
+            let reach = self.reach(site);
+            if self.near.excludes(&at, reach) {
+                continue;
+            }
             let direction = matrix * Vector3::from(site.polar.direction);
             self.receptor
-                .visit_within(at.into(), self.reach(site), |atom, _| {
-                    let Some(other) = self.sites.get(atom.index as usize) else {
-                        return;
-                    };
-                    energy.add(other, site, &(at - other.position), &direction);
+                .list_near(&at.into(), reach, &mut near, |near| {
+                    for (_, atom) in near.pairs() {
+                        let Some(other) = self.sites.get(atom as usize) else {
+                            debug_assert!(false, "an atom that is not there is near");
+                            continue;
+                        };
+                        energy.add(other, site, &(at - other.position), &direction);
+                    }
                 });
         }
         energy

@@ -1,18 +1,19 @@
 //! Lists of the pairs of atoms near an interface.
 
-use super::contacts::{Block, LANES, atom_sums};
-use super::energy::{bond_count, distance_of};
+use super::contacts::{LigandAtom, PositionLanes, atom_sums};
+use super::energy::bond_count;
 use super::hydrogen_bond::{BOND_REACH, BondPair};
 use super::slope::Slope;
 use super::{SharpFit, Site};
+use crate::blocks::Near;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use nalgebra::{Matrix3, Vector3};
 
 /// Shift in Å of a move and its angle in radians up to which a list holds every pair within reach.
-const SHIFT: f64 = 1.6;
-const ANGLE: f64 = 0.16;
+const SHIFT: f64 = 0.8;
+const ANGLE: f64 = 0.08;
 /// Distance in Å within which pairs make the interface, whose centre and radius moves refer to.
 const INTERFACE: f64 = 6.0;
 /// Radius in Å that is added to that of an interface, by squares: a single contact may rotate, too.
@@ -22,6 +23,7 @@ const MIN_RADIUS: f64 = 3.0;
 struct Mobile {
     /// Position before any move relative to the centre of the interface, Å.
     arm: Vector3<f64>,
+    atom: LigandAtom,
     /// End of its blocks; they begin where those of the previous atom end.
     end: usize,
 }
@@ -30,7 +32,11 @@ struct Mobile {
 #[derive(Default)]
 pub struct PairList {
     mobile: Vec<Mobile>,
-    blocks: Vec<Block>,
+    /// Numbers of the receptor's blocks near each of them.
+    blocks: Vec<u32>,
+    /// Positions of the receptor's atoms by block.
+    positions: Vec<PositionLanes>,
+    near: Near,
     bonds: Vec<BondPair>,
     /// Ligand atoms that a descent may bring near the receptor: index and arm.
     reachable: Vec<(usize, Vector3<f64>)>,
@@ -54,23 +60,23 @@ impl PairList {
         self.made_at = None;
         let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), Matrix3::zeros());
         self.reachable.clear();
+        let near = &mut self.near;
         for (index, site) in fit.ligand.iter().enumerate() {
             let at: Vector3<f64> = matrix * site.position + place;
             self.reachable.push((index, at));
             if fit.near.excludes(&at, INTERFACE) {
                 continue;
             }
-            fit.receptor
-                .visit_within(at.into(), INTERFACE, |atom, square| {
-                    let Some(other) = fit.sites.get(atom.index as usize) else {
-                        return;
-                    };
+            fit.receptor.list_near(&at.into(), INTERFACE, near, |near| {
+                for (square, atom) in near.pairs() {
+                    let position = Vector3::from(fit.receptor.position(atom));
                     let weight = (1.0 - square / (INTERFACE * INTERFACE)).powi(2);
-                    let middle = 0.5 * (at + other.position);
+                    let middle = 0.5 * (at + position);
                     count += weight;
                     sum += weight * middle;
                     squares += weight * middle * middle.transpose();
-                });
+                }
+            });
         }
         if count == 0.0 {
             return false;
@@ -83,6 +89,7 @@ impl PairList {
         for (_, at) in &mut self.reachable {
             *at -= middle;
         }
+        PositionLanes::of_all(&fit.receptor, &middle, &mut self.positions);
         true
     }
 
@@ -125,52 +132,55 @@ impl PairList {
         (arm, place): (&Vector3<f64>, &Vector3<f64>),
         slack: f64,
     ) {
-        let before = self.blocks.len();
-        let direction = self.matrix * Vector3::from(site.polar.direction);
-        let mut lane = LANES;
-        let (donates, accepts) = (site.polar.donates, site.polar.accepts);
+        let Self {
+            blocks,
+            bonds,
+            near,
+            ..
+        } = self;
+        let before = blocks.len();
         let reach = fit.reach(site) + slack;
         fit.receptor
-            .visit_within((*place).into(), reach, |atom, square| {
-                let Some(other) = fit.sites.get(atom.index as usize) else {
-                    return;
+            .list_blocks(&(*place).into(), reach, |block| blocks.push(block));
+        let end = blocks.len();
+        if end > before {
+            self.mobile.push(Mobile {
+                arm: *arm,
+                atom: LigandAtom::new(site),
+                end,
+            });
+        }
+        if !(site.polar.donates || site.polar.accepts) {
+            return;
+        }
+        let direction = self.matrix * Vector3::from(site.polar.direction);
+        let (middle, reach) = (self.middle, BOND_REACH + slack);
+        fit.polar.list_near(&(*place).into(), reach, near, |near| {
+            for (_, atom) in near.pairs() {
+                let index = fit.polar_sites.get(atom as usize);
+                let Some(other) = index.and_then(|&index| fit.sites.get(index)) else {
+                    debug_assert!(false, "an atom that is not there is near");
+                    continue;
                 };
-                let position = other.position - self.middle;
-                let bonds = (donates & atom.accepts) | (accepts & atom.donates);
-                if lane == LANES {
-                    self.blocks.push(Block::EMPTY);
-                    lane = 0;
-                }
-                if let Some(block) = self.blocks.last_mut() {
-                    block.x[lane] = position.x as f32;
-                    block.y[lane] = position.y as f32;
-                    block.z[lane] = position.z as f32;
-                    block.contact[lane] =
-                        distance_of(f64::from(atom.radius) + site.radius, bonds) as f32;
-                }
-                lane += 1;
-                if bonds && square < (BOND_REACH + slack).powi(2) {
-                    self.bonds.push(BondPair {
+                if other.polar.may_bond(&site.polar) {
+                    bonds.push(BondPair {
                         arm: *arm,
                         direction,
-                        other: position,
+                        other: other.position - middle,
                         other_direction: other.polar.direction.into(),
                         count: bond_count(other, site),
                     });
                 }
-            });
-        let end = self.blocks.len();
-        if end > before {
-            self.mobile.push(Mobile { arm: *arm, end });
-        }
+            }
+        });
     }
 
     /// Energy with its slope at a move over the pairs of the list; clashes are not counted.
-    pub(super) fn slope(&self, stiffness: f64, at: &Move) -> Slope {
+    pub(super) fn slope(&self, fit: &SharpFit, stiffness: f64, at: &Move) -> Slope {
         let turn = *at.turn.to_rotation_matrix().matrix();
         let mut slope = vectorized(
             #[inline(always)]
-            || self.contacts(stiffness, &turn, &at.shift),
+            || self.contacts(fit, stiffness, &turn, &at.shift),
         );
         for bond in &self.bonds {
             bond.add(&turn, at, &mut slope);
@@ -180,14 +190,25 @@ impl PairList {
 
     /// The part of contacts and overlaps.
     #[inline(always)]
-    fn contacts(&self, stiffness: f64, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Slope {
+    fn contacts(
+        &self,
+        fit: &SharpFit,
+        stiffness: f64,
+        turn: &Matrix3<f64>,
+        shift: &Vector3<f64>,
+    ) -> Slope {
         let mut slope = Slope::zero();
         let mut from = 0;
         for atom in &self.mobile {
-            let blocks = &self.blocks[from..atom.end];
+            let listed = &self.blocks[from..atom.end];
             from = atom.end;
             let arm = turn * atom.arm;
-            let sums = atom_sums(blocks, &(arm + shift), stiffness);
+            let sums = atom_sums(
+                (listed, &self.positions, &fit.contacts),
+                atom.atom,
+                &(arm + shift),
+                stiffness,
+            );
             if sums.contacts == 0.0 {
                 continue;
             }

@@ -118,7 +118,7 @@ fn pairs_of_a_list_add_up_to_the_double_sum() {
         let mut at = Move::none();
         for step in 0..6 {
             list.renew(&fit, &at);
-            let in_list = list.slope(STIFFNESS, &at).energy;
+            let in_list = list.slope(&fit, STIFFNESS, &at).energy;
             let exact = fit.energy(&fit.moved(&pose, &at, &list));
             for (a, b) in [
                 (in_list.contacts, exact.contacts),
@@ -145,7 +145,7 @@ fn slopes_are_those_of_the_energy() {
         assert!(list.begin(&fit, &pose));
         let at = Move::none().then(&Vector6::new(0.3, -0.2, 0.1, 0.02, 0.05, -0.03));
         list.renew(&fit, &at);
-        let slope = list.slope(STIFFNESS, &at);
+        let slope = list.slope(&fit, STIFFNESS, &at);
         let energy =
             |step: &Vector6<f64>| fit.energy(&fit.moved(&pose, &at.then(step), &list)).total();
         for row in 0..6 {

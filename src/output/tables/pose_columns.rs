@@ -103,10 +103,10 @@ fn for_diagnosis() -> Vec<PoseColumn> {
         text("refined", |row| row.refined.to_string()),
         text("rotation", |row| row.rotation.to_string()),
         column("score_grid", |row| row.score_grid),
-        column("score_unfiltered", |row| row.score_unfiltered),
+        optional("score_unfiltered", |row| Some(row.shape?.unfiltered)),
     ];
     for (index, name) in ["slice_0", "slice_r0", "slice_2r0"].into_iter().enumerate() {
-        columns.push(column(name, move |row| row.slices[index]));
+        columns.push(optional(name, move |row| Some(row.shape?.slices[index])));
     }
     columns
 }

@@ -91,6 +91,7 @@ pub fn pose_rows(poses: &[RankedPose]) -> Vec<PoseRow> {
 mod tests {
     use super::*;
     use crate::output::tables::poses::PoseTable;
+    use knotdock_scoring::exact::ShapeParts;
     use knotdock_scoring::se3::Pose;
     use knotdock_scoring::terms::pose::{POSE_TERMS, TermValues};
 
@@ -106,9 +107,11 @@ mod tests {
             sharp: None,
             rotation: 17,
             score_grid: f64::NAN,
-            score_unfiltered: 1e-7,
             terms: [Some(0.1), None, Some(-3.0), None],
-            slices: [-0.0, 2.0, 1e21],
+            shape: Some(ShapeParts {
+                slices: [-0.0, 2.0, 1e21],
+                unfiltered: 1e-7,
+            }),
             pose_terms: TermValues::default()
                 .with("atom_pair", -7.0)
                 .with("relaxed", 2.5),

@@ -59,10 +59,10 @@ fn rescore(
     (scorer, rescorer): (&ExactSum, Option<&Rescorer>),
     workspace: &mut Workspace,
 ) {
-    let exact = scorer.score(&candidate.pose);
+    let terms = scorer.terms(&candidate.pose);
     candidate.pose_terms = rescorer
         .map(|rescorer| rescorer.score(&candidate.pose, workspace))
         .unwrap_or_default();
-    candidate.score = exact.score + candidate.pose_terms.sum() + sharp;
-    candidate.terms = Some(Box::new(exact));
+    candidate.score = terms.score + candidate.pose_terms.sum() + sharp;
+    candidate.terms = Some(terms);
 }

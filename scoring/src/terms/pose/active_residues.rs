@@ -9,6 +9,7 @@
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use crate::blocks::Near;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
@@ -98,9 +99,12 @@ impl PoseTerm for ActiveResidues {
 
 /// Number of residues of the other side with an atom in contact with `side`; `pose` carries them into its frame.
 fn in_contact(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
-    let touches = |atom: &[f64; 3]| side.touches(pose, *atom);
+    let mut near = Near::default();
+    let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
     let residues = residues.iter();
-    residues.filter(|atoms| atoms.iter().any(touches)).count()
+    residues
+        .filter(|atoms| atoms.iter().any(&mut touches))
+        .count()
 }
 
 #[cfg(test)]

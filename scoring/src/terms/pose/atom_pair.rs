@@ -63,9 +63,12 @@ impl AtomPairs {
 
     /// Weighted sum at a pose of the ligand; higher is better.
     pub fn score(&self, pose: &Pose) -> f64 {
-        let sum = self.bodies.sum(pose, REACH, |a, b, distance| {
-            self.energies.at(a, b, distance).0
-        });
+        let sum = self.bodies.sum(
+            pose,
+            REACH,
+            #[inline(always)]
+            |a, b, distance| self.energies.at(a, b, distance).0,
+        );
         -self.weight * sum
     }
 }

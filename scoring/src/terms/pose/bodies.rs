@@ -1,16 +1,17 @@
 //! Two bodies of typed atoms, and sums over their pairs within a reach.
 
-use super::CELL_EDGE;
+use crate::blocks::{Blocks, Near};
 use crate::exact::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
-use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Typed atoms of two bodies, each relative to the centre of its body.
 pub(super) struct Bodies {
-    /// By the type of the atom.
-    receptor: CellList<usize>,
+    receptor: Blocks,
+    /// Types of the receptor's atoms, in the order of the blocks.
+    types: Vec<usize>,
     receptor_center: Vector3<f64>,
     ligand: Vec<(Vector3<f64>, usize)>,
     ligand_center: Vector3<f64>,
@@ -26,13 +27,12 @@ impl Bodies {
         kinds: usize,
     ) -> Self {
         let (atoms, receptor_center) = typed(receptor, types(receptor), kinds);
-        let atoms = atoms.into_iter().map(|(position, item)| Member {
-            position: position.into(),
-            item,
-        });
+        let (positions, kinds_of): (Vec<Vector3<f64>>, Vec<usize>) = atoms.into_iter().unzip();
         let (ligand, ligand_center) = typed(ligand, types(ligand), kinds);
+        let receptor = Blocks::new(&positions);
         Self {
-            receptor: CellList::new(atoms.collect(), CELL_EDGE),
+            types: receptor.arranged(|index| kinds_of[index]),
+            receptor,
             receptor_center,
             ligand,
             ligand_center,
@@ -40,19 +40,55 @@ impl Bodies {
     }
 
     /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than
-    /// `reach` (Å).
-    #[inline]
+    /// `reach` (Å). `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
     pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
+        Arch::new().dispatch(Sum {
+            bodies: self,
+            pose,
+            reach,
+            value,
+        })
+    }
+}
+
+/// A sum over the pairs of two bodies at a pose.
+struct Sum<'a, F> {
+    bodies: &'a Bodies,
+    pose: &'a Pose,
+    reach: f64,
+    value: F,
+}
+
+impl<F: Fn(usize, usize, f64) -> f64> WithSimd for Sum<'_, F> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let (bodies, pose) = (self.bodies, self.pose);
         let matrix = pose.rotation.to_rotation_matrix();
-        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let place =
+            pose.rotation * bodies.ligand_center + pose.translation - bodies.receptor_center;
+        let mut near = Near::default();
         let mut total = 0.0;
-        for &(atom, kind) in &self.ligand {
+        for &(atom, kind) in &bodies.ligand {
             let mut sum = 0.0;
-            let position = matrix * atom + place;
-            self.receptor
-                .visit_within(position.into(), reach, |&other, square| {
-                    sum += value(other, kind, square.sqrt());
-                });
+            let position = (matrix * atom + place).into();
+            bodies.receptor.near(
+                simd,
+                &position,
+                self.reach,
+                &mut near,
+                #[inline(always)]
+                |near| {
+                    for (square, point) in near.pairs() {
+                        let Some(&other) = bodies.types.get(point as usize) else {
+                            debug_assert!(false, "an atom that is not there is near");
+                            continue;
+                        };
+                        sum += (self.value)(other, kind, square.sqrt());
+                    }
+                },
+            );
             total += sum;
         }
         total

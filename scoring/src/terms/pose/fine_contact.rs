@@ -75,12 +75,17 @@ impl FineContacts {
 
     /// Weighted sum at a pose of the ligand; higher is better.
     pub fn score(&self, pose: &Pose) -> f64 {
-        self.bodies.sum(pose, REACH, |a, b, distance| {
-            let steps = self.steps[a][b].iter().zip(ENDS);
-            steps
-                .map(|(factor, ends)| factor * step_down(distance, ends))
-                .sum()
-        })
+        self.bodies.sum(
+            pose,
+            REACH,
+            #[inline(always)]
+            |a, b, distance| {
+                let [first, second, third] = self.steps[a][b];
+                first * step_down(distance, ENDS[0])
+                    + second * step_down(distance, ENDS[1])
+                    + third * step_down(distance, ENDS[2])
+            },
+        )
     }
 }
 

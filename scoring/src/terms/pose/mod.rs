@@ -51,9 +51,6 @@ use crate::se3::Pose;
 use crate::terms::weight::Weight;
 use knotdock_structures::{Conformers, Knots};
 
-/// Edge in Å of the cells that hold a body's atoms.
-const CELL_EDGE: f64 = 4.0;
-
 /// Every pose term, in the order of sums, columns and reports.
 pub const POSE_TERMS: &[TermDefinition] = &[
     fine_contact::TERM,

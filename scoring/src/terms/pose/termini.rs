@@ -4,6 +4,7 @@
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use crate::blocks::Near;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
 use knotdock_structures::Knots;
@@ -76,7 +77,8 @@ impl PoseTerm for TerminusContacts {
 
 /// Number of atoms of the other side in contact with `side`; `pose` carries them into its frame.
 fn in_contact(side: &Side, atoms: &[[f64; 3]], pose: &Pose) -> usize {
-    let touches = |atom: &&[f64; 3]| side.touches(pose, **atom);
+    let mut near = Near::default();
+    let touches = |atom: &&[f64; 3]| side.touches(pose, **atom, &mut near);
     atoms.iter().filter(touches).count()
 }
 

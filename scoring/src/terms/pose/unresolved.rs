@@ -7,6 +7,7 @@
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use crate::blocks::Near;
 use crate::exact::center;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
@@ -127,10 +128,11 @@ impl Body {
 /// `pose` carries the body into the frame of the segments, and `inverse` carries them into its own.
 fn clashes(body: &Body, segments: &[Occupancy], pose: &Pose, inverse: &Pose) -> f64 {
     let mut sum = 0.0;
+    let mut near = Near::default();
     for segment in segments {
         let (rotation, translation) = segment.cells_from(pose, body.center);
         body.side
-            .near(inverse, segment.center, segment.radius, |atom| {
+            .near(inverse, segment.center, segment.radius, &mut near, |atom| {
                 sum += segment.share(rotation * body.atoms[atom] + translation);
             });
     }

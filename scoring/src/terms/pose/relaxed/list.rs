@@ -1,29 +1,31 @@
-//! Lists of the pairs of atoms near an interface, and the interface's centre and radius.
+//! The ligand atoms near the receptor, their pairs, and the interface's centre and radius.
 
+use crate::blocks::{Blocks, Near};
 use crate::rigid_move::Move;
 use crate::se3::Pose;
-use knotdock_structures::neighbours::CellList;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use pulp::{Arch, Simd, WithSimd};
 
-/// Distance in Å beyond the reach up to which pairs are collected. Once an atom may have moved farther they are collected
-/// anew, so that a list holds every pair within reach.
+/// Distance in Å beyond the reach up to which ligand atoms are collected. Once one may have moved farther they are
+/// collected anew, so that those collected make every pair within reach.
 const SLACK: f64 = 2.0;
 /// Radius in Å that is added to that of an interface, by squares: a single contact may rotate, too.
 const MIN_RADIUS: f64 = 3.0;
 
-/// Position relative to the receptor's centre (unused for ligand atoms), radius and kind of an atom.
+/// Radius and kind of an atom.
 #[derive(Clone, Copy)]
 pub(super) struct Site {
-    pub position: Vector3<f64>,
+    /// Radius, Å.
     pub radius: f64,
     pub kind: usize,
 }
 
 /// The atoms of two bodies.
 pub(super) struct Atoms {
-    /// Atoms of the receptor, each with its index in `sites`.
-    pub receptor: CellList<usize>,
+    /// Positions of the receptor's atoms relative to its centre.
+    pub receptor: Blocks,
     pub receptor_center: Vector3<f64>,
+    /// The receptor's atoms, in the order of the blocks.
     pub sites: Vec<Site>,
     pub ligand: Vec<(Vector3<f64>, Site)>,
     pub ligand_center: Vector3<f64>,
@@ -31,21 +33,31 @@ pub(super) struct Atoms {
     pub reach: f64,
 }
 
-/// A ligand atom with receptor atoms in its neighbourhood.
+/// A ligand atom near the receptor.
 pub(super) struct Mobile {
     /// Position before any move relative to the centre of the interface, Å.
     pub arm: Vector3<f64>,
     pub site: Site,
-    /// End of its neighbours in the list; they begin where those of the previous atom end.
-    pub end: usize,
 }
 
 /// Scratch space for scoring poses by any term. Buffers keep their size from one pose to the next.
 #[derive(Default)]
 pub struct Workspace {
     pub(super) mobile: Vec<Mobile>,
-    /// Receptor atoms relative to the centre of the interface.
-    pub(super) neighbours: Vec<Site>,
+    /// Centre of the interface relative to the receptor's, Å.
+    pub(super) middle: Vector3<f64>,
+    /// Receptor atoms near one of them.
+    near: Near,
+}
+
+/// A pair of atoms within reach.
+pub(super) struct Pair<'a> {
+    /// The receptor's atom.
+    pub receptor: &'a Site,
+    /// From the receptor's atom to the ligand's, Å.
+    pub between: Vector3<f64>,
+    /// Square of their distance, Å².
+    pub square: f64,
 }
 
 /// Where the ligand stands before any move, relative to the receptor's centre.
@@ -63,24 +75,12 @@ pub(super) struct Interface {
 }
 
 impl Workspace {
-    /// Makes a list that is relative to the receptor's centre relative to `middle`.
-    pub(super) fn recenter(&mut self, middle: &Vector3<f64>) {
+    /// Makes arms relative to a centre of the interface.
+    fn recenter(&mut self, middle: &Vector3<f64>) {
         for atom in &mut self.mobile {
-            atom.arm -= middle;
+            atom.arm += self.middle - middle;
         }
-        for site in &mut self.neighbours {
-            site.position -= middle;
-        }
-    }
-
-    /// Each collected ligand atom with its neighbours.
-    pub(super) fn atoms(&self) -> impl Iterator<Item = (&Mobile, &[Site])> {
-        let mut from = 0;
-        self.mobile.iter().map(move |atom| {
-            let near = &self.neighbours[from..atom.end];
-            from = atom.end;
-            (atom, near)
-        })
+        self.middle = *middle;
     }
 }
 
@@ -93,50 +93,91 @@ impl Atoms {
         }
     }
 
-    /// Lists the pairs within reach and [`SLACK`] at a move about `middle`.
-    pub(super) fn list(
+    /// Collects the ligand atoms within reach and [`SLACK`] of the receptor at a move about `middle`.
+    pub(super) fn collect(
         &self,
         start: &Start,
         middle: &Vector3<f64>,
         at: &Move,
         workspace: &mut Workspace,
     ) {
-        let Workspace { mobile, neighbours } = workspace;
-        mobile.clear();
-        neighbours.clear();
-        let matrix = at.turn.to_rotation_matrix();
+        workspace.mobile.clear();
+        workspace.middle = *middle;
+        let turn = at.turn.to_rotation_matrix();
         for &(position, site) in &self.ligand {
             let arm = start.matrix * position + start.place - middle;
-            let position = matrix * arm + at.shift + middle;
-            let before = neighbours.len();
-            let reach = self.reach + SLACK;
-            self.receptor
-                .visit_within(position.into(), reach, |&atom, _| {
-                    let site = self.sites[atom];
-                    let position = site.position - middle;
-                    neighbours.push(Site { position, ..site });
-                });
-            let end = neighbours.len();
-            if end > before {
-                mobile.push(Mobile { arm, site, end });
+            let position = (turn * arm + at.shift + middle).into();
+            if self.receptor.may_be_within(&position, self.reach + SLACK) {
+                workspace.mobile.push(Mobile { arm, site });
             }
         }
     }
 
-    /// Lists pairs anew where an atom may have moved by more than [`SLACK`] since they were collected at the move
-    /// `collected`. `widest` is the distance in Å of any ligand atom from `middle`.
+    /// Collects anew where an atom may have moved by more than [`SLACK`] since that was done at the move `collected`.
+    /// `widest` is the distance in Å of any ligand atom from the centre of the interface.
     pub(super) fn renew(
         &self,
         collected: &mut Move,
         at: &Move,
         widest: f64,
-        (start, middle): (&Start, &Vector3<f64>),
+        start: &Start,
         workspace: &mut Workspace,
     ) {
         let turned = widest * at.turn.angle_to(&collected.turn);
         if (at.shift - collected.shift).norm() + turned > SLACK {
             *collected = *at;
-            self.list(start, middle, at, workspace);
+            let middle = workspace.middle;
+            self.collect(start, &middle, at, workspace);
+        }
+    }
+
+    /// Visits each collected ligand atom at a move, with its arm there and the receptor atoms within reach of it.
+    ///
+    /// `begin` is called for an atom and its arm, `pair` for each of its pairs, `end` after them. All must be
+    /// `#[inline(always)]`.
+    #[inline(always)]
+    pub(super) fn visit<S: Simd, T>(
+        &self,
+        simd: S,
+        workspace: &mut Workspace,
+        at: &Move,
+        begin: impl Fn() -> T,
+        mut pair: impl FnMut(&mut T, &Mobile, Pair),
+        mut end: impl FnMut(T, &Vector3<f64>),
+    ) {
+        let turn = at.turn.to_rotation_matrix();
+        let Workspace {
+            mobile,
+            middle,
+            near,
+        } = workspace;
+        for atom in mobile.iter() {
+            let arm = turn * atom.arm;
+            let position = arm + at.shift + *middle;
+            let mut sums = begin();
+            self.receptor.near(
+                simd,
+                &position.into(),
+                self.reach,
+                near,
+                #[inline(always)]
+                |near| {
+                    for (square, point) in near.pairs() {
+                        let Some(receptor) = self.sites.get(point as usize) else {
+                            debug_assert!(false, "an atom that is not there is near");
+                            continue;
+                        };
+                        let between = position - Vector3::from(self.receptor.position(point));
+                        let pair_of = Pair {
+                            receptor,
+                            between,
+                            square,
+                        };
+                        pair(&mut sums, atom, pair_of);
+                    }
+                },
+            );
+            end(sums, &arm);
         }
     }
 
@@ -150,25 +191,19 @@ impl Atoms {
     }
 
     /// Centre and radius of the middles of all pairs, which weigh less the farther they are and nothing at the reach.
-    /// `None` if no pair is within reach. The list is relative to the receptor's centre.
-    pub(super) fn interface(&self, workspace: &Workspace) -> Option<Interface> {
-        let (mut count, mut sum, mut squares) = (0.0, Vector3::zeros(), 0.0);
-        for (atom, near) in workspace.atoms() {
-            for other in near {
-                let square = (atom.arm - other.position).norm_squared();
-                let weight = self.contact(square);
-                let middle = 0.5 * (atom.arm + other.position);
-                count += weight;
-                sum += weight * middle;
-                squares += weight * middle.norm_squared();
-            }
-        }
-        if count == 0.0 {
+    /// `None` if no pair is within reach. From then on arms are relative to that centre.
+    pub(super) fn interface(&self, workspace: &mut Workspace) -> Option<Interface> {
+        let middles = Arch::new().dispatch(Middles {
+            atoms: self,
+            workspace,
+        });
+        if middles.count == 0.0 {
             return None;
         }
-        let middle = sum / count;
-        let spread = (squares / count - middle.norm_squared()).max(0.0);
+        let middle = middles.sum / middles.count;
+        let spread = (middles.squares / middles.count - middle.norm_squared()).max(0.0);
         let radius = (spread + MIN_RADIUS * MIN_RADIUS).sqrt();
+        workspace.recenter(&middle);
         Some(Interface { middle, radius })
     }
 
@@ -188,5 +223,50 @@ impl Atoms {
             rotation: turn * pose.rotation,
             translation: turn * (pose.translation - about) + about + at.shift,
         }
+    }
+}
+
+/// Sums over the weighted middles of all pairs.
+struct Middles<'a> {
+    atoms: &'a Atoms,
+    workspace: &'a mut Workspace,
+}
+
+/// Sums of weights, of weighted middles (Å) and of the squares of their distances from the receptor's centre (Å²).
+struct MiddleSums {
+    count: f64,
+    sum: Vector3<f64>,
+    squares: f64,
+}
+
+impl WithSimd for Middles<'_> {
+    type Output = MiddleSums;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> MiddleSums {
+        let mut sums = MiddleSums {
+            count: 0.0,
+            sum: Vector3::zeros(),
+            squares: 0.0,
+        };
+        let from = self.workspace.middle;
+        self.atoms.visit(
+            simd,
+            self.workspace,
+            &Move::none(),
+            #[inline(always)]
+            || (),
+            #[inline(always)]
+            |(), atom, pair| {
+                let weight = self.atoms.contact(pair.square);
+                let middle = from + atom.arm - 0.5 * pair.between;
+                sums.count += weight;
+                sums.sum += weight * middle;
+                sums.squares += weight * middle.norm_squared();
+            },
+            #[inline(always)]
+            |(), _| (),
+        );
+        sums
     }
 }

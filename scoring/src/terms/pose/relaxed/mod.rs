@@ -18,15 +18,15 @@ pub use self::list::Workspace;
 use self::list::{Atoms, Interface, Site};
 use super::atom_pair_potential::AtomPairPotential;
 use super::energy_table::{EnergyTable, SMOOTH_REACH};
-use super::{CELL_EDGE, PoseTerm, TermDefinition};
+use super::{PoseTerm, TermDefinition};
+use crate::blocks::Blocks;
 use crate::exact::center;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
-use crate::vectorized::vectorized;
 use knotdock_structures::Knots;
-use knotdock_structures::neighbours::{CellList, Member};
 use nalgebra::{Matrix3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -62,9 +62,6 @@ const FULL_STIFFNESS: f64 = 0.5;
 /// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a
 /// file keeps them.
 const HYDROGEN: f64 = 1.15;
-
-/// Number of collected atoms that are sorted by distance at a time.
-const CHUNK: usize = 64;
 
 /// Two bodies prepared for relaxing poses.
 ///
@@ -113,16 +110,13 @@ impl Relaxation {
             let radii = body.iter().map(|(_, site)| site.radius);
             radii.fold(0.0, f64::max)
         };
-        let atoms = receptor.iter().enumerate();
-        let atoms = atoms.map(|(item, &(position, _))| Member {
-            position: position.into(),
-            item,
-        });
+        let positions: Vec<Vector3<f64>> = receptor.iter().map(|(position, _)| *position).collect();
+        let blocks = Blocks::new(&positions);
         let atoms = Atoms {
-            receptor: CellList::new(atoms.collect(), CELL_EDGE),
+            sites: blocks.arranged(|index| receptor[index].1),
+            receptor: blocks,
             receptor_center,
             reach: SMOOTH_REACH.max(widest(&receptor) + widest(&ligand)),
-            sites: receptor.iter().map(|(_, site)| *site).collect(),
             ligand,
             ligand_center,
         };
@@ -138,44 +132,33 @@ impl Relaxation {
         -self.weight * self.relax(pose, workspace).energy
     }
 
-    /// Energy of a pose as it stands in RT: the double sum over atoms.
+    /// Energy of a pose as it stands in RT.
     pub fn energy(&self, pose: &Pose) -> f64 {
-        let matrix = pose.rotation.to_rotation_matrix();
-        let place = pose.rotation * self.atoms.ligand_center + pose.translation
-            - self.atoms.receptor_center;
-        let mut total = 0.0;
-        for (position, site) in &self.atoms.ligand {
-            let mut sum = 0.0;
-            let near = matrix * position + place;
-            self.atoms
-                .receptor
-                .visit_within(near.into(), self.atoms.reach, |&atom, square| {
-                    let other = &self.atoms.sites[atom];
-                    sum += self.pair(other, site, square.sqrt());
-                });
-            total += sum;
-        }
-        total
+        let (start, none) = (self.atoms.start(pose), Move::none());
+        let mut workspace = Workspace::default();
+        self.atoms
+            .collect(&start, &Vector3::zeros(), &none, &mut workspace);
+        self.collected_energy(&mut workspace, &none)
     }
 
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
         let (start, none) = (self.atoms.start(pose), Move::none());
-        self.atoms.list(&start, &Vector3::zeros(), &none, workspace);
+        self.atoms
+            .collect(&start, &Vector3::zeros(), &none, workspace);
         let Some(Interface { middle, radius }) = self.atoms.interface(workspace) else {
             return Relaxed {
                 pose: *pose,
                 energy: 0.0,
             };
         };
-        workspace.recenter(&middle);
         let widest = self.atoms.widest(&start, &middle);
         let before = self.collected_energy(workspace, &none);
         let (mut at, mut collected) = (none, none);
         for longest in LONGEST {
             at = self.slope(workspace, &at).step(&at, radius, longest);
             self.atoms
-                .renew(&mut collected, &at, widest, (&start, &middle), workspace);
+                .renew(&mut collected, &at, widest, &start, workspace);
         }
         let after = self.collected_energy(workspace, &at);
         if after < before {
@@ -191,56 +174,39 @@ impl Relaxation {
         }
     }
 
-    /// Energy of a move in RT over the collected pairs.
-    fn collected_energy(&self, workspace: &Workspace, at: &Move) -> f64 {
-        let matrix = at.turn.to_rotation_matrix();
-        vectorized(
+    /// Energy of a move in RT.
+    fn collected_energy(&self, workspace: &mut Workspace, at: &Move) -> f64 {
+        self.sum(
+            workspace,
+            at,
             #[inline(always)]
-            || {
-                let mut total = 0.0;
-                for (atom, near) in workspace.atoms() {
-                    let position = matrix * atom.arm + at.shift;
-                    let mut sum = 0.0;
-                    visit_near(&position, near, self.atoms.reach, |other, square| {
-                        sum += self.pair(other, &atom.site, square.sqrt());
-                    });
-                    total += sum;
-                }
-                total
-            },
+            |receptor, ligand, square| self.pair(receptor, ligand, square.sqrt()),
         )
     }
 
-    /// Slope of the energy of the descent at a move over the collected pairs.
-    fn slope(&self, workspace: &Workspace, at: &Move) -> Slope {
-        let matrix = at.turn.to_rotation_matrix();
-        vectorized(
-            #[inline(always)]
-            || {
-                let mut slope = Slope::zero();
-                for (atom, near) in workspace.atoms() {
-                    let arm = matrix * atom.arm;
-                    let position = arm + at.shift;
-                    let (mut gradient, mut curvature) = (Vector3::zeros(), Matrix3::zeros());
-                    let mut contacts = 0.0;
-                    visit_near(&position, near, self.atoms.reach, |other, square| {
-                        let Soft {
-                            rise, stiffness, ..
-                        } = self.soft(other, &atom.site, square);
-                        let between = position - other.position;
-                        gradient += rise * between;
-                        if stiffness > 0.0 {
-                            curvature += (stiffness * between) * between.transpose();
-                        }
-                        contacts += self.atoms.contact(square);
-                    });
-                    slope.contacts += contacts;
-                    // Each body makes half of a rotation about the middle between their places.
-                    slope.add(&(arm + 0.5 * at.shift), &gradient, &curvature);
-                }
-                slope
-            },
-        )
+    /// Sum at a move of a value of the two atoms and the square of their distance (Å²), which must be
+    /// `#[inline(always)]`.
+    fn sum(
+        &self,
+        workspace: &mut Workspace,
+        at: &Move,
+        value: impl Fn(&Site, &Site, f64) -> f64,
+    ) -> f64 {
+        Arch::new().dispatch(Sum {
+            atoms: &self.atoms,
+            workspace,
+            at,
+            value,
+        })
+    }
+
+    /// Slope of the energy of the descent at a move.
+    fn slope(&self, workspace: &mut Workspace, at: &Move) -> Slope {
+        Arch::new().dispatch(SlopeOf {
+            relaxation: self,
+            workspace,
+            at,
+        })
     }
 
     /// Energy of two atoms in RT at a distance.
@@ -289,27 +255,92 @@ struct Soft {
     stiffness: f64,
 }
 
-/// Visits the atoms within `reach` (Å) of a position, with the squares of their distances.
-#[inline(always)]
-fn visit_near(
-    position: &Vector3<f64>,
-    atoms: &[Site],
-    reach: f64,
-    mut visit: impl FnMut(&Site, f64),
-) {
-    let limit = reach * reach;
-    for near in atoms.chunks(CHUNK) {
-        // Without a branch: a third of the pairs is within reach, in an unpredictable order.
-        let mut within = [(0, 0.0); CHUNK];
-        let mut count = 0;
-        for (index, other) in near.iter().enumerate() {
-            let square = (position - other.position).norm_squared();
-            within[count] = (index, square);
-            count += usize::from(square < limit);
-        }
-        for &(index, square) in &within[..count] {
-            visit(&near[index], square);
-        }
+/// A sum over pairs of atoms at a move.
+struct Sum<'a, F> {
+    atoms: &'a Atoms,
+    workspace: &'a mut Workspace,
+    at: &'a Move,
+    value: F,
+}
+
+impl<F: Fn(&Site, &Site, f64) -> f64> WithSimd for Sum<'_, F> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let mut total = 0.0;
+        self.atoms.visit(
+            simd,
+            self.workspace,
+            self.at,
+            #[inline(always)]
+            || 0.0,
+            #[inline(always)]
+            |sum, atom, pair| *sum += (self.value)(pair.receptor, &atom.site, pair.square),
+            #[inline(always)]
+            |sum, _| total += sum,
+        );
+        total
+    }
+}
+
+/// The slope of the energy of the descent at a move.
+struct SlopeOf<'a> {
+    relaxation: &'a Relaxation,
+    workspace: &'a mut Workspace,
+    at: &'a Move,
+}
+
+/// What the pairs of one ligand atom add up to.
+struct AtomSlope {
+    gradient: Vector3<f64>,
+    curvature: Matrix3<f64>,
+    contacts: f64,
+}
+
+impl WithSimd for SlopeOf<'_> {
+    type Output = Slope;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Slope {
+        let Self {
+            relaxation,
+            workspace,
+            at,
+        } = self;
+        let atoms = &relaxation.atoms;
+        let mut slope = Slope::zero();
+        atoms.visit(
+            simd,
+            workspace,
+            at,
+            #[inline(always)]
+            || AtomSlope {
+                gradient: Vector3::zeros(),
+                curvature: Matrix3::zeros(),
+                contacts: 0.0,
+            },
+            #[inline(always)]
+            |sums, atom, pair| {
+                let Soft {
+                    rise, stiffness, ..
+                } = relaxation.soft(pair.receptor, &atom.site, pair.square);
+                sums.gradient += rise * pair.between;
+                if stiffness > 0.0 {
+                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
+                }
+                sums.contacts += atoms.contact(pair.square);
+            },
+            #[inline(always)]
+            |sums, arm| {
+                if sums.contacts > 0.0 {
+                    slope.contacts += sums.contacts;
+                    // Each body makes half of a rotation about the middle between their places.
+                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
+                }
+            },
+        );
+        slope
     }
 }
 
@@ -323,12 +354,7 @@ fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f6
             let position = Vector3::from(x) - middle;
             let kind = knots.atom_kinds.get(index).copied().flatten();
             let kind = kind.map_or(unknown, |kind| usize::from(kind).min(unknown));
-            let site = Site {
-                position,
-                radius,
-                kind,
-            };
-            (position, site)
+            (position, Site { radius, kind })
         })
         .collect()
 }

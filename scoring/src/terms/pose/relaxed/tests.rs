@@ -70,28 +70,20 @@ fn the_energy_is_that_of_atom_pairs_and_overlaps() {
     assert!(touching > 30, "{touching}");
 }
 
-/// Energy of the descent over the collected pairs.
-fn soft_energy(relaxation: &Relaxation, workspace: &Workspace, at: &Move) -> f64 {
-    let mut sum = 0.0;
-    for (atom, near) in workspace.atoms() {
-        let position = at.turn * atom.arm + at.shift;
-        for other in near {
-            let square = (position - other.position).norm_squared();
-            sum += relaxation.soft(other, &atom.site, square).energy;
-        }
-    }
-    sum
+/// Energy of the descent at a move.
+fn soft_energy(relaxation: &Relaxation, workspace: &mut Workspace, at: &Move) -> f64 {
+    let energy = |a: &Site, b: &Site, square: f64| relaxation.soft(a, b, square).energy;
+    relaxation.sum(workspace, at, energy)
 }
 
-/// The list of a pose about its interface, with the interface.
+/// The ligand atoms near the interface of a pose, with the interface.
 fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interface)> {
     let mut workspace = Workspace::default();
     let start = relaxation.atoms.start(pose);
     relaxation
         .atoms
-        .list(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
-    let interface = relaxation.atoms.interface(&workspace)?;
-    workspace.recenter(&interface.middle);
+        .collect(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
+    let interface = relaxation.atoms.interface(&mut workspace)?;
     Some((workspace, interface))
 }
 
@@ -99,15 +91,15 @@ fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interfa
 #[test]
 fn the_slope_is_that_of_the_energy() {
     let (_, _, relaxation) = bodies(0.0);
-    let (workspace, _) = collected(&relaxation, &poses(0.0).nth(9).unwrap()).unwrap();
+    let (mut workspace, _) = collected(&relaxation, &poses(0.0).nth(9).unwrap()).unwrap();
     let (shift, turn) = (
         Vector3::new(0.3, -0.2, 0.1),
         Vector3::new(0.02, 0.05, -0.03),
     );
     for at in [Move::none(), Move::none().then_by_halves(shift, turn)] {
-        let slope = relaxation.slope(&workspace, &at);
-        let energy =
-            |shift, turn| soft_energy(&relaxation, &workspace, &at.then_by_halves(shift, turn));
+        let slope = relaxation.slope(&mut workspace, &at);
+        let mut energy =
+            |shift, turn| soft_energy(&relaxation, &mut workspace, &at.then_by_halves(shift, turn));
         let none = Vector3::zeros();
         let sizes = [0, 3].map(|row| slope.by_step.gradient.fixed_rows::<3>(row).norm());
         assert!(sizes.iter().all(|size| *size > 1.0), "{sizes:?}");
@@ -145,9 +137,9 @@ fn collected_pairs_add_up_to_the_energy() {
             at = at.then_by_halves(step, 0.1 * step);
             relaxation
                 .atoms
-                .renew(&mut was, &at, widest, (&start, &middle), &mut workspace);
+                .renew(&mut was, &at, widest, &start, &mut workspace);
             let energy = relaxation.energy(&relaxation.atoms.moved(&pose, &at, &middle));
-            let collected = relaxation.collected_energy(&workspace, &at);
+            let collected = relaxation.collected_energy(&mut workspace, &at);
             assert!((collected - energy).abs() < 1e-9 * energy.abs().max(1.0));
         }
         assert!(was.shift.norm() > 0.0, "no new list");

@@ -1,25 +1,31 @@
-//! Receptor knots in compact blocks of eight, side by side for vector registers, and the knots within reach of a point.
+//! The points of a body in compact blocks of eight, side by side for vector registers, and those within reach of a place.
 //!
 //! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last
 //! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass,
-//! the knots within reach are collected, so that the later and dearer steps handle these alone.
+//! the points within reach are collected, so that the later and dearer steps handle these alone.
 
-use super::near::{LANES, Near, vectors, vectors_mut};
+// Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
+#![allow(clippy::needless_range_loop)]
+
+mod near;
+
+pub(crate) use near::{LANES, Near, vectors, vectors_mut};
+
 use nalgebra::Vector3;
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Blocks in a group.
 const GROUP: usize = 16;
 
-/// Eight neighbouring knots; where fewer are left, places infinitely far away fill it.
+/// Eight neighbouring points; where fewer are left, places infinitely far away fill it.
 #[derive(Clone, Debug)]
 struct Block {
-    /// [axis][knot], relative to the receptor's centre, in Å.
+    /// [axis][point], in Å.
     positions: [[f64; LANES]; 3],
 }
 
 impl Block {
-    /// Squared distances in Å^2 to a point.
+    /// Squared distances in Å^2 to a place.
     #[inline(always)]
     fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; LANES] {
         let mut squares = [0.0; LANES];
@@ -47,7 +53,7 @@ struct Group {
 }
 
 impl Group {
-    /// Squared distances in Å^2 of a point to its blocks' boxes.
+    /// Squared distances in Å^2 of a place to its blocks' boxes.
     #[inline(always)]
     fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; GROUP] {
         let mut squares = [0.0; GROUP];
@@ -69,10 +75,11 @@ impl Group {
     }
 }
 
-/// All knots of a receptor.
-pub(super) struct Blocks {
+/// The points of a body.
+#[derive(Default)]
+pub(crate) struct Blocks {
     blocks: Vec<Block>,
-    /// Indices of the knots, block by block.
+    /// Indices of the points, block by block.
     order: Vec<usize>,
     groups: Vec<Group>,
 }
@@ -124,34 +131,42 @@ impl Blocks {
         }
     }
 
-    /// Where a knot is, by its place in the order of the blocks, relative to the receptor's centre, in Å.
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Positions of the points of a block by [axis][point], in Å; infinite where it has no point.
+    pub fn positions(&self, block: usize) -> &[[f64; LANES]; 3] {
+        &self.blocks[block].positions
+    }
+
+    /// Where a point is, by its place in the order of the blocks, in Å.
     #[inline(always)]
-    pub fn position(&self, knot: u32) -> [f64; 3] {
-        let (index, lane) = (knot as usize / LANES, knot as usize % LANES);
+    pub fn position(&self, point: u32) -> [f64; 3] {
+        let (index, lane) = (point as usize / LANES, point as usize % LANES);
         debug_assert!(index < self.blocks.len());
         self.blocks.get(index).map_or([f64::INFINITY; 3], |block| {
             block.positions.map(|of| of[lane])
         })
     }
 
-    /// Something of each knot, in the order of the blocks.
+    /// Something of each point, in the order of the blocks.
     pub fn arranged<L>(&self, of: impl Fn(usize) -> L) -> Vec<L> {
         self.order.iter().map(|&index| of(index)).collect()
     }
 
-    /// Lists the knots within `reach` of `x`, a part at a time and always in the same order, and visits each part.
+    /// Visits the numbers of the blocks whose boxes lie within `reach` of `x`, by rising number.
     #[inline(always)]
-    pub fn near<S: Simd>(
+    pub fn visit_blocks<S: Simd>(
         &self,
         simd: S,
         x: &[f64; 3],
         reach: f64,
-        near: &mut Near,
-        mut visit: impl FnMut(&Near),
+        mut visit: impl FnMut(u32),
     ) {
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
-        near.clear();
         for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
             let square: f64 = (0..3)
                 .map(|axis| gap(x[axis], group.low[axis], group.high[axis]).powi(2))
@@ -164,11 +179,34 @@ impl Blocks {
                 within |= u32::from(square < square_reach) << index;
             }
             while within != 0 {
-                let index = first + within.trailing_zeros();
+                visit(first + within.trailing_zeros());
                 within &= within - 1;
+            }
+        }
+    }
+
+    /// Lists the points within `reach` of `x`, a part at a time and always in the same order, and visits each part.
+    #[inline(always)]
+    pub fn near<S: Simd>(
+        &self,
+        simd: S,
+        x: &[f64; 3],
+        reach: f64,
+        near: &mut Near,
+        mut visit: impl FnMut(&Near),
+    ) {
+        let square_reach = reach * reach;
+        let everywhere = x.map(|x| simd.splat_f64s(x));
+        near.clear();
+        self.visit_blocks(
+            simd,
+            x,
+            reach,
+            #[inline(always)]
+            |index| {
                 let Some(block) = self.blocks.get(index as usize) else {
                     debug_assert!(false, "a block that is not there lies within reach");
-                    break;
+                    return;
                 };
                 if near.is_full() {
                     near.fill();
@@ -177,10 +215,83 @@ impl Blocks {
                 }
                 let squares = block.squares(simd, &everywhere);
                 near.add(index * LANES as u32, &squares, square_reach);
-            }
+            },
+        );
+        if !near.is_empty() {
+            near.fill();
+            visit(near);
         }
-        near.fill();
-        visit(near);
+    }
+}
+
+/// The same for callers that are not compiled for wide vector registers themselves: each call finds them.
+impl Blocks {
+    /// As [`Self::near`].
+    pub fn list_near(&self, x: &[f64; 3], reach: f64, near: &mut Near, visit: impl FnMut(&Near)) {
+        Arch::new().dispatch(ListNear {
+            blocks: self,
+            x,
+            reach,
+            near,
+            visit,
+        });
+    }
+
+    /// As [`Self::visit_blocks`].
+    pub fn list_blocks(&self, x: &[f64; 3], reach: f64, visit: impl FnMut(u32)) {
+        Arch::new().dispatch(ListBlocks {
+            blocks: self,
+            x,
+            reach,
+            visit,
+        });
+    }
+
+    /// Whether the box of a block lies within `reach` of `x`; if none does, no point does.
+    pub fn may_be_within(&self, x: &[f64; 3], reach: f64) -> bool {
+        let mut within = false;
+        self.list_blocks(
+            x,
+            reach,
+            #[inline(always)]
+            |_| within = true,
+        );
+        within
+    }
+}
+
+struct ListNear<'a, F> {
+    blocks: &'a Blocks,
+    x: &'a [f64; 3],
+    reach: f64,
+    near: &'a mut Near,
+    visit: F,
+}
+
+impl<F: FnMut(&Near)> WithSimd for ListNear<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.blocks
+            .near(simd, self.x, self.reach, self.near, self.visit);
+    }
+}
+
+struct ListBlocks<'a, F> {
+    blocks: &'a Blocks,
+    x: &'a [f64; 3],
+    reach: f64,
+    visit: F,
+}
+
+impl<F: FnMut(u32)> WithSimd for ListBlocks<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.blocks
+            .visit_blocks(simd, self.x, self.reach, self.visit);
     }
 }
 
@@ -223,11 +334,11 @@ mod tests {
     use crate::test_support::Numbers;
     use pulp::Scalar;
 
-    /// Every knot within reach is visited exactly once. Cases: a spread cloud, coincident knots (no axis to halve
-    /// along), knots at distances of 1e6 Å (boxes that a cell list could not hold), counts around the sizes of blocks
+    /// Every point within reach is visited exactly once. Cases: a spread cloud, coincident points (no axis to halve
+    /// along), points at distances of 1e6 Å (boxes that a cell list could not hold), counts around the sizes of blocks
     /// and groups.
     #[test]
-    fn every_knot_within_reach_is_visited_once() {
+    fn every_point_within_reach_is_visited_once() {
         let mut numbers = Numbers(7);
         let mut next = || numbers.next();
         for count in [1, 7, 8, 9, 127, 128, 129, 2500] {
@@ -241,9 +352,9 @@ mod tests {
                     let reach = 9.0;
                     let x = from.into();
                     let mut found = Vec::new();
-                    blocks.near(Scalar, &x, reach, &mut Near::new(), |near| {
-                        for (square, knot) in near.pairs() {
-                            let number = numbers[knot as usize];
+                    blocks.near(Scalar, &x, reach, &mut Near::default(), |near| {
+                        for (square, point) in near.pairs() {
+                            let number = numbers[point as usize];
                             let distance = (from - points[number]).norm_squared();
                             assert!((square - distance).abs() <= 1e-12 * distance);
                             found.push(number);
@@ -253,7 +364,14 @@ mod tests {
                     let expected: Vec<usize> = (0..points.len())
                         .filter(|&index| (from - points[index]).norm() < reach)
                         .collect();
-                    assert_eq!(found, expected, "{count} knots over {spread} Å");
+                    assert_eq!(found, expected, "{count} points over {spread} Å");
+                    let mut listed = Vec::new();
+                    blocks.list_near(&x, reach, &mut Near::default(), |near| {
+                        listed.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
+                    });
+                    listed.sort_unstable();
+                    assert_eq!(listed, expected, "{count} points over {spread} Å");
+                    assert!(blocks.may_be_within(&x, reach) || expected.is_empty());
                 }
             }
         }

@@ -1,11 +1,11 @@
-//! Receptor knots within reach of a point, one after another, so that later steps handle these alone.
+//! Points within reach of a point, one after another, so that later steps handle these alone.
 
 use pulp::Simd;
 
-/// Knots in a block: what vector registers take together.
-pub(super) const LANES: usize = 8;
+/// Points in a block: what vector registers take together.
+pub(crate) const LANES: usize = 8;
 
-/// Knots that are collected before they are handed on.
+/// Points that are collected before they are handed on.
 const CAPACITY: usize = 1024;
 
 /// For each set of lanes, as bits: its lanes first, in order.
@@ -28,24 +28,26 @@ const fn front() -> [[u8; LANES]; 1 << LANES] {
     front
 }
 
-/// Receptor knots within reach of a point.
-pub(super) struct Near {
+/// Points within reach of another.
+pub(crate) struct Near {
     /// Squared distances in Å^2.
     squares: [f64; CAPACITY],
     /// Places in the order of the blocks.
-    knots: [u32; CAPACITY],
+    points: [u32; CAPACITY],
     count: usize,
 }
 
-impl Near {
-    pub fn new() -> Self {
+impl Default for Near {
+    fn default() -> Self {
         Self {
             squares: [0.0; CAPACITY],
-            knots: [0; CAPACITY],
+            points: [0; CAPACITY],
             count: 0,
         }
     }
+}
 
+impl Near {
     /// Whether another eight might find no room.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
@@ -53,11 +55,16 @@ impl Near {
     }
 
     #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    #[inline(always)]
     pub fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Adds those of eight knots, the first of which is `first`, that are nearer than the root of `square_reach`.
+    /// Adds those of eight points, the first of which is `first`, that are nearer than the root of `square_reach`.
     /// Whether one is near is a coin toss that no branch predictor wins, so all eight are written, the near ones first,
     /// and only these are counted.
     #[inline(always)]
@@ -65,14 +72,14 @@ impl Near {
         debug_assert!(!self.is_full());
         let from = self.count.min(CAPACITY - LANES);
         let places = &mut self.squares[from..from + LANES];
-        let knots = &mut self.knots[from..from + LANES];
+        let points = &mut self.points[from..from + LANES];
         let mut mask = 0;
         for lane in 0..LANES {
             mask |= usize::from(squares[lane] < square_reach) << lane;
         }
         let order = &FRONT[mask];
         for lane in 0..LANES {
-            knots[lane] = first + u32::from(order[lane]);
+            points[lane] = first + u32::from(order[lane]);
         }
         for lane in 0..LANES {
             places[lane] = squares[usize::from(order[lane]) % LANES];
@@ -84,10 +91,10 @@ impl Near {
     #[inline(always)]
     pub fn fill(&mut self) {
         for place in self.count..self.count.next_multiple_of(LANES) {
-            if let (Some(square), Some(knot)) =
-                (self.squares.get_mut(place), self.knots.get_mut(place))
+            if let (Some(square), Some(point)) =
+                (self.squares.get_mut(place), self.points.get_mut(place))
             {
-                (*square, *knot) = (f64::INFINITY, 0);
+                (*square, *point) = (f64::INFINITY, 0);
             }
         }
     }
@@ -97,28 +104,28 @@ impl Near {
     pub fn eights(&self) -> impl Iterator<Item = (&[f64; LANES], &[u32; LANES])> {
         let filled = self.count.div_ceil(LANES);
         let (squares, _) = self.squares.as_chunks();
-        let (knots, _) = self.knots.as_chunks();
-        squares.iter().zip(knots).take(filled)
+        let (points, _) = self.points.as_chunks();
+        squares.iter().zip(points).take(filled)
     }
 
     /// Squared distances and places one by one, without what fills up the last eight.
     #[inline(always)]
     pub fn pairs(&self) -> impl Iterator<Item = (f64, u32)> {
-        let pairs = self.squares.iter().zip(&self.knots).take(self.count);
-        pairs.map(|(&square, &knot)| (square, knot))
+        let pairs = self.squares.iter().zip(&self.points).take(self.count);
+        pairs.map(|(&square, &point)| (square, point))
     }
 }
 
 /// Four, eight or sixteen numbers as vectors.
 #[inline(always)]
-pub(super) fn vectors<S: Simd>(values: &[f64]) -> &[S::f64s] {
+pub(crate) fn vectors<S: Simd>(values: &[f64]) -> &[S::f64s] {
     const { assert!(S::F64_LANES <= 4, "longer vectors would leave numbers out") };
     S::as_simd_f64s(values).0
 }
 
 /// Four, eight or sixteen numbers as vectors to write to.
 #[inline(always)]
-pub(super) fn vectors_mut<S: Simd>(values: &mut [f64]) -> &mut [S::f64s] {
+pub(crate) fn vectors_mut<S: Simd>(values: &mut [f64]) -> &mut [S::f64s] {
     const { assert!(S::F64_LANES <= 4, "longer vectors would leave numbers out") };
     S::as_mut_simd_f64s(values).0
 }
