@@ -13,6 +13,9 @@ pub const MAX_OPTIONS: u64 = 1 << 20;
 /// Most bytes of a table of potentials or of pairs.
 pub const MAX_TABLE: u64 = 64 << 20;
 
+/// Most bytes of a file of distance restraints.
+pub const MAX_RESTRAINTS: u64 = 16 << 20;
+
 /// Most bytes of a `run.json`, which lists what was left out of the inputs.
 pub const MAX_RECORD: u64 = 256 << 20;
 

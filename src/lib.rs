@@ -21,6 +21,7 @@ pub mod priors;
 pub mod progress;
 pub mod rank;
 pub mod refine;
+pub mod restraints;
 pub mod score;
 pub mod search;
 pub mod side_chains;

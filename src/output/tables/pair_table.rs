@@ -8,6 +8,7 @@ use csv::StringRecord;
 use crate::bounded_read::{MAX_TABLE, read_bounded};
 use crate::output::tables::cells::unquoted;
 use crate::output::tables::csv_lines::line_of;
+use crate::output::tables::spreadsheet::{column_name, plain};
 
 /// What a line begins with that is no row.
 const COMMENT: Option<u8> = Some(b'#');
@@ -135,39 +136,6 @@ pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableErr
         return Err(wrong(None, "there is no pair in it".to_owned()));
     }
     Ok(rows)
-}
-
-/// The text without a byte order mark, and the byte that separates its columns.
-fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
-    let text = String::from_utf8(bytes)
-        .map_err(|_| "it is not text in UTF-8, as which spreadsheets can save it".to_owned())?;
-    let mut text = match text.strip_prefix('\u{feff}') {
-        Some(rest) => rest.to_owned(),
-        None => text,
-    };
-    let first = text.lines().next().unwrap_or_default().trim_end();
-    if let Some([delimiter]) = first.strip_prefix("sep=").map(str::as_bytes) {
-        let delimiter = *delimiter;
-        // A comment, so that lines keep their numbers.
-        text.replace_range(..1, "#");
-        return Ok((text, delimiter));
-    }
-    let header = text
-        .lines()
-        .find(|line| !line.is_empty() && !line.starts_with('#'))
-        .unwrap_or_default();
-    let count = |byte: &u8| header.bytes().filter(|other| other == byte).count();
-    // The last of equals is taken.
-    let delimiter = *b"\t;,"
-        .iter()
-        .max_by_key(|&byte| count(byte))
-        .unwrap_or(&b',');
-    Ok((text, delimiter))
-}
-
-/// A column's name as options of the command line are spelled, but for `_` in place of `-`.
-fn column_name(name: &str) -> String {
-    name.to_lowercase().replace(['-', ' '], "_")
 }
 
 fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {

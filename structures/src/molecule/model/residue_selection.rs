@@ -143,6 +143,11 @@ impl Picked {
 }
 
 impl ResidueSelection {
+    /// Its parts in the order written, each as a selection of its own. A part keeps the chain that it goes on with.
+    pub fn parts(&self) -> impl Iterator<Item = ResidueSelection> + '_ {
+        self.0.iter().map(|part| Self(vec![part.clone()]))
+    }
+
     /// Its parts as they are read in a molecule of these chains.
     pub(crate) fn read_among(&self, chains: &BTreeSet<&str>) -> Vec<Picked> {
         self.0.iter().map(|part| part.read_among(chains)).collect()
@@ -215,6 +220,11 @@ impl Molecule {
             .collect()
     }
 
+    /// The chains with their smallest and largest residue number, in words: `H:51-53, L:1-107`.
+    pub fn chains_in_words(&self) -> String {
+        in_words(&self.numbers_by_chain())
+    }
+
     /// Smallest and largest residue number of each chain.
     fn numbers_by_chain(&self) -> BTreeMap<String, [i64; 2]> {
         let mut chains = BTreeMap::new();
@@ -226,6 +236,15 @@ impl Molecule {
         }
         chains
     }
+}
+
+/// Chains with their smallest and largest residue number, in words.
+fn in_words(chains: &BTreeMap<String, [i64; 2]>) -> String {
+    let chains = chains.iter().map(|(chain, [first, last])| {
+        let chain = show_chain(chain);
+        format!("{chain}:{first}-{last}")
+    });
+    chains.collect::<Vec<_>>().join(", ")
 }
 
 /// Residues were requested that a molecule does not have.
@@ -241,12 +260,7 @@ impl UnknownResidues {
     /// The chains and numbers that there are, in words, and how to name a residue where a number stands without its
     /// chain.
     pub fn present(&self) -> String {
-        let chains = self.present.iter();
-        let chains = chains.map(|(chain, [first, last])| {
-            let chain = show_chain(chain);
-            format!("{chain}:{first}-{last}")
-        });
-        let mut text = chains.collect::<Vec<_>>().join(", ");
+        let mut text = in_words(&self.present);
         let (chain, residue) = match self.part.split_once(':') {
             Some((chain, residue)) => (Some(chain), residue),
             None => (None, self.part.as_str()),
@@ -354,6 +368,22 @@ mod tests {
         named.atoms[4].chain = "52".to_owned();
         let both = named.selected(&"H:51,52".parse().unwrap()).unwrap();
         assert_eq!(both, [true, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn each_part_is_a_selection_of_its_own() {
+        let parts = |text: &str| -> Vec<Vec<bool>> {
+            let selection: ResidueSelection = text.parse().unwrap();
+            let parts = selection.parts();
+            parts
+                .map(|part| molecule().selected(&part).unwrap())
+                .collect()
+        };
+        let expected = [[1, 0, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1]];
+        assert_eq!(
+            parts("H:51,52A,_:7"),
+            expected.map(|row| row.map(|x| x == 1).to_vec())
+        );
     }
 
     #[test]

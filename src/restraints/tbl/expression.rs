@@ -1,0 +1,279 @@
+//! Selections of atoms: what stands between the parentheses of an assign statement.
+//!
+//! ```text
+//! selection = "(" any-of ")"
+//! any-of    = all-of { "or" all-of }
+//! all-of    = factor { "and" factor }
+//! factor    = "not" factor | "(" any-of ")" | test
+//! test      = "all" | "hydrogen" | "segid" NAME | "chain" NAME | "resname" NAME | "name" NAME
+//!           | "resid" NAME | "resid" NUMBER ":" NUMBER | "atom" NAME NAME NAME
+//! ```
+//!
+//! So `not` binds most and `or` least, as in CNS. `atom` has a chain, a residue and a name of an atom. Names may have
+//! wildcards unless they are in quotes.
+
+use std::collections::BTreeSet;
+
+use knotdock_structures::molecule::Atom;
+
+use crate::restraints::error::{Located, RestraintFault};
+use crate::restraints::tbl::name_pattern::NamePattern;
+use crate::restraints::tbl::tokens::{Place, Token, Tokens};
+
+/// Most parentheses and `not` within each other: a recursion without a bound would run out of stack.
+const MAX_DEPTH: usize = 100;
+
+/// A selection of atoms.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Expression {
+    All,
+    Hydrogen,
+    Chain(NamePattern),
+    ResidueName(NamePattern),
+    Residue(ResidueTest),
+    Name(NamePattern),
+    Not(Box<Expression>),
+    And(Vec<Expression>),
+    Or(Vec<Expression>),
+}
+
+/// Which residues are meant by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum ResidueTest {
+    /// One number without an insertion code.
+    Number(i64),
+    /// Number and insertion code as one text.
+    Text(NamePattern),
+    /// From one to another, each with its insertion code: none comes before `A`.
+    Range([(i64, Option<char>); 2]),
+}
+
+impl Expression {
+    /// Whether an atom is selected.
+    pub(super) fn holds(&self, atom: &Atom) -> bool {
+        self.evaluate(atom, true)
+    }
+
+    /// Whether an atom is selected if every name of an atom were the right one.
+    pub(super) fn holds_but_for_names(&self, atom: &Atom) -> bool {
+        self.evaluate(atom, false)
+    }
+
+    fn evaluate(&self, atom: &Atom, by_name: bool) -> bool {
+        match self {
+            Self::All => true,
+            Self::Hydrogen => atom.is_hydrogen(),
+            Self::Chain(pattern) => pattern.holds(&atom.chain),
+            Self::ResidueName(pattern) => pattern.holds(&atom.residue_name),
+            Self::Residue(test) => test.holds(atom),
+            Self::Name(pattern) => !by_name || pattern.holds(&atom.name),
+            Self::Not(inner) => !inner.evaluate(atom, by_name),
+            Self::And(parts) => parts.iter().all(|part| part.evaluate(atom, by_name)),
+            Self::Or(parts) => parts.iter().any(|part| part.evaluate(atom, by_name)),
+        }
+    }
+}
+
+impl ResidueTest {
+    fn holds(&self, atom: &Atom) -> bool {
+        let (number, insertion) = (atom.residue_number, atom.insertion_code);
+        match self {
+            Self::Number(own) => (*own, None) == (number, insertion),
+            Self::Text(pattern) => {
+                let insertion = insertion.map_or_else(String::new, String::from);
+                pattern.holds(&format!("{number}{insertion}"))
+            }
+            Self::Range([first, last]) => (*first..=*last).contains(&(number, insertion)),
+        }
+    }
+}
+
+/// Reads the selections of a file.
+pub(super) struct Selections<'a> {
+    pub(super) tokens: Tokens<'a>,
+    /// Names of the chains that there are.
+    chains: BTreeSet<&'a str>,
+}
+
+impl<'a> Selections<'a> {
+    pub(super) fn new(text: &'a str, chains: BTreeSet<&'a str>) -> Self {
+        Self {
+            tokens: Tokens::new(text),
+            chains,
+        }
+    }
+
+    /// The next token, which must be there.
+    pub(super) fn need(&mut self, expected: &'static str) -> Result<(Token<'a>, Place), Located> {
+        let end = self.tokens.place();
+        self.tokens.next()?.ok_or_else(|| {
+            let found = "the end of the file".to_owned();
+            end.fault(RestraintFault::Syntax { expected, found })
+        })
+    }
+
+    /// The selection that follows, and the place of its parenthesis.
+    pub(super) fn selection(&mut self) -> Result<(Expression, Place), Located> {
+        const EXPECTED: &str = "a selection in parentheses";
+        match self.need(EXPECTED)? {
+            (Token::Open, place) => {
+                let expression = self.any_of(1, place)?;
+                Ok((expression, place))
+            }
+            (token, place) => Err(unexpected(EXPECTED, token, place)),
+        }
+    }
+
+    /// What stands between parentheses, and the one that closes.
+    fn any_of(&mut self, depth: usize, open: Place) -> Result<Expression, Located> {
+        if depth > MAX_DEPTH {
+            return Err(open.fault(RestraintFault::Nesting(MAX_DEPTH)));
+        }
+        // Alternatives, each as what must hold at once.
+        let mut alternatives = Vec::new();
+        let mut all_of = vec![self.factor(depth)?];
+        loop {
+            let expected = "`and`, `or` or `)`";
+            let (token, place) = self.need(expected)?;
+            if token.is_keyword("and") {
+                all_of.push(self.factor(depth)?);
+            } else if token.is_keyword("or") {
+                let next = vec![self.factor(depth)?];
+                alternatives.push(joined(
+                    std::mem::replace(&mut all_of, next),
+                    Expression::And,
+                ));
+            } else if token == Token::Close {
+                alternatives.push(joined(all_of, Expression::And));
+                return Ok(joined(alternatives, Expression::Or));
+            } else {
+                return Err(unexpected(expected, token, place));
+            }
+        }
+    }
+
+    fn factor(&mut self, depth: usize) -> Result<Expression, Located> {
+        let expected = "a test such as `resid 10`";
+        let (token, place) = self.need(expected)?;
+        if token == Token::Open {
+            return self.any_of(depth + 1, place);
+        }
+        if token.is_keyword("not") {
+            if depth >= MAX_DEPTH {
+                return Err(place.fault(RestraintFault::Nesting(MAX_DEPTH)));
+            }
+            return Ok(Expression::Not(Box::new(self.factor(depth + 1)?)));
+        }
+        if token.is_keyword("all") {
+            return Ok(Expression::All);
+        }
+        if token.is_keyword("hydrogen") {
+            return Ok(Expression::Hydrogen);
+        }
+        if token.is_keyword("segid") || token.is_keyword("chain") {
+            return self.chain();
+        }
+        if token.is_keyword("residue") {
+            return self.residue(true);
+        }
+        if token.is_keyword("resname") {
+            return Ok(Expression::ResidueName(self.name("the name of a residue")?));
+        }
+        if token.is_keyword("name") {
+            return Ok(Expression::Name(self.name("the name of an atom")?));
+        }
+        if token.is_keyword("atom") {
+            let tests = vec![
+                self.chain()?,
+                self.residue(false)?,
+                Expression::Name(self.name("the name of an atom")?),
+            ];
+            return Ok(Expression::And(tests));
+        }
+        Err(unexpected(expected, token, place))
+    }
+
+    /// A name that follows.
+    fn name(&mut self, expected: &'static str) -> Result<NamePattern, Located> {
+        match self.need(expected)? {
+            (Token::Word(word), _) => Ok(NamePattern::new(word)),
+            (Token::Quoted(word), _) => Ok(NamePattern::literal(word)),
+            (token, place) => Err(unexpected(expected, token, place)),
+        }
+    }
+
+    /// A chain: in its own case where one is called so, else in any case.
+    fn chain(&mut self) -> Result<Expression, Located> {
+        let name = self.name("the name of a chain")?;
+        // Where a chain has no name reports say `_`.
+        let name = if name == NamePattern::new("_") && !self.chains.contains("_") {
+            NamePattern::literal("")
+        } else {
+            name
+        };
+        let with_case = name.clone().with_case();
+        let is_there = self.chains.iter().any(|chain| with_case.holds(chain));
+        Ok(Expression::Chain(if is_there { with_case } else { name }))
+    }
+
+    /// Residues by number: one or, where it may be, a range.
+    fn residue(&mut self, may_be_range: bool) -> Result<Expression, Located> {
+        const EXPECTED: &str = "the number of a residue";
+        let (token, place) = self.need(EXPECTED)?;
+        let (word, pattern) = match token {
+            Token::Word(word) => (word, NamePattern::new(word)),
+            Token::Quoted(word) => (word, NamePattern::literal(word)),
+            token => return Err(unexpected(EXPECTED, token, place)),
+        };
+        if may_be_range && self.tokens.skip_colon()? {
+            let (last, last_place) = match self.need(EXPECTED)? {
+                (Token::Word(last) | Token::Quoted(last), place) => (last, place),
+                (token, place) => return Err(unexpected(EXPECTED, token, place)),
+            };
+            let range = [number(word), number(last)];
+            return match range {
+                [Some(first), Some(last)] if first <= last => {
+                    Ok(Expression::Residue(ResidueTest::Range([first, last])))
+                }
+                _ => {
+                    let end = last_place.byte + last.len();
+                    let written = self.tokens.between(place.byte, end);
+                    Err(place.fault(RestraintFault::range(written)))
+                }
+            };
+        }
+        let test = match word.parse() {
+            Ok(number) => ResidueTest::Number(number),
+            Err(_) => ResidueTest::Text(pattern),
+        };
+        Ok(Expression::Residue(test))
+    }
+}
+
+/// Parts as one expression: a single part is its own.
+fn joined(mut parts: Vec<Expression>, join: fn(Vec<Expression>) -> Expression) -> Expression {
+    match parts.pop() {
+        Some(only) if parts.is_empty() => only,
+        Some(last) => {
+            parts.push(last);
+            join(parts)
+        }
+        None => join(parts),
+    }
+}
+
+/// A residue's number with its insertion code: `52` or `52A`.
+fn number(text: &str) -> Option<(i64, Option<char>)> {
+    if let Ok(number) = text.parse() {
+        return Some((number, None));
+    }
+    let insertion = text.chars().last().filter(char::is_ascii_alphabetic)?;
+    let number = text.strip_suffix(insertion)?.parse().ok()?;
+    Some((number, Some(insertion.to_ascii_uppercase())))
+}
+
+/// The fault of a token that does not belong where it is.
+pub(super) fn unexpected(expected: &'static str, found: Token<'_>, place: Place) -> Located {
+    let found = found.shown();
+    place.fault(RestraintFault::Syntax { expected, found })
+}

@@ -1,0 +1,267 @@
+//! Words and signs of a `.tbl` file, with their places.
+
+use crate::restraints::error::{Located, RestraintFault, shortened};
+
+/// A word or a sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Token<'a> {
+    Open,
+    Close,
+    Colon,
+    /// A keyword, a name or a number.
+    Word(&'a str),
+    /// What stands between double quotes: wildcards in it are plain characters.
+    Quoted(&'a str),
+}
+
+impl Token<'_> {
+    /// As a message names it.
+    pub(super) fn shown(self) -> String {
+        match self {
+            Self::Open => "`(`".to_owned(),
+            Self::Close => "`)`".to_owned(),
+            Self::Colon => "`:`".to_owned(),
+            Self::Word(word) | Self::Quoted(word) => format!("`{}`", shortened(word)),
+        }
+    }
+
+    /// Whether it is this keyword, of which at least the first four letters are needed.
+    pub(super) fn is_keyword(self, keyword: &str) -> bool {
+        let Self::Word(word) = self else {
+            return false;
+        };
+        word.len() >= keyword.len().min(4)
+            && keyword
+                .get(..word.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(word))
+    }
+}
+
+/// Where a token begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// Byte of the text.
+    pub(super) byte: usize,
+    /// 1-based line.
+    pub(super) line: usize,
+    /// 1-based character of the line.
+    pub(super) column: usize,
+}
+
+impl Place {
+    /// A fault here.
+    pub(super) fn fault(self, fault: RestraintFault) -> Located {
+        Located {
+            line: Some(self.line),
+            column: Some(self.column),
+            fault,
+        }
+    }
+}
+
+/// Reads tokens one by one: a list of all would be many times as large as the file.
+pub(super) struct Tokens<'a> {
+    text: &'a str,
+    place: Place,
+}
+
+impl<'a> Tokens<'a> {
+    /// The tokens of a text whose lines end with LF.
+    pub(super) fn new(text: &'a str) -> Self {
+        let place = Place {
+            byte: 0,
+            line: 1,
+            column: 1,
+        };
+        Self { text, place }
+    }
+
+    /// The text from one byte to another.
+    pub(super) fn between(&self, from: usize, to: usize) -> &'a str {
+        self.text.get(from..to).unwrap_or_default()
+    }
+
+    /// Where the last token ended.
+    pub(super) fn place(&self) -> Place {
+        self.place
+    }
+
+    /// The next token and its place; none at the end.
+    pub(super) fn next(&mut self) -> Result<Option<(Token<'a>, Place)>, Located> {
+        self.skip_blanks()?;
+        let place = self.place;
+        let Some(first) = self.rest().chars().next() else {
+            return Ok(None);
+        };
+        let token = match first {
+            '(' => self.sign(Token::Open),
+            ')' => self.sign(Token::Close),
+            ':' => self.sign(Token::Colon),
+            '"' => self.quoted()?,
+            '}' => {
+                return Err(place.fault(RestraintFault::Syntax {
+                    expected: "a { before it",
+                    found: "`}`".to_owned(),
+                }));
+            }
+            _ => Token::Word(self.take_until(|c| c.is_whitespace() || "():\"!{}=".contains(c))),
+        };
+        Ok(Some((token, place)))
+    }
+
+    /// Passes over a colon, if one comes next.
+    pub(super) fn skip_colon(&mut self) -> Result<bool, Located> {
+        let before = self.place;
+        self.skip_blanks()?;
+        let is_colon = self.rest().starts_with(':');
+        if is_colon {
+            self.step();
+        } else {
+            self.place = before;
+        }
+        Ok(is_colon)
+    }
+
+    /// Passes over a word that one of these keywords is, if one comes next.
+    pub(super) fn skip_keyword(
+        &mut self,
+        keywords: &[&'static str],
+    ) -> Result<Option<&'static str>, Located> {
+        let before = self.place;
+        if let Some((token, _)) = self.next()? {
+            let mut keywords = keywords.iter();
+            if let Some(keyword) = keywords.find(|keyword| token.is_keyword(keyword)) {
+                return Ok(Some(keyword));
+            }
+        }
+        self.place = before;
+        Ok(None)
+    }
+
+    /// Passes over blanks and comments. `=` is a blank, too: `resid = 10` is `resid 10`.
+    fn skip_blanks(&mut self) -> Result<(), Located> {
+        loop {
+            let place = self.place;
+            match self.rest().chars().next() {
+                Some('!') => {
+                    self.take_until(|c| c == '\n');
+                }
+                Some('{') => {
+                    self.take_until(|c| c == '}');
+                    if self.rest().is_empty() {
+                        return Err(place.fault(RestraintFault::Unclosed("comment")));
+                    }
+                    self.step();
+                }
+                Some(c) if c.is_whitespace() || c == '=' => self.step(),
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    /// A word in quotes, which ends on its line.
+    fn quoted(&mut self) -> Result<Token<'a>, Located> {
+        let place = self.place;
+        self.step();
+        let word = self.take_until(|c| c == '"' || c == '\n');
+        if !self.rest().starts_with('"') {
+            return Err(place.fault(RestraintFault::Unclosed("quoted word")));
+        }
+        self.step();
+        Ok(Token::Quoted(word.trim()))
+    }
+
+    fn sign(&mut self, token: Token<'a>) -> Token<'a> {
+        self.step();
+        token
+    }
+
+    fn rest(&self) -> &'a str {
+        self.text.get(self.place.byte..).unwrap_or_default()
+    }
+
+    /// Passes over characters up to one that ends them.
+    fn take_until(&mut self, ends: impl Fn(char) -> bool) -> &'a str {
+        let from = self.place.byte;
+        while self.rest().chars().next().is_some_and(|c| !ends(c)) {
+            self.step();
+        }
+        self.between(from, self.place.byte)
+    }
+
+    /// Passes over a character.
+    fn step(&mut self) {
+        let Some(passed) = self.rest().chars().next() else {
+            return;
+        };
+        self.place.byte += passed.len_utf8();
+        if passed == '\n' {
+            self.place.line += 1;
+            self.place.column = 1;
+        } else {
+            self.place.column += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(text: &str) -> Result<Vec<(Token<'_>, [usize; 2])>, Located> {
+        let mut tokens = Tokens::new(text);
+        let mut all = Vec::new();
+        while let Some((token, place)) = tokens.next()? {
+            all.push((token, [place.line, place.column]));
+        }
+        Ok(all)
+    }
+
+    #[test]
+    fn words_and_signs_have_places() {
+        let text = "assign!(x\n {a\n) !} (resid=10:20)\"A :(\" é O5'";
+        let expected = [
+            (Token::Word("assign"), [1, 1]),
+            (Token::Open, [3, 6]),
+            (Token::Word("resid"), [3, 7]),
+            (Token::Word("10"), [3, 13]),
+            (Token::Colon, [3, 15]),
+            (Token::Word("20"), [3, 16]),
+            (Token::Close, [3, 18]),
+            (Token::Quoted("A :("), [3, 19]),
+            (Token::Word("é"), [3, 26]),
+            (Token::Word("O5'"), [3, 28]),
+        ];
+        assert_eq!(all(text).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_does_not_end_is_refused_where_it_begins() {
+        for (text, place, fault) in [
+            ("a {b\nc", [1, 3], RestraintFault::Unclosed("comment")),
+            (
+                "a\n \"b\n\"",
+                [2, 2],
+                RestraintFault::Unclosed("quoted word"),
+            ),
+        ] {
+            let error = all(text).unwrap_err();
+            assert_eq!([error.line, error.column], place.map(Some));
+            assert_eq!(error.fault, fault);
+        }
+        assert!(all("}").is_err());
+    }
+
+    #[test]
+    fn keywords_may_be_cut_to_four_letters() {
+        for word in ["resi", "RESID", "Residue"] {
+            assert!(Token::Word(word).is_keyword("residue"));
+        }
+        for word in ["res", "resn", "residues", "résidu", ""] {
+            assert!(!Token::Word(word).is_keyword("residue"));
+        }
+        assert!(Token::Word("OR").is_keyword("or"));
+        assert!(!Token::Word("o").is_keyword("or"));
+        assert!(!Token::Quoted("or").is_keyword("or"));
+    }
+}
