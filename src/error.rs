@@ -1,6 +1,7 @@
 //! Why a search was refused or failed, and what to do about it.
 
 use crate::dock::memory::size::as_size;
+use crate::restraints::{Needed, RestraintFileError};
 use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::symmetry::Symmetry;
@@ -67,6 +68,25 @@ pub enum SearchError {
         needed: u64,
         /// Bytes allowed.
         allowed: u64,
+    },
+    /// The file of restraints does not fit the molecules.
+    #[error(transparent)]
+    Restraints(#[from] RestraintFileError),
+    /// More restraints have to be satisfied than there are.
+    #[error("{needed} restraints have to be satisfied, and there are {count}")]
+    RestraintsNeed {
+        /// How many have to be.
+        needed: Needed,
+        /// How many there are.
+        count: usize,
+    },
+    /// No sampled pose can satisfy so many restraints.
+    #[error("no pose that is searched can satisfy {needed} of the {count} restraints")]
+    NoAllowedPose {
+        /// How many have to be.
+        needed: usize,
+        /// How many there are.
+        count: usize,
     },
     /// The threads could not be started.
     #[error(transparent)]
@@ -152,6 +172,14 @@ impl SearchError {
                 )
             }
             Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
+            Self::Restraints(error) => error.remedy(),
+            Self::RestraintsNeed { count, .. } => {
+                format!("give --restraints-need a number up to {count}, or a share")
+            }
+            Self::NoAllowedPose { .. } => {
+                "accept fewer with --restraints-need, raise upper bounds, or check chains and numbers of residues"
+                    .to_owned()
+            }
             Self::NoPose => "check lambda and the offset".to_owned(),
         }
     }

@@ -429,15 +429,14 @@ fn a_mesh_too_thin_for_its_grid() {
     );
 }
 
-/// The crate clap suggests what is spelled alike: `--restraint-weight` for `--restraints`, `--poses` for `--cores`,
-/// nothing for `rmsd`.
+/// The crate clap suggests what is spelled alike: `--poses` for `--cores`, nothing for `rmsd`.
 #[test]
 fn words_of_other_programs_are_answered_by_what_does_that_here() {
     for (words, expected, wrong) in [
         (
-            "dock a.pdb b.pdb --restraints x.tbl",
-            "--active-receptor",
-            "--restraint-weight",
+            "dock a.pdb b.pdb --ambig-fname x.tbl",
+            "--restraints FILE",
+            "similar",
         ),
         ("dock a.pdb b.pdb --cores 4", "--threads N", "--poses"),
         ("dock a.pdb b.pdb --seed=3", "nothing is random", "similar"),

@@ -437,7 +437,7 @@ fn words_of_the_field_are_explained_in_columns_and_options() {
         said.contains("line 2") && said.contains("--threads N"),
         "{said}"
     );
-    let refused = batch(folder.path(), "batch in/pairs.csv -o out -- --restraints=x");
+    let refused = batch(folder.path(), "batch in/pairs.csv -o out -- --ambig=x");
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2));
     assert!(said.contains("--active-receptor"), "{said}");

@@ -36,6 +36,7 @@ mod paper_figures;
 mod reading;
 mod refine;
 mod residues_by_name;
+mod restraints;
 mod rings;
 mod sample;
 mod score;

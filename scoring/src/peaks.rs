@@ -104,6 +104,14 @@ pub(crate) fn largest<T: Real>(values: &[T]) -> T {
         .fold(T::neg_infinity(), |a, &b| larger(a, b))
 }
 
+/// Largest of some values; minus infinity of none.
+pub fn largest_of<T: Real>(values: &[T]) -> T {
+    vectorized(
+        #[inline(always)]
+        || largest(values),
+    )
+}
+
 /// First of the largest finite values, with its index.
 #[inline(always)]
 fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {

@@ -21,7 +21,8 @@ With --bound ligand, receptor or both the bound structures of these sides are do
 apart and docked again.
 
 With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
-contact in the known complex, and are drawn by the pair's id and the seed.
+contact in the known complex, and are drawn by the pair's id and the seed. With --restraints it gets distances
+likewise (scripts/benchmark/known_distances.py says which).
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -54,6 +55,7 @@ from docked_pairs import (
     write,
 )
 from docking import find_program, measured, seeds, split_arguments, start_orientation
+from known_distances import KINDS, restraint_options
 from known_residues import active_residues
 from tables import RANKINGS, markdown, ranks_csv
 
@@ -108,6 +110,7 @@ def parse_arguments():
     add("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
     add("--bound", type=names, default=[], metavar="SIDES", help="dock the bound structure of receptor, ligand or both")
     add("--active", type=int, default=0, metavar="N", help="known contact residues of either side (default: 0)")
+    add("--restraints", choices=KINDS, help="known distances (default: none)")
     options = parser.parse_args(arguments)
     for owned in OWNED:
         if owned in dock_options:
@@ -153,6 +156,8 @@ def run_one(options, program, pair, seed):
         settings["tables"] = options.tables
     if options.active:
         settings["active"] = options.active
+    if options.restraints:
+        settings["restraints"] = options.restraints
     try:
         files = {part: find_part(options.folder / pair["id"], part) for part in PARTS}
         files |= {f"{side}_unbound": files[f"{side}_bound"] for side in options.bound}
@@ -188,9 +193,11 @@ def dock_and_measure(options, folder, files, name, seed):
     for option, value in (("--no-cluster", []), ("--write-top", ["0"])):
         if option not in options.dock_options:
             command += [option, *value]
+    texts = {part: read_text(path) for part, path in files.items()}
     if options.active:
-        texts = {part: read_text(path) for part, path in files.items()}
         command += active_residues(texts, name, seed, options.active)
+    if options.restraints:
+        command += restraint_options(options.restraints, texts, name, seed, folder / "restraints.csv")
     cost = measured(command + options.dock_options, folder / "dock.log")
     # The system's figure for a child can be that of this script before it became the child; the program's own is not.
     own_peak = json.loads((run / "run.json").read_text())["timing"]["peak_memory_bytes"]

@@ -7,6 +7,7 @@ use knotdock::dock::memory::process;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::run::dock_until;
+use knotdock::error::SearchError;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::Staging;
@@ -17,6 +18,7 @@ use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::fields::Column;
 use knotdock::output::tables::quality;
 use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
+use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
@@ -143,8 +145,12 @@ impl Docking {
         let staging = Staging::open(&self.directory, self.force)?;
         let progress = console.progress();
         let PreparedPair { plan, points, .. } = &self.prepared;
-        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress)
-            .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
+        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
+            |error| match error {
+                SearchError::NoAllowedPose { .. } => Failure::input(&error).remedy(error.remedy()),
+                error => Failure::other(&error).remedy(error.remedy()),
+            },
+        )?;
         drop(progress);
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
@@ -170,10 +176,16 @@ impl Docking {
         } = self;
         let output = &request.options.output;
         let rows = pose_rows(&outcome.poses);
-        let quality = match evaluator {
-            Some(evaluator) => quality::columns(&measure(evaluator, &rows)),
-            None => Vec::new(),
-        };
+        let plan = &self.prepared.plan;
+        let mut quality: Vec<Column> = restraints::met(plan, &outcome.poses).into_iter().collect();
+        if let Some(evaluator) = evaluator {
+            quality.extend(quality::columns(&measure(evaluator, &rows)));
+        }
+        if !plan.restraints.is_empty() {
+            staging.write("restraints.csv", |file| {
+                restraints::write_to(plan, &outcome.poses, file)
+            })?;
+        }
         let columns = (self.prepared.plan.sharp(), output.diagnostics);
         let table = RunTable::new(&outcome.poses, columns, &quality);
         staging.write("poses.csv", |file| table.write_to(file))?;

@@ -124,7 +124,10 @@ impl Score {
     fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
         let options = self.ladder(dock);
         let reading = dock.input.reading();
-        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
+        let refused = |error: SearchError| match error {
+            SearchError::Restraints(error) => error.into(),
+            error => Failure::input(&error).remedy(error.remedy()),
+        };
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
         let [receptor, ligand] = inputs.map(|input| input.molecule);
         console.say(format!("Receptor: {}", receptor.report));

@@ -9,6 +9,7 @@ use crate::error::SearchError;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::priors::restrained::Restrained;
 use crate::rank::rescoring::Rescoring;
 use crate::rank::sharp::SharpInputs;
 use crate::search::plan::SearchPlan;
@@ -71,6 +72,9 @@ pub struct DockPlan {
     /// Residues that should be in contact.
     #[serde(skip)]
     pub(crate) active: ActiveResidues,
+    /// Restraints on distances between receptor and ligand.
+    #[serde(skip)]
+    pub restraints: Restrained,
     /// What was assumed of charges and contact types, of receptor and ligand.
     pub labels: [LabelReport; 2],
     /// Unresolved segments and residues near termini, of receptor and ligand.
@@ -112,7 +116,11 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     let refined = refined(&space, &scene.decisions, options);
     let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
     let limits = (memory.in_flight(), memory.graphics);
-    let search = SearchPlan::new(Arc::new(engine), space, options, limits);
+    let known = (
+        &scene.restraints.distances,
+        [&scene.receptor, &scene.ligand],
+    );
+    let search = SearchPlan::new(Arc::new(engine), space, options, known, limits);
     let engine = &search.engine;
     let radii = match engine.basis() {
         RadiusBasis::Classes { receptor, ligand } => [receptor.len(), ligand.len()],
@@ -139,6 +147,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
         memory,
         decisions: scene.decisions,
         active: scene.active,
+        restraints: scene.restraints,
         labels: scene.labels,
         regions: scene.regions,
         polar: scene.polar,
@@ -206,7 +215,8 @@ impl DockPlan {
     /// Inputs and weights of the pose terms.
     pub(crate) fn rescoring(&self) -> Rescoring<'_> {
         let bodies = [&self.receptor, &self.ligand];
-        Rescoring::new(bodies, &self.active, &self.regions, &self.options)
+        let known = (&self.active, &self.restraints.distances);
+        Rescoring::new(bodies, known, &self.regions, &self.options)
     }
 
     /// Rotations that would be in flight if there were more than enough of them.

@@ -249,7 +249,15 @@ fn find<T: Real>(
     } = scan(search, engine, &groups, search.kept, deadline, progress)?;
     clock.lap("search");
     if peaks.is_empty() {
-        return Err(SearchError::NoPose);
+        let restraints = &plan.restraints.distances;
+        return Err(if restraints.list.is_empty() {
+            SearchError::NoPose
+        } else {
+            SearchError::NoAllowedPose {
+                needed: restraints.needed,
+                count: restraints.list.len(),
+            }
+        });
     }
     let mut fine = None;
     if !search.rotations.fine.is_empty() {

@@ -7,6 +7,7 @@ use crate::mesh::MeshPair;
 use crate::options::{DockOptions, SharpChoice};
 use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::priors::restrained::Restrained;
 use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::engine::{EngineOptions, Plan};
@@ -58,6 +59,8 @@ pub struct Scene {
     pub labels: [LabelReport; 2],
     /// Residues that should be in contact.
     pub active: ActiveResidues,
+    /// Restraints on distances between the two.
+    pub restraints: Restrained,
     /// Unresolved segments and residues near termini; empty where they cost nothing.
     pub regions: FlexibleRegions,
     /// The parts of the atoms of receptor and ligand in hydrogen bonds, where sharp fits are looked for.
@@ -149,6 +152,7 @@ impl Scene {
                 }
                 knots
             });
+        let distances = Restrained::new(molecules, &options.restraints)?;
         Ok(Self {
             unit: LengthUnit::Angstrom,
             angstrom: 1.0,
@@ -159,6 +163,7 @@ impl Scene {
             decisions,
             labels: [receptor_report, ligand_report],
             active,
+            restraints: distances,
             polar,
             regions: FlexibleRegions::of(molecules, options),
             ring_axis,
@@ -184,6 +189,7 @@ impl Scene {
             decisions: effect_decisions::of_meshes(options)?,
             labels: [LabelReport::default(), LabelReport::default()],
             active: Default::default(),
+            restraints: Default::default(),
             polar: None,
             regions: Default::default(),
             ring_axis: None,
@@ -231,7 +237,8 @@ impl Scene {
     /// The pose terms prepared for rescoring; `None` if no term acts.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
-        Rescoring::new(bodies, &self.active, &self.regions, options).rescorer()
+        let known = (&self.active, &self.restraints.distances);
+        Rescoring::new(bodies, known, &self.regions, options).rescorer()
     }
 }
 

@@ -115,7 +115,42 @@ impl DockOptions {
             });
         }
         self.check_rings()?;
+        self.check_restraints()?;
         self.check_engine()
+    }
+
+    /// Refuses what distance restraints have no part in.
+    fn check_restraints(&self) -> Result<(), SearchError> {
+        let (restraints, default) = (&self.restraints, Self::default().restraints);
+        let refused = |name, value: String, bound: &str| SearchError::Option {
+            name,
+            value,
+            bound: bound.to_owned(),
+        };
+        let Some(file) = &restraints.restraints else {
+            let bound = "left out without --restraints";
+            if restraints.restraints_need != default.restraints_need {
+                let value = restraints.restraints_need.to_string();
+                return Err(refused("restraints-need", value, bound));
+            }
+            return match restraints.crosslink {
+                Some(crosslink) => Err(refused("crosslink", crosslink.to_string(), bound)),
+                None => Ok(()),
+            };
+        };
+        if let Some(symmetry) = self.search.symmetry {
+            let bound = format!("left out with --symmetry {symmetry}");
+            return Err(refused(
+                "restraints",
+                file.path.display().to_string(),
+                &bound,
+            ));
+        }
+        if self.search.engine != EngineChoice::Cpu {
+            let bound = "cpu with --restraints";
+            return Err(refused("engine", name_of(self.search.engine), bound));
+        }
+        Ok(())
     }
 
     /// Refuses what a search for rings has no part for.

@@ -1,11 +1,14 @@
 //! Options on known contacts.
 
-use clap::{Args, ValueEnum};
+use std::path::Path;
+
+use clap::{Args, ValueEnum, ValueHint};
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 use super::values::number;
 use crate::priors::peptidase;
+use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError};
 
 /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +34,19 @@ pub struct RestraintOptions {
     /// Active residues of the ligand, likewise.
     #[arg(long, value_name = "RESIDUES")]
     pub active_ligand: Option<ResidueSelection>,
+    /// Distances that are known between receptor and ligand: a table (columns receptor, ligand, lower, target, upper,
+    /// group; residues as A:57, atoms as A:57.CA) or a .tbl of HADDOCK and CNS. Poses that cannot satisfy them are not
+    /// searched.
+    #[arg(long, value_name = "FILE", value_parser = restraint_file, value_hint = ValueHint::FilePath)]
+    pub restraints: Option<RestraintFile>,
+    /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%. Fewer than all, where some
+    /// may be false.
+    #[arg(long, value_name = "K|SHARE", default_value_t = Needed::default())]
+    pub restraints_need: Needed,
+    /// The reagent of cross-links: rows of --restraints without an upper bound get that of its CA atoms. DSS or BS3:
+    /// 30 Å.
+    #[arg(long, value_name = "NAME")]
+    pub crosslink: Option<Crosslink>,
     /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues
     /// that does: score. Peptidases are detected from their sequence, and this counts where the contact effect is on,
     /// no residue is active and the other is neither peptidase nor antibody; 0 for none.
@@ -49,6 +65,11 @@ impl RestraintOptions {
         ];
         named.into_iter().any(Option::is_some)
     }
+}
+
+/// The restraints of a file.
+fn restraint_file(path: &str) -> Result<RestraintFile, RestraintFileError> {
+    RestraintFile::read(Path::new(path))
 }
 
 /// What part of an antibody may touch.

@@ -7,6 +7,7 @@ pub mod active_residues;
 pub mod antibody;
 pub mod peptidase;
 mod peptidase_families;
+pub mod restrained;
 pub mod restraints;
 #[cfg(test)]
 mod test_chains;

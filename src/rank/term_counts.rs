@@ -1,7 +1,7 @@
 //! Numbers of a molecule's parts that each pose term reads.
 
 use crate::priors::{self, SiteRole};
-use knotdock_scoring::terms::pose::{POSE_TERMS, TermDefinition, TermInputs};
+use knotdock_scoring::terms::pose::{DistanceRestraints, POSE_TERMS, TermDefinition, TermInputs};
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{Labels, Molecule, Termini, UnresolvedResidues};
 
@@ -30,6 +30,7 @@ pub fn of(
         active_residues: &active,
         unresolved: [&unresolved.segments, &[]],
         termini: [&termini.atoms, &[]],
+        distance_restraints: DistanceRestraints::none(),
     };
     let count = |term: &'static TermDefinition| {
         let [count, _] = (term.count)(&inputs);

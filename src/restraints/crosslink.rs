@@ -5,6 +5,9 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 /// A cross-linking reagent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crosslink {
@@ -66,6 +69,18 @@ impl FromStr for Crosslink {
                 names.any(|name| plain(name) == wanted)
             })
             .ok_or_else(|| UnknownCrosslink(name.to_owned()))
+    }
+}
+
+impl Serialize for Crosslink {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.name)
+    }
+}
+
+impl<'de> Deserialize<'de> for Crosslink {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
     }
 }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::error::Located;
 use super::test_molecules::molecules;
-use super::{CROSSLINKS, DistanceRestraint, parse};
+use super::{CROSSLINKS, NamedRestraint, parse};
 
 /// Reads bytes in both formats; what is read must be usable.
 fn reads_or_refuses(bytes: &[u8]) {
@@ -30,7 +30,7 @@ fn reads_or_refuses(bytes: &[u8]) {
     }
 }
 
-fn check(restraint: &DistanceRestraint, molecules: [&Molecule; 2]) {
+fn check(restraint: &NamedRestraint, molecules: [&Molecule; 2]) {
     assert!(!restraint.pairs.is_empty() && !restraint.name.is_empty() && restraint.line > 0);
     for pair in &restraint.pairs {
         for (atoms, molecule) in pair.iter().zip(molecules) {

@@ -15,8 +15,8 @@
 
 mod bounds;
 pub mod crosslink;
-mod effective;
 pub mod error;
+mod needed;
 mod restraint;
 mod side_atoms;
 pub mod table;
@@ -29,28 +29,70 @@ mod test_molecules;
 
 pub use self::crosslink::{CROSSLINKS, Crosslink, UnknownCrosslink};
 pub use self::error::{RestraintFault, RestraintFileError};
-pub use self::restraint::DistanceRestraint;
+pub use self::needed::{Needed, NeededError};
+pub use self::restraint::NamedRestraint;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use knotdock_structures::molecule::Molecule;
+use serde::{Deserialize, Serialize};
 
 use self::error::Located;
 use crate::bounded_read::{MAX_RESTRAINTS, read_bounded};
 
+/// A file of restraints as it was read. Which atoms it names depends on the molecules.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RestraintFile {
+    /// Its name.
+    pub path: PathBuf,
+    /// What it holds.
+    pub text: String,
+}
+
+impl RestraintFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`RestraintFileError`] where it cannot be read, is too large or no text.
+    pub fn read(path: &Path) -> Result<Self, RestraintFileError> {
+        let unreadable = |error: String| Located::in_file(RestraintFault::Unreadable(error));
+        let text = read_bounded(path, MAX_RESTRAINTS)
+            .map_err(|error| unreadable(error.to_string()))
+            .and_then(|bytes| {
+                String::from_utf8(bytes)
+                    .map_err(|_| unreadable("it is no text in UTF-8".to_owned()))
+            });
+        Ok(Self {
+            path: path.to_owned(),
+            text: text.map_err(|located| located.of(path))?,
+        })
+    }
+
+    /// The restraints between the molecules receptor and ligand.
+    ///
+    /// # Errors
+    /// [`RestraintFileError`], also where a file of `.tbl` is given with a preset: its statements have their distances.
+    pub fn between(
+        &self,
+        molecules: [&Molecule; 2],
+        crosslink: Option<Crosslink>,
+    ) -> Result<Vec<NamedRestraint>, RestraintFileError> {
+        let bytes = self.text.clone().into_bytes();
+        parse(bytes, is_tbl(&self.path), molecules, crosslink)
+            .map_err(|located| located.of(&self.path))
+    }
+}
+
 /// Reads the restraints of a file between the molecules receptor and ligand.
 ///
 /// # Errors
-/// [`RestraintFileError`], also where a file of `.tbl` is given with a preset: its statements have their distances.
+/// As [`RestraintFile::read`] and [`RestraintFile::between`].
 pub fn read(
     path: &Path,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
-) -> Result<Vec<DistanceRestraint>, RestraintFileError> {
-    let parsed = read_bounded(path, MAX_RESTRAINTS)
-        .map_err(|error| Located::in_file(RestraintFault::Unreadable(error.to_string())))
-        .and_then(|bytes| parse(bytes, is_tbl(path), molecules, crosslink));
-    parsed.map_err(|located| located.of(path))
+) -> Result<Vec<NamedRestraint>, RestraintFileError> {
+    RestraintFile::read(path)?.between(molecules, crosslink)
 }
 
 /// Whether the name of a file says that it holds assign statements.
@@ -65,7 +107,7 @@ fn parse(
     is_tbl: bool,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
-) -> Result<Vec<DistanceRestraint>, Located> {
+) -> Result<Vec<NamedRestraint>, Located> {
     let bytes = with_line_feeds(bytes);
     let restraints = match (is_tbl, crosslink) {
         (true, Some(crosslink)) => Err(Located::in_file(RestraintFault::CrosslinkOfTbl(
@@ -103,7 +145,7 @@ mod tests {
     use super::test_molecules::molecules;
     use super::*;
 
-    fn written(name: &str, bytes: &[u8]) -> Result<Vec<DistanceRestraint>, RestraintFileError> {
+    fn written(name: &str, bytes: &[u8]) -> Result<Vec<NamedRestraint>, RestraintFileError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();

@@ -1,10 +1,12 @@
 //! One restraint, and how much of them is kept.
 
+use knotdock_scoring::terms::pose::DistanceRestraint;
+
 use crate::restraints::error::RestraintFault;
 
 /// A restraint on the effective distance between atoms of the receptor and atoms of the ligand.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DistanceRestraint {
+pub struct NamedRestraint {
     /// Name for reports: the group or the two residues of a row, or the number of the statement.
     pub name: String,
     /// 1-based line on which it begins.
@@ -18,6 +20,17 @@ pub struct DistanceRestraint {
     pub target: Option<f64>,
     /// Largest effective distance that satisfies it, in Å.
     pub upper: f64,
+}
+
+impl NamedRestraint {
+    /// What scores: atoms and bounds.
+    pub fn distance(&self) -> DistanceRestraint {
+        DistanceRestraint {
+            pairs: self.pairs.clone(),
+            lower: self.lower,
+            upper: self.upper,
+        }
+    }
 }
 
 /// Most atoms that the selections of a file may hold together: 80 MB, and three times as much while a table is read.

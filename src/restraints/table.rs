@@ -24,7 +24,7 @@ use crate::output::tables::spreadsheet::{column_name, plain};
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::crosslink::Crosslink;
 use crate::restraints::error::{Located, RestraintFault, listed, shortened};
-use crate::restraints::restraint::{DistanceRestraint, SelectedAtoms};
+use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
 use crate::restraints::side_atoms::SideAtoms;
 
 /// The columns that a table may have.
@@ -37,7 +37,7 @@ pub(super) fn parse(
     bytes: Vec<u8>,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
-) -> Result<Vec<DistanceRestraint>, Located> {
+) -> Result<Vec<NamedRestraint>, Located> {
     let (text, delimiter) =
         plain(bytes).map_err(|message| Located::in_file(RestraintFault::Unreadable(message)))?;
     let line = |position: &csv::Position| {
@@ -125,7 +125,7 @@ impl Header {
 
 /// Restraints of the rows so far.
 struct Rows<'a> {
-    restraints: Vec<DistanceRestraint>,
+    restraints: Vec<NamedRestraint>,
     /// The restraint of each group, with the alternatives that it has.
     groups: HashMap<String, Group>,
     sides: [SideAtoms<'a>; 2],
@@ -192,7 +192,7 @@ impl<'a> Rows<'a> {
             self.groups.insert(group.to_owned(), known);
             group.to_owned()
         };
-        self.restraints.push(DistanceRestraint {
+        self.restraints.push(NamedRestraint {
             name,
             line,
             pairs: vec![pair],

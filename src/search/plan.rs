@@ -3,7 +3,10 @@
 use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
 use crate::pose_space::rotations::RotationSample;
+use crate::search::allowed::Allowed;
 use knotdock_scoring::engine::Plan;
+use knotdock_scoring::terms::pose::DistanceRestraints;
+use knotdock_structures::Knots;
 use std::sync::Arc;
 
 /// Plan of a search: what it covers, where it runs and what it keeps.
@@ -13,6 +16,8 @@ pub struct SearchPlan {
     pub engine: Arc<Plan>,
     /// The poses that are searched.
     pub space: PoseSpace,
+    /// Translations that distance restraints allow; `None` without any.
+    pub(crate) allowed: Option<Allowed>,
     /// The rotations that are sampled.
     pub rotations: RotationSample,
     /// Share of the finer set that is searched.
@@ -32,18 +37,24 @@ pub struct SearchPlan {
 }
 
 impl SearchPlan {
-    /// A search by the options, with so many rotations in flight and so much graphics memory.
+    /// A search by the options and the restraints on distances between the knots of receptor and ligand, with so many
+    /// rotations in flight and so much graphics memory.
     pub fn new(
         engine: Arc<Plan>,
         space: PoseSpace,
         options: &DockOptions,
+        (restraints, knots): (&DistanceRestraints, [&Knots; 2]),
         (in_flight, graphics_bytes): (usize, u64),
     ) -> Self {
+        let rotations = space.rotations(
+            &engine,
+            (options.search.rotations, options.search.fine_rotations),
+        );
+        let step = space.step(rotations.covering_radius);
+        let any = !restraints.list.is_empty();
         Self {
-            rotations: space.rotations(
-                &engine,
-                (options.search.rotations, options.search.fine_rotations),
-            ),
+            allowed: any.then(|| Allowed::new(restraints, knots, &engine, step)),
+            rotations,
             engine,
             space,
             fine_share: options.search.fine_share,

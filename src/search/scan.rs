@@ -3,6 +3,7 @@
 use crate::error::SearchError;
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
+use crate::search::allowed::{RowMask, Tally};
 use crate::search::deadline::Deadline;
 use crate::search::plan::SearchPlan;
 use crate::search::scan_engine::ScanEngine;
@@ -117,18 +118,35 @@ fn scan_on_cores<T: Real>(
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace_of(plan.rotations.images);
+            let mut masks: [RowMask; IMAGES] = Default::default();
+            let mut tally = Tally::default();
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
             // What scores less is not kept whatever else is found.
             let mut floor = f64::NEG_INFINITY;
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
-                engine.transform_ligand(&rotation, &mut work);
                 let (mut turns, mut images) = ([GridTurn::NONE; IMAGES], [0; IMAGES]);
-                for ((turn, image), wanted) in turns.iter_mut().zip(&mut images).zip(group.images())
-                {
-                    (*turn, *image) = (GridTurn::ALL[wanted], wanted);
+                let mut count = 0;
+                for image in group.images() {
+                    // A rotation at which no translation is allowed needs no correlation.
+                    if let Some(allowed) = &plan.allowed {
+                        let (rotation, turn) = plan.rotations.rotation(group.first + image);
+                        allowed.mask(engine, &rotation, turn, &mut tally, &mut masks[count]);
+                        if masks[count].is_empty() {
+                            progress.advance(1);
+                            continue;
+                        }
+                    }
+                    (turns[count], images[count]) = (GridTurn::ALL[image], image);
+                    count += 1;
                 }
-                engine.correlate_each(&turns[..group.count()], &mut work, |place, work| {
+                if count > 0 {
+                    engine.transform_ligand(&rotation, &mut work);
+                }
+                engine.correlate_each(&turns[..count], &mut work, |place, work| {
+                    if plan.allowed.is_some() {
+                        masks[place].apply(plan.engine.size(), &mut work.grid, &mut work.row_best);
+                    }
                     if let Some(filter) = &filter {
                         filter.keep(&rotation, &mut work.grid, &mut work.row_best);
                     }

@@ -161,6 +161,7 @@ fn scene(options: &DockOptions) -> Result<Scene, KnotsError> {
         decisions: decisions.to_vec(),
         labels: [LabelReport::default(), LabelReport::default()],
         active: Default::default(),
+        restraints: Default::default(),
         regions: Default::default(),
         ring_axis: None,
     })

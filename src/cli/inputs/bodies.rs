@@ -138,6 +138,7 @@ impl Bodies {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
                 PreparedPair::molecules(molecules, options).map_err(|error| match error {
                     SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
+                    SearchError::Restraints(error) => error.into(),
                     error => refused(error),
                 })
             }

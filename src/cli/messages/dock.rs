@@ -19,6 +19,14 @@ pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
     if let Some(site) = plan.active_site() {
         lines.push(site_text(site));
     }
+    let restraints = &plan.restraints.distances;
+    if !restraints.list.is_empty() {
+        lines.push(format!(
+            "{}, of which a pose has to satisfy {}: only such poses were searched",
+            counted(restraints.list.len(), "distance restraint"),
+            restraints.needed
+        ));
+    }
     if let Some(adapter) = &outcome.adapter {
         lines.insert(
             0,

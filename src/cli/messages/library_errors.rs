@@ -15,6 +15,7 @@ use knotdock::output::records::input_record::InputRecordError;
 use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
+use knotdock::restraints::RestraintFileError;
 use knotdock::threads::ThreadsError;
 use knotdock_structures::ball_file::BallFileError;
 use knotdock_structures::mesh::MeshError;
@@ -58,10 +59,19 @@ impl From<ConfigError> for Failure {
 impl From<clap::Error> for Failure {
     fn from(error: clap::Error) -> Self {
         let source = error.source();
-        match source.and_then(|source| source.downcast_ref::<PotentialFileError>()) {
+        if let Some(error) = source.and_then(|source| source.downcast_ref::<PotentialFileError>()) {
+            return error.clone().into();
+        }
+        match source.and_then(|source| source.downcast_ref::<RestraintFileError>()) {
             Some(error) => error.clone().into(),
             None => Self::input(first_paragraph(&error)),
         }
+    }
+}
+
+impl From<RestraintFileError> for Failure {
+    fn from(error: RestraintFileError) -> Self {
+        unreadable(&error, Some(&error.path), error.line, error.remedy())
     }
 }
 

@@ -14,5 +14,6 @@ pub mod poses_reader;
 pub mod quality;
 pub mod refined;
 pub mod report;
+pub mod restraints;
 pub mod run_table;
 pub(crate) mod spreadsheet;

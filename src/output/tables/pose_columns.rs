@@ -11,7 +11,7 @@
 //! Columns for diagnosis come last: what the fast path gave, and from where.
 
 use knotdock_scoring::terms::effect::Effect;
-use knotdock_scoring::terms::pose::POSE_TERMS;
+use knotdock_scoring::terms::pose::{POSE_TERMS, TermDefinition};
 
 use crate::dock::outcome::RankedPose;
 use crate::output::tables::fields::number;
@@ -52,9 +52,12 @@ fn count(name: &'static str, value: impl Fn(&RankedPose) -> Option<usize> + 'sta
     })
 }
 
-/// The columns after `rank`: with those of sharp fits where these were looked for, and those for diagnosis where they
-/// are wanted.
-pub(crate) fn columns(sharp: bool, diagnostics: bool) -> Vec<PoseColumn> {
+/// The columns after `rank`: with those of sharp fits where these were looked for, those for diagnosis where they are
+/// wanted, and those of the pose terms that are shown.
+pub(crate) fn columns(
+    (sharp, diagnostics): (bool, bool),
+    is_shown: impl Fn(&TermDefinition) -> bool,
+) -> Vec<PoseColumn> {
     let mut columns = vec![
         column("score", |row| row.score),
         count("cluster", |row| row.cluster),
@@ -68,6 +71,7 @@ pub(crate) fn columns(sharp: bool, diagnostics: bool) -> Vec<PoseColumn> {
     columns.extend(
         POSE_TERMS
             .iter()
+            .filter(|term| is_shown(term))
             .map(|term| optional(term.id, |row| row.pose_terms.get(term.id))),
     );
     columns.push(optional("other_copies", |row| row.other_copies));
@@ -119,7 +123,7 @@ mod tests {
     /// A term whose id is a column's name already would hide one of the two.
     #[test]
     fn names_are_distinct_and_hold_every_term() {
-        let names: Vec<&str> = columns(true, true)
+        let names: Vec<&str> = columns((true, true), |_| true)
             .iter()
             .map(|column| column.name)
             .collect();
@@ -131,7 +135,7 @@ mod tests {
                 .iter()
                 .all(|effect| distinct.contains(effect.name()))
         );
-        let default = columns(true, false);
+        let default = columns((true, false), |_| true);
         assert!(
             default
                 .iter()

@@ -32,8 +32,14 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
         ];
         line.extend(appended.iter().map(|column| {
             let field = column.fields.get(index).map_or("", String::as_str);
+            // A column of counts has none but whole numbers.
+            let is_count = column
+                .fields
+                .iter()
+                .all(|field| field.parse::<u64>().is_ok());
             match field.parse::<f64>() {
-                Ok(value) => format!("{value:.2}"),
+                Ok(value) if !is_count => format!("{value:.2}"),
+                Ok(_) => field.to_owned(),
                 Err(_) => field.to_owned(),
             }
         }));
@@ -132,6 +138,14 @@ mod tests {
             name: "irmsd".to_owned(),
             fields: ["1.234", "", "", "3.5"].map(str::to_owned).to_vec(),
         };
+        let met = Column {
+            name: "met".to_owned(),
+            fields: ["3", "0", "1", "2", "3", "0"].map(str::to_owned).to_vec(),
+        };
+        assert!(
+            best_clusters(&ranking, &[met])
+                .contains("   4    6.0             2         6.0             2")
+        );
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
             "  rank  score  cluster size  pose score  z-score  irmsd\n\

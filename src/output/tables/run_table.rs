@@ -21,14 +21,13 @@ pub struct RunTable<'a> {
 impl<'a> RunTable<'a> {
     /// The table of some poses: with columns of sharp fits if these were looked for, with columns for diagnosis if they
     /// are wanted, and further columns after them. A row for which a further column has no field gets an empty one.
-    pub fn new(
-        poses: &'a [RankedPose],
-        (sharp, diagnostics): (bool, bool),
-        further: &'a [Column],
-    ) -> Self {
+    pub fn new(poses: &'a [RankedPose], choice: (bool, bool), further: &'a [Column]) -> Self {
         Self {
             poses,
-            columns: columns(sharp, diagnostics),
+            columns: columns(choice, |term| {
+                let has = |pose: &RankedPose| pose.pose_terms.get(term.id).is_some();
+                term.is_shown_always || poses.iter().any(has)
+            }),
             further,
         }
     }

@@ -4,12 +4,12 @@ use super::*;
 use crate::restraints::CROSSLINKS;
 use crate::restraints::test_molecules::molecules;
 
-fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<DistanceRestraint>, Located> {
+fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<NamedRestraint>, Located> {
     let [receptor, ligand] = molecules();
     parse(text.into(), [&receptor, &ligand], crosslink)
 }
 
-fn read(text: &str) -> Result<Vec<DistanceRestraint>, Located> {
+fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
     read_with(text, None)
 }
 
@@ -19,7 +19,7 @@ fn read(text: &str) -> Result<Vec<DistanceRestraint>, Located> {
 #[test]
 fn a_row_is_a_restraint() {
     let read = read("receptor,ligand,lower,target,upper,group\nA:10,B:21.CA,2,5,8.5,\n").unwrap();
-    let expected = DistanceRestraint {
+    let expected = NamedRestraint {
         name: "A:10 - B:21.CA".to_owned(),
         line: 2,
         pairs: vec![[vec![0, 1, 2, 3], vec![6]]],

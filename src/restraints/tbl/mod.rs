@@ -34,7 +34,7 @@ use self::sides::{SIDES, Sides};
 use self::tokens::{Place, Token};
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::error::{Located, RestraintFault, shortened};
-use crate::restraints::restraint::{DistanceRestraint, SelectedAtoms};
+use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
 
 /// What may stand behind the distances with a number, and says nothing of them.
 const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "cv"];
@@ -43,7 +43,7 @@ const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "c
 pub(super) fn parse(
     bytes: Vec<u8>,
     molecules: [&Molecule; 2],
-) -> Result<Vec<DistanceRestraint>, Located> {
+) -> Result<Vec<NamedRestraint>, Located> {
     let text = String::from_utf8(bytes).map_err(|_| {
         Located::in_file(RestraintFault::Unreadable(
             "it is not text in UTF-8".to_owned(),
@@ -80,7 +80,7 @@ struct Statements<'a> {
 
 impl Statements<'_> {
     /// The statement behind `assign`, which is at `place`.
-    fn assign(&mut self, name: String, place: Place) -> Result<DistanceRestraint, Located> {
+    fn assign(&mut self, name: String, place: Place) -> Result<NamedRestraint, Located> {
         let mut pairs = vec![self.pair()?];
         let bounds = Bounds::about(
             self.distance("the distance")?,
@@ -111,7 +111,7 @@ impl Statements<'_> {
                 break;
             }
         }
-        Ok(DistanceRestraint {
+        Ok(NamedRestraint {
             name,
             line: place.line,
             pairs,

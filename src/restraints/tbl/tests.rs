@@ -3,7 +3,7 @@
 use super::*;
 use crate::restraints::test_molecules::molecules;
 
-fn read(text: &str) -> Result<Vec<DistanceRestraint>, Located> {
+fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
     let [receptor, ligand] = molecules();
     parse(text.into(), [&receptor, &ligand])
 }
@@ -28,16 +28,15 @@ fn a_statement_is_a_restraint() {
          assi (chain B and resid 20 and name CA) (resid 11 and name CB and segid A) 2 2 0\n",
     )
     .unwrap();
-    let expected = |name: &str, line, pair: [&[usize]; 2], [lower, target, upper]: [f64; 3]| {
-        DistanceRestraint {
+    let expected =
+        |name: &str, line, pair: [&[usize]; 2], [lower, target, upper]: [f64; 3]| NamedRestraint {
             name: name.to_owned(),
             line,
             pairs: vec![pair.map(<[usize]>::to_vec)],
             lower,
             target: Some(target),
             upper,
-        }
-    };
+        };
     assert_eq!(
         read,
         [

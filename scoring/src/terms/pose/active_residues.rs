@@ -25,6 +25,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 2000.0,
     },
     time_share: UNRELAXED,
+    is_shown_always: true,
     reads: "residues",
     count: |inputs| {
         [0, 1].map(|side| {

@@ -19,6 +19,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 1.0,
     },
     time_share: UNRELAXED,
+    is_shown_always: true,
     reads: "atoms with kinds",
     count: |inputs| inputs.atoms_with_kinds(),
     applies: |inputs| inputs.has_atom_kinds(),

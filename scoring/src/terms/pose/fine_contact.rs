@@ -19,6 +19,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 2.0,
     },
     time_share: UNRELAXED,
+    is_shown_always: true,
     reads: "atoms with contact types",
     count: |inputs| {
         inputs

@@ -15,6 +15,7 @@
 //! | `active_residues` | share of the active residues that are in contact | the user, or the active site of a peptidase |
 //! | `unresolved` | atoms where the other side has unresolved residues | conformers of its unresolved segments |
 //! | `termini` | contacts of residues near termini and gaps | the chains of the file |
+//! | `restraints_penalty` | violations of distance restraints | the user |
 //!
 //! # Adding a term
 //!
@@ -27,6 +28,8 @@ mod atom_pair;
 mod atom_pair_potential;
 mod bodies;
 mod distance_binned_potential;
+mod distance_restraints;
+mod effective_distance;
 mod energy_table;
 mod fine_contact;
 mod relaxed;
@@ -40,6 +43,7 @@ pub use active_residues::{ActiveResidues, Residues};
 pub use atom_pair::AtomPairs;
 pub use atom_pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use distance_binned_potential::{DistanceBinnedPotential, RANGES};
+pub use distance_restraints::{DistanceRestraint, DistanceRestraints};
 pub use fine_contact::FineContacts;
 pub use relaxed::{Relaxation, Relaxed, Workspace};
 pub use rescorer::Rescorer;
@@ -59,6 +63,7 @@ pub const POSE_TERMS: &[TermDefinition] = &[
     active_residues::TERM,
     unresolved::TERM,
     termini::TERM,
+    distance_restraints::TERM,
 ];
 
 /// Time to score a pose by all terms but `relaxed`, as a share of the time by all terms. Measured on the example pair.
@@ -82,6 +87,8 @@ pub struct TermDefinition {
     pub weight: Weight,
     /// Time to score a pose by this and all cheaper terms, as a share of the time with every term (cost model).
     pub time_share: f64,
+    /// Whether tables have its column where it does not act, too.
+    pub is_shown_always: bool,
     /// What it reads of each side, in the plural.
     pub reads: &'static str,
     /// How many of these receptor and ligand have.
@@ -119,6 +126,8 @@ pub struct TermInputs<'a> {
     pub unresolved: [&'a [Conformers]; 2],
     /// Indices of the knots near termini and gaps of receptor and ligand.
     pub termini: [&'a [usize]; 2],
+    /// Restraints on distances between the knots of receptor and ligand.
+    pub distance_restraints: &'a DistanceRestraints,
 }
 
 impl TermInputs<'_> {
@@ -187,12 +196,22 @@ mod tests {
             active_residues: &[],
             unresolved: [&[], &[]],
             termini: [&[], &[]],
+            distance_restraints: DistanceRestraints::none(),
+        };
+        let far = DistanceRestraints {
+            list: vec![DistanceRestraint {
+                pairs: vec![[vec![0], vec![0]]],
+                lower: 0.0,
+                upper: 1.0,
+            }],
+            needed: 1,
         };
         let all = TermInputs {
             bodies: [&typed, &typed],
             active_residues: &sets,
             unresolved: [&[], &segment],
             termini: [&[0], &[]],
+            distance_restraints: &far,
             ..nothing
         };
         let none = [0.0; POSE_TERMS.len()];

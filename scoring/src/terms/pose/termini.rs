@@ -20,6 +20,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 2.0,
     },
     time_share: UNRELAXED,
+    is_shown_always: true,
     reads: "atoms near termini and gaps",
     count: |inputs| inputs.termini.map(<[_]>::len),
     applies: |inputs| inputs.termini.iter().any(|side| !side.is_empty()),

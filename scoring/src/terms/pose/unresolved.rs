@@ -26,6 +26,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 3.0,
     },
     time_share: UNRELAXED,
+    is_shown_always: true,
     reads: "segments",
     count: |inputs| inputs.unresolved.map(<[_]>::len),
     applies: |inputs| inputs.unresolved.iter().any(|side| !side.is_empty()),

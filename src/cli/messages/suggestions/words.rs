@@ -17,7 +17,6 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
     suggestion(
         &[
             "restraint",
-            "restraints",
             "restraints-file",
             "air",
             "airs",
@@ -30,8 +29,8 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
             "crosslinks",
             "xl",
         ],
-        "restraints between two residues are not read; name the residues of each side that are known to be in contact with \
-         `--active-receptor A:57,A:189-195` and `--active-ligand`",
+        "known distances come from `--restraints FILE`, a table or a .tbl (cross-links with `--crosslink DSS`); residues \
+         known to be in contact are named with `--active-receptor A:57,A:189-195` and `--active-ligand`",
     ),
     suggestion(
         &[

@@ -48,6 +48,8 @@ pub struct Workspace {
     pub(super) middle: Vector3<f64>,
     /// Receptor atoms near one of them.
     near: Near,
+    /// Violations of distance restraints, Å.
+    pub(in crate::terms::pose) violations: Vec<f64>,
 }
 
 /// A pair of atoms within reach.
@@ -150,6 +152,7 @@ impl Atoms {
             mobile,
             middle,
             near,
+            ..
         } = workspace;
         for atom in mobile.iter() {
             let arm = turn * atom.arm;

@@ -40,6 +40,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         default: 3.0,
     },
     time_share: 1.0,
+    is_shown_always: true,
     reads: "atoms with kinds",
     count: |inputs| inputs.atoms_with_kinds(),
     applies: |inputs| inputs.has_atom_kinds(),

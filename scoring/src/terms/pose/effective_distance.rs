@@ -6,9 +6,8 @@
 //! Sources: Nilges, J Mol Biol 245 (1995) 645-660; as ambiguous interaction restraints of docking, Dominguez, Boelens &
 //! Bonvin, J Am Chem Soc 125 (2003) 1731-1737.
 
-use knotdock_scoring::se3::Pose;
-
-use crate::restraints::restraint::DistanceRestraint;
+use super::distance_restraints::DistanceRestraint;
+use crate::se3::Pose;
 
 impl DistanceRestraint {
     /// Effective distance (sum of d^-6)^(-1/6) at a pose, in Å: 0 where two atoms coincide, infinite without pairs.
@@ -60,11 +59,8 @@ mod tests {
     fn restraint(pairs: &[[&[usize]; 2]]) -> DistanceRestraint {
         let pairs = pairs.iter();
         DistanceRestraint {
-            name: "test".to_owned(),
-            line: 1,
             pairs: pairs.map(|sides| sides.map(<[usize]>::to_vec)).collect(),
             lower: 2.0,
-            target: None,
             upper: 8.0,
         }
     }

@@ -1,0 +1,46 @@
+//! Distance restraints of a run's poses: how many each satisfies, and `restraints.csv` with every distance.
+
+use std::io;
+
+use crate::dock::outcome::RankedPose;
+use crate::dock::plan::DockPlan;
+use crate::output::tables::cells::TableWriter;
+use crate::output::tables::fields::{Column, number};
+
+/// Columns of `restraints.csv`.
+const HEADER: [&str; 4] = ["rank", "restraint", "distance", "met"];
+
+/// The effective distance (Å) of each restraint at a pose, and whether it is satisfied.
+fn distances(plan: &DockPlan, pose: &RankedPose) -> impl Iterator<Item = (f64, bool)> {
+    let positions = plan.knots().map(|knots| knots.centers.as_slice());
+    plan.restraints.at(positions, &pose.pose)
+}
+
+/// The column `restraints_met` of `poses.csv`; `None` without restraints.
+pub fn met(plan: &DockPlan, poses: &[RankedPose]) -> Option<Column> {
+    let count = |pose| distances(plan, pose).filter(|(_, met)| *met).count();
+    (!plan.restraints.is_empty()).then(|| Column {
+        name: "restraints_met".to_owned(),
+        fields: poses.iter().map(|pose| count(pose).to_string()).collect(),
+    })
+}
+
+/// Writes `restraints.csv`: a row for each pose and restraint, with the effective distance in Å.
+///
+/// # Errors
+/// Those of the stream.
+pub fn write_to(
+    plan: &DockPlan,
+    poses: &[RankedPose],
+    stream: &mut dyn io::Write,
+) -> io::Result<()> {
+    let mut table = TableWriter::new(stream);
+    table.row(HEADER)?;
+    for (rank, pose) in (1..).zip(poses) {
+        for (name, (distance, met)) in plan.restraints.names.iter().zip(distances(plan, pose)) {
+            let (rank, distance) = (rank.to_string(), number(distance));
+            table.row([&rank, name, &distance, &met.to_string()])?;
+        }
+    }
+    table.flush()
+}

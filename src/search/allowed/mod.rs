@@ -1,0 +1,127 @@
+//! Translations that distance restraints allow, at each rotation of a search.
+//!
+//! At a rotation R a restraint of two atoms x and y to a distance of `upper` holds where the translation t lies in the
+//! ball about x - R y of that radius. So a restraint is a union of balls of the grid, and so many of them have to
+//! hold one voxel. Peaks are looked for among those voxels alone: all poses that a run keeps can satisfy the
+//! restraints.
+//!
+//! # How wide a ball is
+//!
+//! - Sets of atoms are split into clumps of at most 4 Å about their middles ([`clumps`]), whose radii add to the ball's.
+//! - The effective distance of n pairs is up to n^(1/6) times below the shortest. 64 pairs are allowed for: of larger
+//!   sets only those in contact are near.
+//! - A pose may lie between the samples: half a voxel's diagonal from a translation, and at half of the covering
+//!   radius from a rotation, which moves an atom by that angle times its distance from the ligand's centre. This is
+//!   about the middle of what is possible; poses beyond it are found from the next sample.
+//!
+//! Lower bounds are left to the pose term.
+
+mod balls;
+mod tally;
+
+pub(crate) use tally::{RowMask, Tally};
+
+use balls::Ball;
+use knotdock_scoring::engine::{CpuEngine, Plan};
+use knotdock_scoring::grid_turn::GridTurn;
+use knotdock_scoring::terms::pose::DistanceRestraints;
+use knotdock_scoring::transform::Real;
+use knotdock_structures::Knots;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Restraints as balls of translations.
+#[derive(Clone, Debug)]
+pub(crate) struct Allowed {
+    /// The balls of each restraint, the restraints with the smallest ones first.
+    restraints: Vec<Vec<Ball>>,
+    /// How many restraints have to hold.
+    needed: usize,
+}
+
+impl Allowed {
+    /// The restraints between the knots of receptor and ligand, for a plan's grid and rotations that leave `step`
+    /// radians between a pose and the nearest of them.
+    pub fn new(
+        restraints: &DistanceRestraints,
+        knots: [&Knots; 2],
+        plan: &Plan,
+        step: f64,
+    ) -> Self {
+        let centers = [plan.receptor_center(), plan.ligand_center()];
+        let between = 0.5 * 3f64.sqrt() * plan.spacing();
+        let list = restraints.list.iter();
+        let mut restraints_of: Vec<Vec<Ball>> = list
+            .map(|restraint| balls::of_restraint(restraint, knots, centers, (between, step)))
+            .collect();
+        let volume = |balls: &[Ball]| -> f64 { balls.iter().map(|ball| ball.radius.powi(3)).sum() };
+        restraints_of.sort_by(|a, b| volume(a).total_cmp(&volume(b)));
+        Self {
+            restraints: restraints_of,
+            needed: restraints.needed,
+        }
+    }
+
+    /// The voxels of the grid at a rotation, the image of one by `turn`, at which enough restraints can hold.
+    pub fn mask<T: Real>(
+        &self,
+        engine: &CpuEngine<T>,
+        rotation: &UnitQuaternion<f64>,
+        turn: GridTurn,
+        tally: &mut Tally,
+        mask: &mut RowMask,
+    ) {
+        let plan = engine.plan();
+        let axes = Axes::of(engine, turn);
+        tally.begin(axes.counts, (self.restraints.len(), self.needed));
+        let (frame, matrix) = (plan.frame(), rotation.to_rotation_matrix());
+        for balls in &self.restraints {
+            tally.add(balls.iter().map(|ball| {
+                let center = frame * (ball.receptor - matrix * ball.ligand);
+                (axes.place(&center), ball.radius / plan.spacing())
+            }));
+        }
+        tally.finish(axes.firsts, mask);
+    }
+}
+
+/// How voxels of a periodic grid lie in space: their indices in the order of their coordinates.
+struct Axes {
+    counts: [usize; 3],
+    /// Index of the voxel with the lowest coordinate on each axis.
+    firsts: [usize; 3],
+    /// That coordinate along the grid's axis, Å.
+    lows: [f64; 3],
+    spacing: f64,
+}
+
+impl Axes {
+    fn of<T: Real>(engine: &CpuEngine<T>, turn: GridTurn) -> Self {
+        let plan = engine.plan();
+        let counts = plan.size();
+        let strides = [counts[1] * counts[2], counts[2], 1];
+        let (mut firsts, mut lows) = ([0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let place = |index: usize| {
+                let along_file = engine.position_after(turn, index * strides[axis]);
+                (plan.frame() * along_file)[axis]
+            };
+            let lowest = (0..counts[axis]).map(|index| (place(index), index));
+            let lowest = lowest.min_by(|a, b| a.0.total_cmp(&b.0));
+            (lows[axis], firsts[axis]) = lowest.unwrap_or_default();
+        }
+        Self {
+            counts,
+            firsts,
+            lows,
+            spacing: plan.spacing(),
+        }
+    }
+
+    /// A place along the grid's axes in voxels from the lowest one.
+    fn place(&self, x: &Vector3<f64>) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (x[axis] - self.lows[axis]) / self.spacing)
+    }
+}
+
+#[cfg(test)]
+mod tests;
