@@ -15,6 +15,7 @@ mod preparation;
 mod rank;
 pub mod receptor_spectra;
 mod resolved;
+mod traffic;
 pub mod uniform_grid;
 
 pub use cpu::{CpuEngine, Workspace};

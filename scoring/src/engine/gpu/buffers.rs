@@ -3,6 +3,7 @@
 use super::device::{GpuDevice, GpuError};
 use crate::engine::columns::Reading;
 use crate::engine::cpu::CpuEngine;
+use crate::engine::traffic::StageSizes;
 use crate::transform::Real;
 use crate::transform::modes::place;
 use bytemuck::{Pod, Zeroable};
@@ -38,6 +39,9 @@ pub(super) struct Batch {
     pub turns: usize,
     pub images: usize,
 }
+
+/// Bytes of a number: single precision alone.
+const REAL: usize = 4;
 
 /// Turns in a batch: enough to fill a large card, few enough that no batch takes seconds.
 const MAX_TURNS: usize = 32;
@@ -78,33 +82,36 @@ impl Sizes {
         self.peaks.min(voxels.div_ceil(of_peak))
     }
 
+    /// Sizes of the stages' results.
+    fn results(&self) -> StageSizes {
+        StageSizes {
+            grid: self.grid,
+            block: self.block,
+            components: self.fields,
+            depth: self.depth,
+            columns: self.columns,
+            modes: self.modes,
+            images: self.images,
+        }
+    }
+
+    /// Bytes of the peaks of an image.
+    fn peak_bytes(&self) -> usize {
+        8 * self.peaks
+    }
+
     /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images.
     fn bytes(&self) -> ([usize; 4], [usize; 5]) {
-        let [bx, by, bz] = self.block;
-        let [nx, ny, nz] = self.grid;
-        let of_turn = [
-            4 * self.fields * bx * by * bz,
-            8 * self.fields * bx * self.depth * by,
-            8 * self.fields * self.columns * bx,
-            8 * self.fields * self.modes,
-        ];
-        let of_image = [
-            8 * self.columns * nx,
-            8 * nx * self.depth * ny,
-            4 * nx * ny * nz,
-            4 * nx * ny,
-            8 * self.peaks,
-        ];
-        (of_turn, of_image)
+        let results = self.results();
+        let [along, rows, grid, row_best] = results.of_image(REAL);
+        let of_image = [along, rows, grid, row_best, self.peak_bytes()];
+        (results.of_turn(REAL), of_image)
     }
 
     /// Bytes that an image reads and writes at the least, its share of a turn's images included: every buffer
     /// written once and read once, and the receptor's spectra read.
     pub fn least_traffic(&self) -> u64 {
-        let (of_turn, of_image) = self.bytes();
-        let [turn, image] =
-            [of_turn.as_slice(), &of_image].map(|bytes| bytes.iter().sum::<usize>());
-        (2 * (turn / self.images + image) + 8 * self.fields * self.modes) as u64
+        self.results().least_traffic(REAL, 1) + 2 * self.peak_bytes() as u64
     }
 
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.

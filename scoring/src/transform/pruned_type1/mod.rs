@@ -109,7 +109,6 @@ impl<T: Real> Forward<T> {
     }
 
     /// Fine grid points of the block that knots are spread onto, on each axis.
-    #[cfg(feature = "gpu")]
     pub(crate) fn block(&self) -> [usize; 3] {
         self.block
     }
