@@ -103,6 +103,7 @@ fn scan_on_cores<T: Real>(
     let in_flight = engine.in_flight;
     let engine = &engine.cpu;
     let filter = plan.space.voxel_filter(engine);
+    let restrained = plan.allowed.as_ref().map(|allowed| allowed.masks(engine));
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let started = Instant::now();
     let take = || {
@@ -129,9 +130,9 @@ fn scan_on_cores<T: Real>(
                 let mut count = 0;
                 for image in group.images() {
                     // A rotation at which no translation is allowed needs no correlation.
-                    if let Some(allowed) = &plan.allowed {
+                    if let Some(restrained) = &restrained {
                         let (rotation, turn) = plan.rotations.rotation(group.first + image);
-                        allowed.mask(engine, &rotation, turn, &mut tally, &mut masks[count]);
+                        restrained.at(&rotation, turn, &mut tally, &mut masks[count]);
                         if masks[count].is_empty() {
                             progress.advance(1);
                             continue;
@@ -144,7 +145,7 @@ fn scan_on_cores<T: Real>(
                     engine.transform_ligand(&rotation, &mut work);
                 }
                 engine.correlate_each(&turns[..count], &mut work, |place, work| {
-                    if plan.allowed.is_some() {
+                    if restrained.is_some() {
                         masks[place].apply(plan.engine.size(), &mut work.grid, &mut work.row_best);
                     }
                     if let Some(filter) = &filter {

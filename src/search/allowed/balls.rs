@@ -96,6 +96,24 @@ mod tests {
         assert_eq!(one, [(Vector3::new(1.0, 2.0, 3.0), 0.0)]);
     }
 
+    /// A pair of atoms has one ball: the bound, and what the samples leave open at the ligand's atom.
+    #[test]
+    fn a_pair_has_the_ball_of_its_bound() {
+        let one = |x: [f64; 3]| Knots::new(vec![x], vec![1.7]).unwrap();
+        let (receptor, ligand) = (one([1.0, 2.0, 3.0]), one([3.0, 4.0, 0.0]));
+        let restraint = DistanceRestraint {
+            pairs: vec![[vec![0], vec![0]]],
+            lower: 0.0,
+            upper: 7.0,
+        };
+        let none = Vector3::zeros();
+        let balls = of_restraint(&restraint, [&receptor, &ligand], [none, none], (1.5, 0.2));
+        assert_eq!(balls.len(), 1);
+        assert_eq!(balls[0].receptor, Vector3::new(1.0, 2.0, 3.0));
+        // Half of 0.2 radians at 5 Å.
+        assert!((balls[0].radius - 9.0).abs() < 1e-12);
+    }
+
     /// Large sets make larger clumps instead of more balls.
     #[test]
     fn balls_are_bounded_in_number() {

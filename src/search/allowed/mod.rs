@@ -7,7 +7,7 @@
 //!
 //! # How wide a ball is
 //!
-//! - Sets of atoms are split into clumps of at most 4 Å about their middles ([`clumps`]), whose radii add to the ball's.
+//! - Sets of atoms are split into clumps of at most 4 Å about their middles, whose radii add to the ball's.
 //! - The effective distance of n pairs is up to n^(1/6) times below the shortest. 64 pairs are allowed for: of larger
 //!   sets only those in contact are near.
 //! - A pose may lie between the samples: half a voxel's diagonal from a translation, and at half of the covering
@@ -61,20 +61,42 @@ impl Allowed {
         }
     }
 
+    /// Prepares the masks of an engine's grids.
+    pub fn masks<'a, T: Real>(&'a self, engine: &'a CpuEngine<T>) -> Masks<'a> {
+        Masks {
+            allowed: self,
+            plan: engine.plan(),
+            axes: GridTurn::ALL.map(|turn| Axes::of(engine, turn)),
+        }
+    }
+}
+
+/// Makes the masks of an engine's grids.
+pub(crate) struct Masks<'a> {
+    allowed: &'a Allowed,
+    plan: &'a Plan,
+    /// Of the grid after each turn, by its place in [`GridTurn::ALL`].
+    axes: [Axes; GridTurn::ALL.len()],
+}
+
+impl Masks<'_> {
     /// The voxels of the grid at a rotation, the image of one by `turn`, at which enough restraints can hold.
-    pub fn mask<T: Real>(
+    pub fn at(
         &self,
-        engine: &CpuEngine<T>,
         rotation: &UnitQuaternion<f64>,
         turn: GridTurn,
         tally: &mut Tally,
         mask: &mut RowMask,
     ) {
-        let plan = engine.plan();
-        let axes = Axes::of(engine, turn);
-        tally.begin(axes.counts, (self.restraints.len(), self.needed));
+        let Self {
+            allowed,
+            plan,
+            axes,
+        } = self;
+        let axes = &axes[turn.index()];
+        tally.begin(axes.counts, (allowed.restraints.len(), allowed.needed));
         let (frame, matrix) = (plan.frame(), rotation.to_rotation_matrix());
-        for balls in &self.restraints {
+        for balls in &allowed.restraints {
             tally.add(balls.iter().map(|ball| {
                 let center = frame * (ball.receptor - matrix * ball.ligand);
                 (axes.place(&center), ball.radius / plan.spacing())

@@ -87,10 +87,16 @@ impl Tally {
     /// Marks the voxels of a ball of the restraint at hand, in rows that enough restraints may still meet.
     fn cover(&mut self, [x, y, z]: [f64; 3], radius: f64) {
         let [nx, ny, nz] = self.counts;
+        // By conversions: where the machine's rounding instructions are not compiled for, `ceil` and `floor` are calls.
         let range = |at: f64, reach: f64, count: usize| {
-            let from = (at - reach).ceil().max(0.0);
-            let to = (at + reach).floor().min(count as f64 - 1.0);
-            (from <= to).then_some((from as usize, to as usize))
+            let (low, high) = (at - reach, at + reach);
+            if high < 0.0 || low > count as f64 - 1.0 {
+                return None;
+            }
+            let from = low.max(0.0) as usize;
+            let from = from + usize::from((from as f64) < low);
+            let to = (high as usize).min(count - 1);
+            (from <= to).then_some((from, to))
         };
         let Some((first, last)) = range(x, radius, nx) else {
             return;

@@ -37,6 +37,7 @@ fn allowed_voxels_are_those_whose_poses_satisfy() {
     };
     let allowed = Allowed::new(&restraints, [&receptor, &ligand], &plan, 0.0);
     let reach = 9.0 + 0.5 * 3f64.sqrt() * plan.spacing();
+    let masks = allowed.masks(&engine);
     let (mut tally, mut mask) = (Tally::default(), RowMask::default());
     let size = plan.size();
     let start = UnitQuaternion::from_euler_angles(0.4, -1.0, 2.2);
@@ -44,7 +45,7 @@ fn allowed_voxels_are_those_whose_poses_satisfy() {
     for &turn in GridTurn::of(plan.modes()) {
         let frame = plan.frame();
         let rotation = frame.inverse() * turn.after(&(frame * start));
-        allowed.mask(&engine, &rotation, turn, &mut tally, &mut mask);
+        masks.at(&rotation, turn, &mut tally, &mut mask);
         for voxel in 0..size.iter().product() {
             let index = [
                 voxel / (size[1] * size[2]),
