@@ -71,7 +71,10 @@ impl ExactSum {
 
     /// Score and terms of one pose with the parts of shape.
     pub fn score(&self, pose: &Pose) -> ExactScore {
-        ExactScore::of(self.terms(pose), self.shape(pose))
+        match self {
+            Self::Lifted(scorer) => scorer.score(pose),
+            Self::Product(_) => ExactScore::of(self.terms(pose), self.shape(pose)),
+        }
     }
 
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.

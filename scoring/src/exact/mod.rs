@@ -67,14 +67,6 @@ impl ExactScore {
             unfiltered: shape.unfiltered,
         }
     }
-
-    /// The score by term alone.
-    pub fn by_term(&self) -> ScoreTerms {
-        ScoreTerms {
-            score: self.score,
-            terms: self.terms,
-        }
-    }
 }
 
 /// Gradient of a score: per Å of translation, and per radian of rotation about the ligand's centre.

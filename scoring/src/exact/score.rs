@@ -31,9 +31,14 @@ impl ExactScorer {
         Arch::new().dispatch(ByPart { scorer: self, pose })
     }
 
-    /// Score and terms of one pose with the parts of shape.
+    /// Score and terms of one pose with the parts of shape, whose term is the weighted sum of the slices to the last
+    /// digit. [`Self::terms`] sums it by a table of its own and differs by rounding.
     pub fn score(&self, pose: &Pose) -> ExactScore {
-        ExactScore::of(self.terms(pose), self.shape(pose))
+        let (mut by_term, shape) = (self.terms(pose), self.shape(pose));
+        let weights = self.kernel.options().slice_weights();
+        by_term.terms[Effect::Shape as usize] = weighted(weights, shape.slices);
+        by_term.score = by_term.terms.iter().sum();
+        ExactScore::of(by_term, shape)
     }
 
     /// Sums over all pairs of the shape kernels whose lines `lines` holds, and of `effects` by effect.
@@ -180,6 +185,11 @@ impl ExactScorer {
     }
 }
 
+/// Slices as one sum.
+fn weighted(weights: [f64; 3], slices: [f64; 3]) -> f64 {
+    (0..3).map(|i| weights[i] * slices[i]).sum()
+}
+
 /// The score of a pose by term.
 struct ByTerm<'a> {
     scorer: &'a ExactScorer,
@@ -230,7 +240,7 @@ impl WithSimd for ByPart<'_> {
         let unfiltered = scorer.unfiltered_slices(simd, pose);
         ShapeParts {
             slices,
-            unfiltered: (0..3).map(|i| weights[i] * unfiltered[i]).sum(),
+            unfiltered: weighted(weights, unfiltered),
         }
     }
 }
