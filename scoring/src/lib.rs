@@ -67,7 +67,7 @@ pub mod terms;
 mod test_support;
 pub mod transform;
 pub mod truncated;
-mod vectorized;
+pub mod vectorized;
 
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.

@@ -40,9 +40,40 @@ pub fn find_peaks<T: Real>(
     (count, floor): (usize, f64),
     found: &mut Vec<Peak>,
 ) {
+    find_peaks_among(
+        size,
+        (grid, row_best),
+        rotation,
+        (count, floor),
+        found,
+        |_, _| false,
+    );
+}
+
+/// [`find_peaks`] among the voxels that `check` leaves.
+///
+/// It is called with a row that holds the largest value, and the row's values. It sets those that may be no peak to
+/// minus infinity and returns true, or returns false where it has done so before.
+pub fn find_peaks_among<T: Real>(
+    size: [usize; 3],
+    (grid, row_best): (&mut [T], &mut [T]),
+    rotation: u32,
+    (count, floor): (usize, f64),
+    found: &mut Vec<Peak>,
+    mut check: impl FnMut(usize, &mut [T]) -> bool,
+) {
     vectorized(
         #[inline(always)]
-        || find(size, (grid, row_best), rotation, (count, floor), found),
+        || {
+            find(
+                size,
+                (grid, row_best),
+                rotation,
+                (count, floor),
+                found,
+                &mut check,
+            )
+        },
     );
 }
 
@@ -53,19 +84,27 @@ fn find<T: Real>(
     rotation: u32,
     (count, floor): (usize, f64),
     found: &mut Vec<Peak>,
+    check: &mut impl FnMut(usize, &mut [T]) -> bool,
 ) {
     let [nx, ny, nz] = size;
     let side = |n: usize| NEIGHBOURS.min((n - 1) / 2) as isize;
-    for _ in 0..count {
+    let mut left = count;
+    while left > 0 {
         let Some((row, score)) = best(row_best) else {
             return;
         };
         if score.wide() < floor {
             return;
         }
-        let Some((z, _)) = best(&grid[row * nz..(row + 1) * nz]) else {
+        let values = &mut grid[row * nz..(row + 1) * nz];
+        if check(row, values) {
+            row_best[row] = largest(values);
+            continue;
+        }
+        let Some((z, _)) = best(values) else {
             return;
         };
+        left -= 1;
         found.push(Peak {
             score: score.wide(),
             rotation,
@@ -104,14 +143,6 @@ pub(crate) fn largest<T: Real>(values: &[T]) -> T {
         .fold(T::neg_infinity(), |a, &b| larger(a, b))
 }
 
-/// Largest of some values; minus infinity of none.
-pub fn largest_of<T: Real>(values: &[T]) -> T {
-    vectorized(
-        #[inline(always)]
-        || largest(values),
-    )
-}
-
 /// First of the largest finite values, with its index.
 #[inline(always)]
 fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
@@ -119,10 +150,15 @@ fn best<T: Real>(values: &[T]) -> Option<(usize, T)> {
     if largest == T::neg_infinity() {
         return None;
     }
-    values
-        .iter()
-        .position(|&value| value == largest)
-        .map(|index| (index, largest))
+    let (chunks, rest) = values.as_chunks::<16>();
+    // Whole chunks first, so that the search vectorises.
+    let holds = |chunk: &[T; 16]| chunk.iter().fold(false, |any, &v| any | (v == largest));
+    let (start, part) = match chunks.iter().position(holds) {
+        Some(chunk) => (16 * chunk, &chunks[chunk][..]),
+        None => (16 * chunks.len(), rest),
+    };
+    let index = part.iter().position(|&value| value == largest)?;
+    Some((start + index, largest))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 /// by itself, a closure that only borrows goes through a shim of the compiler's, which is not inlined: all loops in it
 /// then ran on SSE2.
 #[inline(always)]
-pub(crate) fn vectorized<R>(task: impl FnMut() -> R) -> R {
+pub fn vectorized<R>(task: impl FnMut() -> R) -> R {
     pulp::Arch::new().dispatch(Task(task))
 }
 

@@ -3,14 +3,14 @@
 use crate::error::SearchError;
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
-use crate::search::allowed::{RowMask, Tally};
+use crate::search::allowed::Region;
 use crate::search::deadline::Deadline;
 use crate::search::plan::SearchPlan;
 use crate::search::scan_engine::ScanEngine;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::grid_turn::GridTurn;
-use knotdock_scoring::peaks::{Peak, find_peaks};
+use knotdock_scoring::peaks::{Peak, find_peaks, find_peaks_among};
 use knotdock_scoring::transform::Real;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -103,7 +103,7 @@ fn scan_on_cores<T: Real>(
     let in_flight = engine.in_flight;
     let engine = &engine.cpu;
     let filter = plan.space.voxel_filter(engine);
-    let restrained = plan.allowed.as_ref().map(|allowed| allowed.masks(engine));
+    let restrained = plan.allowed.as_ref().map(|allowed| allowed.regions(engine));
     let (next, searched) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let started = Instant::now();
     let take = || {
@@ -119,8 +119,7 @@ fn scan_on_cores<T: Real>(
         .with_max_len(1)
         .map(|_| {
             let mut work = engine.workspace_of(plan.rotations.images);
-            let mut masks: [RowMask; IMAGES] = Default::default();
-            let mut tally = Tally::default();
+            let mut regions: [Region; IMAGES] = Default::default();
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
             // What scores less is not kept whatever else is found.
             let mut floor = f64::NEG_INFINITY;
@@ -132,8 +131,8 @@ fn scan_on_cores<T: Real>(
                     // A rotation at which no translation is allowed needs no correlation.
                     if let Some(restrained) = &restrained {
                         let (rotation, turn) = plan.rotations.rotation(group.first + image);
-                        restrained.at(&rotation, turn, &mut tally, &mut masks[count]);
-                        if masks[count].is_empty() {
+                        restrained.at(&rotation, turn, &mut regions[count]);
+                        if regions[count].is_empty() {
                             progress.advance(1);
                             continue;
                         }
@@ -145,19 +144,23 @@ fn scan_on_cores<T: Real>(
                     engine.transform_ligand(&rotation, &mut work);
                 }
                 engine.correlate_each(&turns[..count], &mut work, |place, work| {
-                    if restrained.is_some() {
-                        masks[place].apply(plan.engine.size(), &mut work.grid, &mut work.row_best);
-                    }
                     if let Some(filter) = &filter {
                         filter.keep(&rotation, &mut work.grid, &mut work.row_best);
                     }
-                    find_peaks(
-                        plan.engine.size(),
-                        (&mut work.grid, &mut work.row_best),
-                        (group.first + images[place]) as u32,
-                        (plan.per_rotation, floor),
-                        &mut found,
-                    );
+                    let size = plan.engine.size();
+                    let rotation = (group.first + images[place]) as u32;
+                    let limits = (plan.per_rotation, floor);
+                    if restrained.is_some() {
+                        let region = &mut regions[place];
+                        region.take_cells_out(&mut work.grid, &mut work.row_best);
+                        let values = (&mut work.grid[..], &mut work.row_best[..]);
+                        let check =
+                            |row, values: &mut [T]| region.take_voxels_out(row, floor, values);
+                        find_peaks_among(size, values, rotation, limits, &mut found, check);
+                    } else {
+                        let values = (&mut work.grid[..], &mut work.row_best[..]);
+                        find_peaks(size, values, rotation, limits, &mut found);
+                    }
                     if found.len() >= 2 * most {
                         found.sort_unstable_by(Peak::order);
                         found.truncate(most);

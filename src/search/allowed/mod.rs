@@ -17,9 +17,10 @@
 //! Lower bounds are left to the pose term.
 
 mod balls;
-mod tally;
+mod lanes;
+mod region;
 
-pub(crate) use tally::{RowMask, Tally};
+pub(crate) use region::Region;
 
 use balls::Ball;
 use knotdock_scoring::engine::{CpuEngine, Plan};
@@ -32,7 +33,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// Restraints as balls of translations.
 #[derive(Clone, Debug)]
 pub(crate) struct Allowed {
-    /// The balls of each restraint, the restraints with the smallest ones first.
+    /// The balls of each restraint, restraints of one ball first.
     restraints: Vec<Vec<Ball>>,
     /// How many restraints have to hold.
     needed: usize,
@@ -53,17 +54,16 @@ impl Allowed {
         let mut restraints_of: Vec<Vec<Ball>> = list
             .map(|restraint| balls::of_restraint(restraint, knots, centers, (between, step)))
             .collect();
-        let volume = |balls: &[Ball]| -> f64 { balls.iter().map(|ball| ball.radius.powi(3)).sum() };
-        restraints_of.sort_by(|a, b| volume(a).total_cmp(&volume(b)));
+        restraints_of.sort_by_key(|balls| balls.len() != 1);
         Self {
             restraints: restraints_of,
             needed: restraints.needed,
         }
     }
 
-    /// Prepares the masks of an engine's grids.
-    pub fn masks<'a, T: Real>(&'a self, engine: &'a CpuEngine<T>) -> Masks<'a> {
-        Masks {
+    /// Prepares the regions of an engine's grids.
+    pub fn regions<'a, T: Real>(&'a self, engine: &'a CpuEngine<T>) -> Regions<'a> {
+        Regions {
             allowed: self,
             plan: engine.plan(),
             axes: GridTurn::ALL.map(|turn| Axes::of(engine, turn)),
@@ -71,38 +71,32 @@ impl Allowed {
     }
 }
 
-/// Makes the masks of an engine's grids.
-pub(crate) struct Masks<'a> {
+/// Makes the regions of an engine's grids.
+pub(crate) struct Regions<'a> {
     allowed: &'a Allowed,
     plan: &'a Plan,
     /// Of the grid after each turn, by its place in [`GridTurn::ALL`].
     axes: [Axes; GridTurn::ALL.len()],
 }
 
-impl Masks<'_> {
+impl Regions<'_> {
     /// The voxels of the grid at a rotation, the image of one by `turn`, at which enough restraints can hold.
-    pub fn at(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        turn: GridTurn,
-        tally: &mut Tally,
-        mask: &mut RowMask,
-    ) {
+    pub fn at(&self, rotation: &UnitQuaternion<f64>, turn: GridTurn, region: &mut Region) {
         let Self {
             allowed,
             plan,
             axes,
         } = self;
         let axes = &axes[turn.index()];
-        tally.begin(axes.counts, (allowed.restraints.len(), allowed.needed));
+        region.begin(axes.counts, axes.firsts, allowed.needed);
         let (frame, matrix) = (plan.frame(), rotation.to_rotation_matrix());
         for balls in &allowed.restraints {
-            tally.add(balls.iter().map(|ball| {
+            region.add(balls.iter().map(|ball| {
                 let center = frame * (ball.receptor - matrix * ball.ligand);
                 (axes.place(&center), ball.radius / plan.spacing())
             }));
         }
-        tally.finish(axes.firsts, mask);
+        region.close();
     }
 }
 

@@ -1,0 +1,267 @@
+//! The translations that are allowed at one rotation.
+//!
+//! The voxels of a cell of 4 by 4 by 4 can hold no more restraints than have a ball that meets the cell. This leaves
+//! out most of the grid, and shows most rotations at which nothing is allowed. What remains is decided voxel by voxel,
+//! and only where a search looks: in rows that hold its best value, at values that it would keep.
+
+use crate::search::allowed::lanes::{Balls, Span};
+use knotdock_scoring::transform::Real;
+use knotdock_scoring::vectorized::vectorized;
+use std::ops::Range;
+
+/// Voxels along an edge of a cell.
+const CELL: usize = 4;
+
+/// The translations that are allowed at one rotation. Places are voxels in the order of coordinates, not of indices.
+#[derive(Default)]
+pub(crate) struct Region {
+    counts: [usize; 3],
+    /// Index of the voxel with the lowest coordinate on each axis.
+    firsts: [usize; 3],
+    /// How many restraints have to hold.
+    needed: usize,
+    balls: Balls,
+    /// Whether each cell may hold an allowed voxel, row-major, and whether any cell does.
+    open: Vec<bool>,
+    any_open: bool,
+    /// Of each row, by its indices: whether it still holds what is not allowed.
+    unchecked: Vec<bool>,
+    /// Squares of what the balls leave of their radii along a row.
+    left: Vec<f32>,
+}
+
+impl Region {
+    /// Begins a grid of so many voxels.
+    pub fn begin(&mut self, counts: [usize; 3], firsts: [usize; 3], needed: usize) {
+        (self.counts, self.firsts, self.needed) = (counts, firsts, needed.max(1));
+        self.balls.clear();
+    }
+
+    /// Adds a restraint: balls by their centres and radii in voxels from the lowest one. Restraints of one ball come
+    /// first.
+    pub fn add(&mut self, balls: impl Iterator<Item = ([f64; 3], f64)>) {
+        self.balls.add(balls);
+    }
+
+    /// Ends the restraints, and finds the cells that may hold allowed voxels.
+    pub fn close(&mut self) {
+        self.balls.end();
+        self.open.clear();
+        let [nx, ny, nz] = self.counts;
+        let Self {
+            balls, open, left, ..
+        } = self;
+        vectorized(
+            #[inline(always)]
+            || {
+                for x in cells(nx) {
+                    for y in cells(ny) {
+                        balls.left_along(span(&x), span(&y), left);
+                        open.extend(cells(nz).map(|z| balls.hold(span(&z), left, self.needed)));
+                    }
+                }
+            },
+        );
+        self.any_open = self.open.contains(&true);
+    }
+
+    /// Whether it is known that nothing is allowed.
+    pub fn is_empty(&self) -> bool {
+        !self.any_open
+    }
+
+    /// Takes out all voxels of cells that hold none that is allowed: sets them to minus infinity, and updates the
+    /// largest value of each row.
+    pub fn take_cells_out<T: Real>(&mut self, grid: &mut [T], row_best: &mut [T]) {
+        let [nx, ny, nz] = self.counts;
+        self.unchecked.clear();
+        self.unchecked.resize(nx * ny, true);
+        let rows = grid.chunks_exact_mut(nz).zip(row_best);
+        for (row, (values, best)) in rows.enumerate() {
+            let open = self.open_along(row);
+            *best = T::neg_infinity();
+            if !open.contains(&true) {
+                values.fill(T::neg_infinity());
+                continue;
+            }
+            for (cell, open) in cells(nz).zip(open) {
+                for z in cell {
+                    let value = &mut values[wrapped(z + self.firsts[2], nz)];
+                    if !open {
+                        *value = T::neg_infinity();
+                    } else if *value > *best {
+                        *best = *value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes the voxels of a row that are not allowed out, and those below `floor`: sets them to minus infinity. False
+    /// where this has been done before. `values` are those of [`Region::take_cells_out`].
+    pub fn take_voxels_out<T: Real>(&mut self, row: usize, floor: f64, values: &mut [T]) -> bool {
+        if !std::mem::take(&mut self.unchecked[row]) {
+            return false;
+        }
+        let (x, y) = self.places(row);
+        let Self { balls, left, .. } = self;
+        let (count, first) = (self.counts[2], self.firsts[2]);
+        vectorized(
+            #[inline(always)]
+            || {
+                balls.left_along(Span::new(x, x), Span::new(y, y), left);
+                for (index, value) in values.iter_mut().enumerate() {
+                    if *value == T::neg_infinity() {
+                        continue;
+                    }
+                    let z = wrapped(index + count - first, count);
+                    if value.wide() < floor || !balls.hold(Span::new(z, z), left, self.needed) {
+                        *value = T::neg_infinity();
+                    }
+                }
+            },
+        );
+        true
+    }
+
+    /// Places of a row on the first two axes.
+    fn places(&self, row: usize) -> (usize, usize) {
+        let [nx, ny, _] = self.counts;
+        let place = |index: usize, axis: usize, count: usize| {
+            wrapped(index + count - self.firsts[axis], count)
+        };
+        (place(row / ny, 0, nx), place(row % ny, 1, ny))
+    }
+
+    /// The cells along a row.
+    fn open_along(&self, row: usize) -> &[bool] {
+        let [_, ny, nz] = self.counts.map(|count| count.div_ceil(CELL));
+        let (x, y) = self.places(row);
+        &self.open[(x / CELL * ny + y / CELL) * nz..][..nz]
+    }
+
+    /// Whether a voxel is allowed, by its indices.
+    #[cfg(test)]
+    pub fn allows(&mut self, [x, y, z]: [usize; 3]) -> bool {
+        let [nx, ny, nz] = self.counts;
+        let row = x * ny + y;
+        let mut grid = vec![0.0f32; nx * ny * nz];
+        let mut rows = vec![0.0; nx * ny];
+        self.take_cells_out(&mut grid, &mut rows);
+        let values = &mut grid[row * nz..][..nz];
+        self.take_voxels_out(row, f64::NEG_INFINITY, values);
+        values[z] == 0.0
+    }
+}
+
+/// The cells along an axis.
+fn cells(count: usize) -> impl Iterator<Item = Range<usize>> {
+    let lows = (0..count).step_by(CELL);
+    lows.map(move |low| low..(low + CELL).min(count))
+}
+
+/// An index below twice the count, brought below it. A division would take longer than all else that is done here.
+#[inline(always)]
+fn wrapped(index: usize, count: usize) -> usize {
+    if index < count { index } else { index - count }
+}
+
+fn span(places: &Range<usize>) -> Span {
+    Span::new(places.start, places.end - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::peaks::{find_peaks, find_peaks_among};
+
+    /// Adds balls by restraint.
+    fn fill(region: &mut Region, balls: &[&[([f64; 3], f64)]]) {
+        for restraint in balls {
+            region.add(restraint.iter().copied());
+        }
+        region.close();
+    }
+
+    /// Counts of balls on a grid that wraps, against the definition at each voxel.
+    #[test]
+    fn voxels_that_enough_restraints_hold_are_allowed() {
+        let counts = [9, 12, 70];
+        let firsts = [4, 7, 33];
+        let balls: [&[([f64; 3], f64)]; 4] = [
+            &[([4.0, 5.0, 66.0], 40.0)],
+            &[([3.0, 4.2, 30.0], 5.01)],
+            &[([-3.0, 20.0, 5.0], 4.0)],
+            &[
+                ([5.0, 6.0, 33.0], 4.51),
+                ([4.0, 6.0, 34.5], 3.0),
+                ([0.0, 0.0, 0.0], 2.01),
+            ],
+        ];
+        let mut region = Region::default();
+        // One region serves several grids.
+        for needed in [1, 2, 3, 4, 1] {
+            region.begin(counts, firsts, needed);
+            fill(&mut region, &balls);
+            let holds = |ball: &([f64; 3], f64), at: [usize; 3]| {
+                let square: f64 = (0..3).map(|k| (ball.0[k] - at[k] as f64).powi(2)).sum();
+                square <= ball.1 * ball.1
+            };
+            let mut allowed = 0;
+            for voxel in 0..counts.iter().product() {
+                let at = [voxel / (12 * 70), voxel / 70 % 12, voxel % 70];
+                let held = balls
+                    .iter()
+                    .filter(|balls| balls.iter().any(|ball| holds(ball, at)));
+                let expected = held.count() >= needed;
+                let index = [0, 1, 2].map(|axis| (at[axis] + firsts[axis]) % counts[axis]);
+                assert_eq!(region.allows(index), expected, "{needed} {at:?}");
+                allowed += usize::from(expected);
+            }
+            assert_eq!(allowed > 0, needed < 4);
+            assert_eq!(region.is_empty(), needed == 4);
+        }
+    }
+
+    /// The peaks of a grid of which all voxels that are not allowed are taken out first, with and without a floor.
+    #[test]
+    fn peaks_are_those_of_the_allowed_voxels() {
+        let size = [11, 9, 14];
+        let mut region = Region::default();
+        let value = |voxel: usize| (voxel * 7919 % 1386) as f32;
+        let grid: Vec<f32> = (0..1386).map(value).collect();
+        for radius in [1.0, 3.3, 5.2] {
+            for floor in [f64::NEG_INFINITY, 1300.0] {
+                region.begin(size, [2, 0, 7], 1);
+                fill(&mut region, &[&[([3.0, 3.0, 3.0], radius)]]);
+                let mut masked = grid.clone();
+                for (voxel, value) in masked.iter_mut().enumerate() {
+                    if !region.allows([voxel / 126, voxel / 14 % 9, voxel % 14]) {
+                        *value = f32::NEG_INFINITY;
+                    }
+                }
+                let best = |grid: &[f32]| -> Vec<f32> {
+                    let rows = grid.chunks(14);
+                    rows.map(|row| row.iter().copied().fold(f32::NEG_INFINITY, f32::max))
+                        .collect()
+                };
+                let (mut expected, mut found) = (Vec::new(), Vec::new());
+                let mut rows = best(&masked);
+                let values = (&mut masked[..], &mut rows[..]);
+                find_peaks(size, values, 0, (9, floor), &mut expected);
+                let (mut all, mut rows) = (grid.clone(), best(&grid));
+                region.take_cells_out(&mut all, &mut rows);
+                find_peaks_among(
+                    size,
+                    (&mut all, &mut rows),
+                    0,
+                    (9, floor),
+                    &mut found,
+                    |row, values| region.take_voxels_out(row, floor, values),
+                );
+                assert_eq!(found, expected);
+                assert_eq!(found.is_empty(), radius < 2.0 && floor > 0.0, "{found:?}");
+            }
+        }
+    }
+}
