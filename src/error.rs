@@ -1,6 +1,7 @@
 //! Why a search was refused or failed, and what to do about it.
 
 use crate::dock::memory::size::as_size;
+use crate::predictions::PredictionError;
 use crate::restraints::{Needed, RestraintFileError};
 use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
@@ -72,6 +73,23 @@ pub enum SearchError {
     /// The file of restraints does not fit the molecules.
     #[error(transparent)]
     Restraints(#[from] RestraintFileError),
+    /// Predictions of the interface do not fit the molecule.
+    #[error("of the {side}: {error}")]
+    Predictions {
+        /// `receptor` or `ligand`.
+        side: &'static str,
+        /// The fault.
+        error: PredictionError,
+    },
+    /// A file without the planes of a membrane.
+    #[error("the file of the {side} marks no flat membrane across its z axis")]
+    NoMembrane {
+        /// `receptor` or `ligand`.
+        side: &'static str,
+    },
+    /// No sampled pose stays out of the membrane.
+    #[error("every pose that is searched lies in the membrane")]
+    AllInMembrane,
     /// More restraints have to be satisfied than there are.
     #[error("{needed} restraints have to be satisfied, and there are {count}")]
     RestraintsNeed {
@@ -173,12 +191,21 @@ impl SearchError {
             }
             Self::NothingScores => "use a finer --spacing or --resolution".to_owned(),
             Self::Restraints(error) => error.remedy(),
+            Self::Predictions { error, .. } => error.remedy(),
             Self::RestraintsNeed { count, .. } => {
                 format!("give --restraints-need a number up to {count}, or a share")
             }
             Self::NoAllowedPose { .. } => {
                 "accept fewer with --restraints-need, raise upper bounds, or check chains and numbers of residues"
                     .to_owned()
+            }
+            Self::NoMembrane { .. } => {
+                "give a file of OPM or PPM, which has two planes of DUM records, or the lowest and highest z in Å as \
+                 in --membrane=-15,15"
+                    .to_owned()
+            }
+            Self::AllInMembrane => {
+                "check that the molecule that has the membrane reaches out of it".to_owned()
             }
             Self::NoPose => "check lambda and the offset".to_owned(),
         }

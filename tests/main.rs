@@ -29,6 +29,7 @@ mod hard_cases;
 mod hostile_names;
 mod json_objects;
 mod known_complex;
+mod known_surfaces;
 mod machine;
 mod memory;
 mod mesh_docking;

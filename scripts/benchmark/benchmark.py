@@ -22,7 +22,8 @@ apart and docked again.
 
 With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
 contact in the known complex, and are drawn by the pair's id and the seed. With --restraints it gets distances
-likewise (scripts/benchmark/known_distances.py says which).
+likewise (scripts/benchmark/known_distances.py says which), and with --predictions probabilities of residues to be in
+contact (scripts/benchmark/simulated_predictions.py).
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -57,6 +58,7 @@ from docked_pairs import (
 from docking import find_program, measured, seeds, split_arguments, start_orientation
 from known_distances import KINDS, restraint_options
 from known_residues import active_residues
+from simulated_predictions import prediction_options
 from tables import RANKINGS, markdown, ranks_csv
 
 # Options of `knotdock dock` that this script sets itself.
@@ -110,6 +112,7 @@ def parse_arguments():
     add("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
     add("--bound", type=names, default=[], metavar="SIDES", help="dock the bound structure of receptor, ligand or both")
     add("--active", type=int, default=0, metavar="N", help="known contact residues of either side (default: 0)")
+    add("--predictions", type=float, metavar="AUC", help="quality of interface predictions (default: none)")
     add("--restraints", choices=KINDS, help="known distances (default: none)")
     options = parser.parse_args(arguments)
     for owned in OWNED:
@@ -158,6 +161,8 @@ def run_one(options, program, pair, seed):
         settings["active"] = options.active
     if options.restraints:
         settings["restraints"] = options.restraints
+    if options.predictions:
+        settings["predictions"] = options.predictions
     try:
         files = {part: find_part(options.folder / pair["id"], part) for part in PARTS}
         files |= {f"{side}_unbound": files[f"{side}_bound"] for side in options.bound}
@@ -198,6 +203,8 @@ def dock_and_measure(options, folder, files, name, seed):
         command += active_residues(texts, name, seed, options.active)
     if options.restraints:
         command += restraint_options(options.restraints, texts, name, seed, folder / "restraints.csv")
+    if options.predictions:
+        command += prediction_options(options.predictions, texts, name, seed, folder)
     cost = measured(command + options.dock_options, folder / "dock.log")
     # The system's figure for a child can be that of this script before it became the child; the program's own is not.
     own_peak = json.loads((run / "run.json").read_text())["timing"]["peak_memory_bytes"]

@@ -147,7 +147,9 @@ impl Docking {
         let PreparedPair { plan, points, .. } = &self.prepared;
         let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
             |error| match error {
-                SearchError::NoAllowedPose { .. } => Failure::input(&error).remedy(error.remedy()),
+                SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
+                    Failure::input(&error).remedy(error.remedy())
+                }
                 error => Failure::other(&error).remedy(error.remedy()),
             },
         )?;

@@ -2,7 +2,6 @@
 
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
-use knotdock::error::SearchError;
 use knotdock::options::DockOptions;
 use knotdock::options::values::at_least_one;
 use knotdock::output::tables::report;
@@ -24,6 +23,7 @@ use crate::cli::inputs::shapes::is_shape;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{regions_text, site_text};
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::library_errors::refused;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
 ///
@@ -100,7 +100,6 @@ impl Score {
     ) -> Result<(), Failure> {
         let lengths = lengths(&given);
         let mut dock = given.options;
-        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
         bodies.describe(Arrangement::Pair, console);
         let Some(sampling) = bodies.sampling(&mut dock, lengths, console)? else {
@@ -124,10 +123,6 @@ impl Score {
     fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
         let options = self.ladder(dock);
         let reading = dock.input.reading();
-        let refused = |error: SearchError| match error {
-            SearchError::Restraints(error) => error.into(),
-            error => Failure::input(&error).remedy(error.remedy()),
-        };
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
         let [receptor, ligand] = inputs.map(|input| input.molecule);
         console.say(format!("Receptor: {}", receptor.report));

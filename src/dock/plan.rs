@@ -12,6 +12,7 @@ use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::restrained::Restrained;
 use crate::rank::rescoring::Rescoring;
 use crate::rank::sharp::SharpInputs;
+use crate::search::allowed::Known;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::lifted_axis::RadiusBasis;
@@ -116,10 +117,11 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Searc
     let refined = refined(&space, &scene.decisions, options);
     let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
     let limits = (memory.in_flight(), memory.graphics);
-    let known = (
-        &scene.restraints.distances,
-        [&scene.receptor, &scene.ligand],
-    );
+    let known = Known {
+        restraints: &scene.restraints.distances,
+        membrane: scene.restraints.membrane.as_ref(),
+        knots: [&scene.receptor, &scene.ligand],
+    };
     let search = SearchPlan::new(Arc::new(engine), space, options, known, limits);
     let engine = &search.engine;
     let radii = match engine.basis() {
@@ -215,7 +217,7 @@ impl DockPlan {
     /// Inputs and weights of the pose terms.
     pub(crate) fn rescoring(&self) -> Rescoring<'_> {
         let bodies = [&self.receptor, &self.ligand];
-        let known = (&self.active, &self.restraints.distances);
+        let known = (&self.active, &self.restraints);
         Rescoring::new(bodies, known, &self.regions, &self.options)
     }
 

@@ -251,7 +251,10 @@ fn find<T: Real>(
     if peaks.is_empty() {
         let restraints = &plan.restraints.distances;
         return Err(if restraints.list.is_empty() {
-            SearchError::NoPose
+            match plan.restraints.membrane {
+                Some(_) => SearchError::AllInMembrane,
+                None => SearchError::NoPose,
+            }
         } else {
             SearchError::NoAllowedPose {
                 needed: restraints.needed,

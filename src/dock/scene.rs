@@ -237,7 +237,7 @@ impl Scene {
     /// The pose terms prepared for rescoring; `None` if no term acts.
     pub fn rescorer(&self, options: &DockOptions) -> Option<Rescorer> {
         let bodies = [&self.receptor, &self.ligand];
-        let known = (&self.active, &self.restraints.distances);
+        let known = (&self.active, &self.restraints);
         Rescoring::new(bodies, known, &self.regions, options).rescorer()
     }
 }

@@ -44,6 +44,11 @@ impl DockOptions {
                 ligand.clone_from(receptor);
             }
         }
+        if restraints.interface_ligand.is_none() {
+            restraints
+                .interface_ligand
+                .clone_from(&restraints.interface_receptor);
+        }
         self
     }
 
@@ -119,7 +124,7 @@ impl DockOptions {
         self.check_engine()
     }
 
-    /// Refuses what distance restraints have no part in.
+    /// Refuses what distance restraints and membranes have no part in.
     fn check_restraints(&self) -> Result<(), SearchError> {
         let (restraints, default) = (&self.restraints, Self::default().restraints);
         let refused = |name, value: String, bound: &str| SearchError::Option {
@@ -127,6 +132,16 @@ impl DockOptions {
             value,
             bound: bound.to_owned(),
         };
+        if let Some(membrane) = restraints.membrane {
+            if let Some(symmetry) = self.search.symmetry {
+                let bound = format!("left out with --symmetry {symmetry}");
+                return Err(refused("membrane", membrane.to_string(), &bound));
+            }
+            if self.search.engine != EngineChoice::Cpu {
+                let bound = "cpu with --membrane";
+                return Err(refused("engine", name_of(self.search.engine), bound));
+            }
+        }
         let Some(file) = &restraints.restraints else {
             let bound = "left out without --restraints";
             if restraints.restraints_need != default.restraints_need {
@@ -195,6 +210,11 @@ impl DockOptions {
                 };
                 return Err(without(name, value, "the receptor's"));
             }
+        }
+        if restraints.interface_receptor != restraints.interface_ligand {
+            let value = restraints.interface_ligand.as_ref();
+            let value = value.map_or_else(|| "left out".to_owned(), ToString::to_string);
+            return Err(without("interface-ligand", value, "the receptor's"));
         }
         Ok(())
     }

@@ -7,6 +7,8 @@ use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 use super::values::number;
+use crate::predictions::PredictionSource;
+use crate::priors::membrane::MembraneChoice;
 use crate::priors::peptidase;
 use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError};
 
@@ -47,6 +49,23 @@ pub struct RestraintOptions {
     /// 30 Å.
     #[arg(long, value_name = "NAME")]
     pub crosslink: Option<Crosslink>,
+    /// How likely each residue of the receptor is in the interface, as a predictor says: a table (columns chain,
+    /// residue, probability), or bfactor for the B values of the receptor's file. Poses that touch the likely ones rank
+    /// higher, by --interface-weight.
+    #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
+    pub interface_receptor: Option<PredictionSource>,
+    /// The same of the ligand.
+    #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
+    pub interface_ligand: Option<PredictionSource>,
+    /// A membrane that no atom of the other molecule enters: receptor or ligand, whose file marks its planes as those
+    /// of OPM and PPM do, or the lowest and highest z in Å of the receptor's file (--membrane=-15,15). Poses in it are
+    /// not searched, but for what lies between the samples, which costs --membrane-weight.
+    #[arg(
+        long,
+        value_name = "receptor|ligand|LOW,HIGH",
+        allow_hyphen_values = true
+    )]
+    pub membrane: Option<MembraneChoice>,
     /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues
     /// that does: score. Peptidases are detected from their sequence, and this counts where the contact effect is on,
     /// no residue is active and the other is neither peptidase nor antibody; 0 for none.

@@ -1,32 +1,54 @@
-//! The distance restraints of a docking.
+//! What is known of one docking: distances between receptor and ligand, residues that are
+//! likely in contact, and a membrane.
 
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::terms::pose::DistanceRestraints;
+use knotdock_scoring::terms::pose::{DistanceRestraints, Membrane, PredictedResidue};
 use knotdock_structures::molecule::Molecule;
 
 use crate::error::SearchError;
 use crate::options::RestraintOptions;
 
-/// The distance restraints of a docking, and how many of them a pose has to satisfy.
+/// Distance restraints with how many of them a pose has to satisfy, predictions of the interface, and a membrane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Restrained {
     /// Atoms, bounds, and how many have to be satisfied.
     pub distances: DistanceRestraints,
     /// Their names, in the same order.
     pub names: Vec<String>,
+    /// Residues of receptor and ligand with predictions.
+    pub predicted: [Vec<PredictedResidue>; 2],
+    /// A membrane of one side, which the other is to stay out of.
+    pub membrane: Option<Membrane>,
 }
 
 impl Restrained {
-    /// The restraints of the options between receptor and ligand; none without a file.
+    /// The restraints and predictions of the options; none without files.
     ///
     /// # Errors
-    /// [`SearchError`] where the file does not fit the molecules, or has fewer restraints than have to be satisfied.
+    /// [`SearchError`] where a file does not fit the molecules, or has fewer restraints than have to be satisfied.
     pub(crate) fn new(
         molecules: [&Molecule; 2],
         options: &RestraintOptions,
     ) -> Result<Self, SearchError> {
+        let sources = [&options.interface_receptor, &options.interface_ligand];
+        let mut predicted = [Vec::new(), Vec::new()];
+        for (side, source) in sources.into_iter().enumerate() {
+            if let Some(source) = source {
+                let residues = source.residues(molecules[side]);
+                predicted[side] = residues.map_err(|error| SearchError::Predictions {
+                    side: ["receptor", "ligand"][side],
+                    error,
+                })?;
+            }
+        }
+        let membrane = options.membrane.map(|choice| choice.of(molecules));
+        let membrane = membrane.transpose()?;
         let Some(file) = &options.restraints else {
-            return Ok(Self::default());
+            return Ok(Self {
+                predicted,
+                membrane,
+                ..Self::default()
+            });
         };
         let list = file.between(molecules, options.crosslink)?;
         let (needed, count) = (options.restraints_need, list.len());
@@ -39,10 +61,12 @@ impl Restrained {
                 needed,
             },
             names: list.into_iter().map(|restraint| restraint.name).collect(),
+            predicted,
+            membrane,
         })
     }
 
-    /// Whether there are none.
+    /// Whether there are no restraints.
     pub fn is_empty(&self) -> bool {
         self.distances.list.is_empty()
     }

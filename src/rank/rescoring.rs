@@ -3,7 +3,8 @@
 use crate::dock::flexible_regions::FlexibleRegions;
 use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
-use knotdock_scoring::terms::pose::{DistanceRestraints, POSE_TERMS, Rescorer, TermInputs};
+use crate::priors::restrained::Restrained;
+use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;
 use serde::Serialize;
 
@@ -30,7 +31,7 @@ impl<'a> Rescoring<'a> {
     /// Active residues carry a weight of their own, which depends on the prior that names them.
     pub fn new(
         bodies: [&'a Knots; 2],
-        (active, restraints): (&'a ActiveResidues, &'a DistanceRestraints),
+        (active, restrained): (&'a ActiveResidues, &'a Restrained),
         regions: &'a FlexibleRegions,
         options: &'a DockOptions,
     ) -> Self {
@@ -46,7 +47,9 @@ impl<'a> Rescoring<'a> {
                     .each_ref()
                     .map(|side| side.segments.as_slice()),
                 termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
-                distance_restraints: restraints,
+                distance_restraints: &restrained.distances,
+                membrane: restrained.membrane.as_ref(),
+                predicted: restrained.predicted.each_ref().map(Vec::as_slice),
             },
             weights: std::array::from_fn(|index| match POSE_TERMS[index].id {
                 "active_residues" => active.weight,

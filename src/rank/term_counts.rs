@@ -31,10 +31,14 @@ pub fn of(
         unresolved: [&unresolved.segments, &[]],
         termini: [&termini.atoms, &[]],
         distance_restraints: DistanceRestraints::none(),
+        predicted: [&[], &[]],
+        membrane: None,
     };
     let count = |term: &'static TermDefinition| {
         let [count, _] = (term.count)(&inputs);
         (term, count)
     };
-    Ok(POSE_TERMS.iter().map(count).collect())
+    // Terms that read what only options give have no part of a molecule.
+    let of_molecules = POSE_TERMS.iter().filter(|term| term.is_shown_always);
+    Ok(of_molecules.map(count).collect())
 }

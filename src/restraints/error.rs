@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::named_columns::{AtLine, TableFault, shortened};
 use crate::restraints::crosslink;
 
 /// Why a file of restraints cannot be used.
@@ -51,28 +52,9 @@ pub enum RestraintFault {
     #[error("{0}")]
     Bounds(String),
 
-    /// A column that is needed is not there.
-    #[error("there is no column `{column}`; the header has {present}")]
-    MissingColumn {
-        /// The column.
-        column: &'static str,
-        /// The columns that there are, in words.
-        present: String,
-    },
-    /// A column that means nothing here.
-    #[error("there is no use for a column `{0}`")]
-    UnknownColumn(String),
-    /// Two columns of one name.
-    #[error("there are two columns `{0}`")]
-    RepeatedColumn(String),
-    /// A row with more or fewer fields than the header.
-    #[error("the row has {fields} fields and the header {columns}")]
-    FieldCount {
-        /// Fields of the row.
-        fields: usize,
-        /// Fields of the header.
-        columns: usize,
-    },
+    /// The rows are no table with the columns of restraints.
+    #[error(transparent)]
+    Table(TableFault),
     /// A field that may not be empty is.
     #[error("the row has no {0}")]
     MissingField(&'static str),
@@ -192,12 +174,13 @@ impl RestraintFault {
             Self::TooManyAtoms(_) => "select residues or atoms in place of whole chains",
             Self::Distance { .. } => "write the number with a decimal point, as in 8.5",
             Self::Bounds(_) => "correct the numbers, so that 0 <= lower <= target <= upper and upper is above 0",
-            Self::MissingColumn { .. } | Self::UnknownColumn(_) | Self::RepeatedColumn(_) => {
+            Self::Table(TableFault::Unreadable(_)) => return Self::Unreadable(String::new()).remedy(),
+            Self::Table(TableFault::FieldCount { .. }) => TableFault::FIELD_COUNT_REMEDY,
+            Self::Table(_) => {
                 "the first row names the columns: receptor, ligand, lower, target, upper, group; receptor and \
                  ligand are needed, and so is upper without --crosslink. Statements (assign) belong in a file whose \
                  name ends in .tbl"
             }
-            Self::FieldCount { .. } => "give each row a field for each column, and put a field with commas in quotes",
             Self::MissingField("upper") => {
                 return format!(
                     "give the largest distance in Å, or the reagent of cross-links with --crosslink: {}",
@@ -256,14 +239,6 @@ impl Located {
         }
     }
 
-    /// A fault of a line.
-    pub(super) fn on_line(line: usize, fault: RestraintFault) -> Self {
-        Self {
-            line: Some(line),
-            ..Self::in_file(fault)
-        }
-    }
-
     /// The error that names the file.
     pub(super) fn of(self, path: &Path) -> RestraintFileError {
         RestraintFileError {
@@ -275,24 +250,17 @@ impl Located {
     }
 }
 
-/// A text of the file as far as a message needs it.
-pub(super) fn shortened(text: &str) -> String {
-    const MOST: usize = 60;
-    let mut shown: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    if let Some((end, _)) = shown.char_indices().nth(MOST) {
-        shown.truncate(end);
-        shown += " ...";
+impl From<TableFault> for RestraintFault {
+    fn from(fault: TableFault) -> Self {
+        Self::Table(fault)
     }
-    shown
 }
 
-/// Words with commas between, the first thirty.
-pub(super) fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    const MOST: usize = 30;
-    let mut words = words.into_iter();
-    let mut shown: Vec<&str> = words.by_ref().take(MOST).collect();
-    if words.next().is_some() {
-        shown.push("...");
+impl From<AtLine<RestraintFault>> for Located {
+    fn from(AtLine { line, fault }: AtLine<RestraintFault>) -> Self {
+        Self {
+            line,
+            ..Self::in_file(fault)
+        }
     }
-    shown.join(", ")
 }

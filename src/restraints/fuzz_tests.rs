@@ -4,8 +4,8 @@ use knotdock_structures::molecule::Molecule;
 use proptest::prelude::*;
 
 use super::error::Located;
-use super::test_molecules::molecules;
 use super::{CROSSLINKS, NamedRestraint, parse};
+use crate::test_molecules::molecules;
 
 /// Reads bytes in both formats; what is read must be usable.
 fn reads_or_refuses(bytes: &[u8]) {

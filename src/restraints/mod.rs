@@ -24,8 +24,6 @@ pub mod tbl;
 
 #[cfg(test)]
 mod fuzz_tests;
-#[cfg(test)]
-mod test_molecules;
 
 pub use self::crosslink::{CROSSLINKS, Crosslink, UnknownCrosslink};
 pub use self::error::{RestraintFault, RestraintFileError};
@@ -142,8 +140,8 @@ fn with_line_feeds(bytes: Vec<u8>) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::test_molecules::molecules;
     use super::*;
+    use crate::test_molecules::molecules;
 
     fn written(name: &str, bytes: &[u8]) -> Result<Vec<NamedRestraint>, RestraintFileError> {
         let folder = tempfile::tempdir().unwrap();

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use knotdock_structures::molecule::{Atom, Molecule, ResidueSelection};
 
-use crate::restraints::error::{RestraintFault, listed, shortened};
+use crate::named_columns::{listed, shortened};
+use crate::restraints::error::RestraintFault;
 
 /// Reads the fields of one column.
 pub(super) struct SideAtoms<'a> {
@@ -129,7 +130,7 @@ pub(super) fn residue(atom: &Atom) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::restraints::test_molecules::molecules;
+    use crate::test_molecules::molecules;
 
     fn names(field: &str, residue_atom: Option<&'static str>) -> Result<String, RestraintFault> {
         let [receptor, _] = molecules();

@@ -15,22 +15,17 @@
 
 use std::collections::{HashMap, HashSet};
 
-use csv::StringRecord;
 use knotdock_structures::molecule::Molecule;
 
-use crate::output::tables::cells::unquoted;
-use crate::output::tables::csv_lines::line_of;
-use crate::output::tables::spreadsheet::{column_name, plain};
+use crate::named_columns::{read_rows, shortened};
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::crosslink::Crosslink;
-use crate::restraints::error::{Located, RestraintFault, listed, shortened};
+use crate::restraints::error::{Located, RestraintFault};
 use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
 use crate::restraints::side_atoms::SideAtoms;
 
 /// The columns that a table may have.
 pub const COLUMNS: [&str; 6] = ["receptor", "ligand", "lower", "target", "upper", "group"];
-
-const COMMENT: Option<u8> = Some(b'#');
 
 /// The restraints of a table. Lines end with LF.
 pub(super) fn parse(
@@ -38,89 +33,14 @@ pub(super) fn parse(
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
 ) -> Result<Vec<NamedRestraint>, Located> {
-    let (text, delimiter) =
-        plain(bytes).map_err(|message| Located::in_file(RestraintFault::Unreadable(message)))?;
-    let line = |position: &csv::Position| {
-        usize::try_from(line_of(text.as_bytes(), position, COMMENT)).unwrap_or(usize::MAX)
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .comment(COMMENT)
-        .delimiter(delimiter)
-        .from_reader(text.as_bytes());
-    let mut header: Option<Header> = None;
     let mut rows = Rows::new(molecules, crosslink);
-    for record in reader.records() {
-        let record = record.map_err(|error| Located {
-            line: error.position().map(line),
-            ..Located::in_file(RestraintFault::Unreadable(error.to_string()))
-        })?;
-        // A comment may have blanks before it, and spreadsheets end tables with rows of empty fields.
-        let is_comment = record.get(0).is_some_and(|field| field.starts_with('#'));
-        if is_comment || record.iter().all(str::is_empty) {
-            continue;
-        }
-        let line = record.position().map_or(1, line);
-        let at_line = |fault| Located::on_line(line, fault);
-        match &header {
-            None => header = Some(Header::read(&record).map_err(at_line)?),
-            Some(header) => {
-                let row = header.row(&record).map_err(at_line)?;
-                rows.add(line, &row).map_err(at_line)?;
-            }
-        }
+    let is_table = read_rows(bytes, COLUMNS, &["receptor", "ligand"], |line, row| {
+        rows.add(line, row)
+    })?;
+    if !is_table {
+        return Err(Located::in_file(RestraintFault::NoRestraint));
     }
-    match header {
-        Some(_) => Ok(rows.restraints),
-        None => Err(Located::in_file(RestraintFault::NoRestraint)),
-    }
-}
-
-/// Which column of [`COLUMNS`] each column of the file is.
-struct Header(Vec<usize>);
-
-/// The fields of a row in the order of [`COLUMNS`], empty where there is none.
-type Row<'a> = [&'a str; COLUMNS.len()];
-
-impl Header {
-    fn read(record: &StringRecord) -> Result<Self, RestraintFault> {
-        let names: Vec<String> = record.iter().map(column_name).collect();
-        let mut seen = HashSet::new();
-        let mut places = Vec::new();
-        for name in &names {
-            let place = COLUMNS.iter().position(|column| column == name);
-            let place = place.ok_or_else(|| RestraintFault::UnknownColumn(shortened(name)))?;
-            if !seen.insert(place) {
-                return Err(RestraintFault::RepeatedColumn(name.clone()));
-            }
-            places.push(place);
-        }
-        for (place, column) in COLUMNS.into_iter().enumerate().take(2) {
-            if !seen.contains(&place) {
-                return Err(RestraintFault::MissingColumn {
-                    column,
-                    present: listed(names.iter().map(String::as_str)),
-                });
-            }
-        }
-        Ok(Self(places))
-    }
-
-    fn row<'a>(&self, record: &'a StringRecord) -> Result<Row<'a>, RestraintFault> {
-        if record.len() != self.0.len() {
-            return Err(RestraintFault::FieldCount {
-                fields: record.len(),
-                columns: self.0.len(),
-            });
-        }
-        let mut row = [""; COLUMNS.len()];
-        for (&place, field) in self.0.iter().zip(record) {
-            row[place] = unquoted(field);
-        }
-        Ok(row)
-    }
+    Ok(rows.restraints)
 }
 
 /// Restraints of the rows so far.
@@ -156,7 +76,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn add(&mut self, line: usize, row: &Row<'_>) -> Result<(), RestraintFault> {
+    fn add(&mut self, line: usize, row: &[&str; COLUMNS.len()]) -> Result<(), RestraintFault> {
         let [receptor, ligand, lower, target, upper, group] = *row;
         for (field, column) in [(receptor, "receptor"), (ligand, "ligand")] {
             if field.is_empty() {

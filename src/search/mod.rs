@@ -1,6 +1,6 @@
 //! The search: a scan of all rotations, then of finer ones about the best, by the engine in use.
 
-mod allowed;
+pub(crate) mod allowed;
 pub mod coarse_to_fine;
 pub mod deadline;
 pub mod plan;

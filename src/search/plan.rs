@@ -3,10 +3,8 @@
 use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
 use crate::pose_space::rotations::RotationSample;
-use crate::search::allowed::Allowed;
+use crate::search::allowed::{Allowed, Known};
 use knotdock_scoring::engine::Plan;
-use knotdock_scoring::terms::pose::DistanceRestraints;
-use knotdock_structures::Knots;
 use std::sync::Arc;
 
 /// Plan of a search: what it covers, where it runs and what it keeps.
@@ -16,7 +14,7 @@ pub struct SearchPlan {
     pub engine: Arc<Plan>,
     /// The poses that are searched.
     pub space: PoseSpace,
-    /// Translations that distance restraints allow; `None` without any.
+    /// Translations that distance restraints and a membrane allow; `None` without any.
     pub(crate) allowed: Option<Allowed>,
     /// The rotations that are sampled.
     pub rotations: RotationSample,
@@ -37,13 +35,13 @@ pub struct SearchPlan {
 }
 
 impl SearchPlan {
-    /// A search by the options and the restraints on distances between the knots of receptor and ligand, with so many
+    /// A search by the options and what is known of the translations, with so many
     /// rotations in flight and so much graphics memory.
     pub fn new(
         engine: Arc<Plan>,
         space: PoseSpace,
         options: &DockOptions,
-        (restraints, knots): (&DistanceRestraints, [&Knots; 2]),
+        known: Known,
         (in_flight, graphics_bytes): (usize, u64),
     ) -> Self {
         let rotations = space.rotations(
@@ -51,9 +49,8 @@ impl SearchPlan {
             (options.search.rotations, options.search.fine_rotations),
         );
         let step = space.step(rotations.covering_radius);
-        let any = !restraints.list.is_empty();
         Self {
-            allowed: any.then(|| Allowed::new(restraints, knots, &engine, step)),
+            allowed: Allowed::new(known, &engine, step),
             rotations,
             engine,
             space,

@@ -22,6 +22,7 @@ use crate::cli::inputs::room::{room_to_read, room_to_sample};
 use crate::cli::inputs::shapes::{ShapeInput, is_shape};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::library_errors::refused;
 
 /// The bodies as read.
 pub enum Bodies {
@@ -132,13 +133,11 @@ impl Bodies {
         given: GivenLengths,
         console: Console,
     ) -> Result<PreparedPair, Failure> {
-        let refused = |error: SearchError| Failure::input(&error).remedy(error.remedy());
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
                 PreparedPair::molecules(molecules, options).map_err(|error| match error {
                     SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
-                    SearchError::Restraints(error) => error.into(),
                     error => refused(error),
                 })
             }

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt::Display;
 use std::path::Path;
 
+use knotdock::error::SearchError;
 use knotdock::options::PotentialFileError;
 use knotdock::options::file::ConfigError;
 use knotdock::options::text::first_paragraph;
@@ -15,6 +16,7 @@ use knotdock::output::records::input_record::InputRecordError;
 use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
+use knotdock::predictions::PredictionError;
 use knotdock::restraints::RestraintFileError;
 use knotdock::threads::ThreadsError;
 use knotdock_structures::ball_file::BallFileError;
@@ -35,6 +37,20 @@ fn unreadable(
     match file {
         Some(file) => failure.at(file),
         None => failure,
+    }
+}
+
+/// What options or inputs a search refuses, at the place in the file that is at fault where there is one.
+pub fn refused(error: SearchError) -> Failure {
+    let remedy = error.remedy();
+    match &error {
+        SearchError::Restraints(RestraintFileError { path, line, .. }) => {
+            unreadable(&error, Some(path), *line, remedy)
+        }
+        SearchError::Predictions { error: at, .. } => {
+            unreadable(&error, at.path.as_deref(), at.line, remedy)
+        }
+        _ => Failure::input(&error).remedy(remedy),
     }
 }
 
@@ -62,10 +78,19 @@ impl From<clap::Error> for Failure {
         if let Some(error) = source.and_then(|source| source.downcast_ref::<PotentialFileError>()) {
             return error.clone().into();
         }
+        if let Some(error) = source.and_then(|source| source.downcast_ref::<PredictionError>()) {
+            return error.clone().into();
+        }
         match source.and_then(|source| source.downcast_ref::<RestraintFileError>()) {
             Some(error) => error.clone().into(),
             None => Self::input(first_paragraph(&error)),
         }
+    }
+}
+
+impl From<PredictionError> for Failure {
+    fn from(error: PredictionError) -> Self {
+        unreadable(&error, error.path.as_deref(), error.line, error.remedy())
     }
 }
 

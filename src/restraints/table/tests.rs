@@ -1,8 +1,9 @@
 //! Tables that are read, and tables that are refused by line.
 
 use super::*;
+use crate::named_columns::TableFault;
 use crate::restraints::CROSSLINKS;
-use crate::restraints::test_molecules::molecules;
+use crate::test_molecules::molecules;
 
 fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<NamedRestraint>, Located> {
     let [receptor, ligand] = molecules();
@@ -197,7 +198,7 @@ fn malformed_tables_are_refused_by_line() {
 
 #[test]
 fn the_remedy_for_columns_names_all() {
-    let remedy = RestraintFault::UnknownColumn(String::new()).remedy();
+    let remedy = RestraintFault::from(TableFault::UnknownColumn(String::new())).remedy();
     assert!(remedy.contains(&COLUMNS.join(", ")), "{remedy}");
 }
 

@@ -32,8 +32,9 @@ use knotdock_structures::molecule::Molecule;
 use self::expression::{Selections, unexpected};
 use self::sides::{SIDES, Sides};
 use self::tokens::{Place, Token};
+use crate::named_columns::shortened;
 use crate::restraints::bounds::{Bounds, distance};
-use crate::restraints::error::{Located, RestraintFault, shortened};
+use crate::restraints::error::{Located, RestraintFault};
 use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
 
 /// What may stand behind the distances with a number, and says nothing of them.

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use knotdock_structures::molecule::Molecule;
 
-use crate::restraints::error::{RestraintFault, listed};
+use crate::named_columns::listed;
+use crate::restraints::error::RestraintFault;
 use crate::restraints::side_atoms::{heavy, residue};
 use crate::restraints::tbl::expression::Expression;
 

@@ -1,7 +1,7 @@
 //! Statements that are read, and statements that are refused by line and column.
 
 use super::*;
-use crate::restraints::test_molecules::molecules;
+use crate::test_molecules::molecules;
 
 fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
     let [receptor, ligand] = molecules();

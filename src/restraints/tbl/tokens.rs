@@ -1,6 +1,7 @@
 //! Words and signs of a `.tbl` file, with their places.
 
-use crate::restraints::error::{Located, RestraintFault, shortened};
+use crate::named_columns::shortened;
+use crate::restraints::error::{Located, RestraintFault};
 
 /// A word or a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,6 +22,12 @@ impl Span {
         }
     }
 
+    /// Its ends times a factor.
+    #[inline(always)]
+    pub fn scaled(self, factor: f32) -> [f32; 2] {
+        [factor * self.low, factor * self.high]
+    }
+
     /// How far a place lies outside.
     #[inline(always)]
     fn distance(self, at: f32) -> f32 {
@@ -125,7 +131,7 @@ impl Balls {
             at.iter().zip(left)
         };
         let Some(&single) = self.ends.first() else {
-            return false;
+            return needed == 0;
         };
         // Restraints that hold, and that are still to come.
         let (mut held, mut coming) = (0, self.single + self.ends.len() - 1);

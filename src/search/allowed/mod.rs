@@ -14,40 +14,57 @@
 //!   radius from a rotation, which moves an atom by that angle times its distance from the ligand's centre. This is
 //!   about the middle of what is possible; poses beyond it are found from the next sample.
 //!
-//! Lower bounds are left to the pose term.
+//! Lower bounds are left to the pose term. A membrane leaves out a slab of translations likewise ([`slab`]).
 
 mod balls;
 mod lanes;
 mod region;
+mod slab;
 
 pub(crate) use region::Region;
 
 use balls::Ball;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::grid_turn::GridTurn;
-use knotdock_scoring::terms::pose::DistanceRestraints;
+use knotdock_scoring::terms::pose::{DistanceRestraints, Membrane};
 use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
+use slab::Slab;
 
-/// Restraints as balls of translations.
+/// What is known of the translations of a docking.
+#[derive(Clone, Copy)]
+pub struct Known<'a> {
+    /// Restraints on distances between the knots.
+    pub restraints: &'a DistanceRestraints,
+    /// A membrane that one side stays out of.
+    pub membrane: Option<&'a Membrane>,
+    /// Knots of receptor and ligand.
+    pub knots: [&'a Knots; 2],
+}
+
+/// Restraints as balls of translations, and a membrane as a slab of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Allowed {
     /// The balls of each restraint, restraints of one ball first.
     restraints: Vec<Vec<Ball>>,
     /// How many restraints have to hold.
     needed: usize,
+    membrane: Option<slab::Membrane>,
 }
 
 impl Allowed {
-    /// The restraints between the knots of receptor and ligand, for a plan's grid and rotations that leave `step`
-    /// radians between a pose and the nearest of them.
-    pub fn new(
-        restraints: &DistanceRestraints,
-        knots: [&Knots; 2],
-        plan: &Plan,
-        step: f64,
-    ) -> Self {
+    /// What is known, for a plan's grid and rotations that leave `step` radians between a pose and the nearest of
+    /// them. `None` where nothing is.
+    pub fn new(known: Known, plan: &Plan, step: f64) -> Option<Self> {
+        let Known {
+            restraints,
+            membrane,
+            knots,
+        } = known;
+        if restraints.list.is_empty() && membrane.is_none() {
+            return None;
+        }
         let centers = [plan.receptor_center(), plan.ligand_center()];
         let between = 0.5 * 3f64.sqrt() * plan.spacing();
         let list = restraints.list.iter();
@@ -55,10 +72,12 @@ impl Allowed {
             .map(|restraint| balls::of_restraint(restraint, knots, centers, (between, step)))
             .collect();
         restraints_of.sort_by_key(|balls| balls.len() != 1);
-        Self {
+        let place = |membrane| slab::Membrane::new(membrane, knots, centers, (between, step));
+        Some(Self {
             restraints: restraints_of,
             needed: restraints.needed,
-        }
+            membrane: membrane.map(place),
+        })
     }
 
     /// Prepares the regions of an engine's grids.
@@ -96,7 +115,16 @@ impl Regions<'_> {
                 (axes.place(&center), ball.radius / plan.spacing())
             }));
         }
-        region.close();
+        let slab = allowed.membrane.as_ref().map(|membrane| {
+            let (normal, bounds) = membrane.at(&matrix);
+            let along_axes = frame * normal;
+            Slab::new(
+                along_axes * plan.spacing(),
+                bounds,
+                along_axes.dot(&Vector3::from(axes.lows)),
+            )
+        });
+        region.close(slab);
     }
 }
 

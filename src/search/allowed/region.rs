@@ -5,6 +5,7 @@
 //! and only where a search looks: in rows that hold its best value, at values that it would keep.
 
 use crate::search::allowed::lanes::{Balls, Span};
+use crate::search::allowed::slab::Slab;
 use knotdock_scoring::transform::Real;
 use knotdock_scoring::vectorized::vectorized;
 use std::ops::Range;
@@ -21,6 +22,8 @@ pub(crate) struct Region {
     /// How many restraints have to hold.
     needed: usize,
     balls: Balls,
+    /// Voxels that a membrane takes out.
+    slab: Option<Slab>,
     /// Whether each cell may hold an allowed voxel, row-major, and whether any cell does.
     open: Vec<bool>,
     any_open: bool,
@@ -33,7 +36,7 @@ pub(crate) struct Region {
 impl Region {
     /// Begins a grid of so many voxels.
     pub fn begin(&mut self, counts: [usize; 3], firsts: [usize; 3], needed: usize) {
-        (self.counts, self.firsts, self.needed) = (counts, firsts, needed.max(1));
+        (self.counts, self.firsts, self.needed) = (counts, firsts, needed);
         self.balls.clear();
     }
 
@@ -43,9 +46,10 @@ impl Region {
         self.balls.add(balls);
     }
 
-    /// Ends the restraints, and finds the cells that may hold allowed voxels.
-    pub fn close(&mut self) {
+    /// Ends the restraints, takes a slab of voxels out, and finds the cells that may hold allowed voxels.
+    pub(super) fn close(&mut self, slab: Option<Slab>) {
         self.balls.end();
+        self.slab = slab;
         self.open.clear();
         let [nx, ny, nz] = self.counts;
         let Self {
@@ -57,7 +61,11 @@ impl Region {
                 for x in cells(nx) {
                     for y in cells(ny) {
                         balls.left_along(span(&x), span(&y), left);
-                        open.extend(cells(nz).map(|z| balls.hold(span(&z), left, self.needed)));
+                        open.extend(cells(nz).map(|z| {
+                            let spans = [span(&x), span(&y), span(&z)];
+                            slab.is_none_or(|slab| slab.leaves(spans))
+                                && balls.hold(spans[2], left, self.needed)
+                        }));
                     }
                 }
             },
@@ -105,7 +113,7 @@ impl Region {
         }
         let (x, y) = self.places(row);
         let Self { balls, left, .. } = self;
-        let (count, first) = (self.counts[2], self.firsts[2]);
+        let (count, first, slab) = (self.counts[2], self.firsts[2], self.slab);
         vectorized(
             #[inline(always)]
             || {
@@ -115,7 +123,9 @@ impl Region {
                         continue;
                     }
                     let z = wrapped(index + count - first, count);
-                    if value.wide() < floor || !balls.hold(Span::new(z, z), left, self.needed) {
+                    let spans = [x, y, z].map(|place| Span::new(place, place));
+                    let is_out = slab.is_some_and(|slab| !slab.leaves(spans));
+                    if value.wide() < floor || is_out || !balls.hold(spans[2], left, self.needed) {
                         *value = T::neg_infinity();
                     }
                 }
@@ -140,17 +150,17 @@ impl Region {
         &self.open[(x / CELL * ny + y / CELL) * nz..][..nz]
     }
 
-    /// Whether a voxel is allowed, by its indices.
+    /// Whether each voxel is allowed, by its index.
     #[cfg(test)]
-    pub fn allows(&mut self, [x, y, z]: [usize; 3]) -> bool {
+    pub fn allowed(&mut self) -> Vec<bool> {
         let [nx, ny, nz] = self.counts;
-        let row = x * ny + y;
         let mut grid = vec![0.0f32; nx * ny * nz];
         let mut rows = vec![0.0; nx * ny];
         self.take_cells_out(&mut grid, &mut rows);
-        let values = &mut grid[row * nz..][..nz];
-        self.take_voxels_out(row, f64::NEG_INFINITY, values);
-        values[z] == 0.0
+        for (row, values) in grid.chunks_mut(nz).enumerate() {
+            self.take_voxels_out(row, f64::NEG_INFINITY, values);
+        }
+        grid.iter().map(|value| *value == 0.0).collect()
     }
 }
 
@@ -180,7 +190,7 @@ mod tests {
         for restraint in balls {
             region.add(restraint.iter().copied());
         }
-        region.close();
+        region.close(None);
     }
 
     /// Counts of balls on a grid that wraps, against the definition at each voxel.
@@ -207,7 +217,7 @@ mod tests {
                 let square: f64 = (0..3).map(|k| (ball.0[k] - at[k] as f64).powi(2)).sum();
                 square <= ball.1 * ball.1
             };
-            let mut allowed = 0;
+            let (mut allowed, mask) = (0, region.allowed());
             for voxel in 0..counts.iter().product() {
                 let at = [voxel / (12 * 70), voxel / 70 % 12, voxel % 70];
                 let held = balls
@@ -215,7 +225,9 @@ mod tests {
                     .filter(|balls| balls.iter().any(|ball| holds(ball, at)));
                 let expected = held.count() >= needed;
                 let index = [0, 1, 2].map(|axis| (at[axis] + firsts[axis]) % counts[axis]);
-                assert_eq!(region.allows(index), expected, "{needed} {at:?}");
+                let [x, y, z] = index;
+                let voxel = (x * counts[1] + y) * counts[2] + z;
+                assert_eq!(mask[voxel], expected, "{needed} {at:?}");
                 allowed += usize::from(expected);
             }
             assert_eq!(allowed > 0, needed < 4);
@@ -235,8 +247,8 @@ mod tests {
                 region.begin(size, [2, 0, 7], 1);
                 fill(&mut region, &[&[([3.0, 3.0, 3.0], radius)]]);
                 let mut masked = grid.clone();
-                for (voxel, value) in masked.iter_mut().enumerate() {
-                    if !region.allows([voxel / 126, voxel / 14 % 9, voxel % 14]) {
+                for (value, allowed) in masked.iter_mut().zip(region.allowed()) {
+                    if !allowed {
                         *value = f32::NEG_INFINITY;
                     }
                 }

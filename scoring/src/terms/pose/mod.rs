@@ -16,6 +16,8 @@
 //! | `unresolved` | atoms where the other side has unresolved residues | conformers of its unresolved segments |
 //! | `termini` | contacts of residues near termini and gaps | the chains of the file |
 //! | `restraints_penalty` | violations of distance restraints | the user |
+//! | `membrane` | depth in a membrane | the file of one side, or the user |
+//! | `interface_predictions` | log-odds of the residues in contact | a predictor, by the user |
 //!
 //! # Adding a term
 //!
@@ -32,6 +34,8 @@ mod distance_restraints;
 mod effective_distance;
 mod energy_table;
 mod fine_contact;
+mod interface_predictions;
+mod membrane;
 mod relaxed;
 mod rescorer;
 mod side;
@@ -45,6 +49,8 @@ pub use atom_pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use distance_binned_potential::{DistanceBinnedPotential, RANGES};
 pub use distance_restraints::{DistanceRestraint, DistanceRestraints};
 pub use fine_contact::FineContacts;
+pub use interface_predictions::{InterfacePredictions, PredictedResidue};
+pub use membrane::Membrane;
 pub use relaxed::{Relaxation, Relaxed, Workspace};
 pub use rescorer::Rescorer;
 pub use termini::TerminusContacts;
@@ -64,6 +70,8 @@ pub const POSE_TERMS: &[TermDefinition] = &[
     unresolved::TERM,
     termini::TERM,
     distance_restraints::TERM,
+    interface_predictions::TERM,
+    membrane::TERM,
 ];
 
 /// Time to score a pose by all terms but `relaxed`, as a share of the time by all terms. Measured on the example pair.
@@ -128,6 +136,10 @@ pub struct TermInputs<'a> {
     pub termini: [&'a [usize]; 2],
     /// Restraints on distances between the knots of receptor and ligand.
     pub distance_restraints: &'a DistanceRestraints,
+    /// Residues of receptor and ligand with predictions.
+    pub predicted: [&'a [PredictedResidue]; 2],
+    /// A membrane of one side, which the other is to stay out of.
+    pub membrane: Option<&'a Membrane>,
 }
 
 impl TermInputs<'_> {
@@ -197,6 +209,8 @@ mod tests {
             unresolved: [&[], &[]],
             termini: [&[], &[]],
             distance_restraints: DistanceRestraints::none(),
+            predicted: [&[], &[]],
+            membrane: None,
         };
         let far = DistanceRestraints {
             list: vec![DistanceRestraint {
@@ -206,12 +220,23 @@ mod tests {
             }],
             needed: 1,
         };
+        let predicted = [PredictedResidue {
+            atoms: vec![0],
+            log_odds: 1.0,
+        }];
+        let membrane = Membrane {
+            side: 0,
+            low: -9.0,
+            high: 9.0,
+        };
         let all = TermInputs {
             bodies: [&typed, &typed],
             active_residues: &sets,
             unresolved: [&[], &segment],
             termini: [&[0], &[]],
             distance_restraints: &far,
+            predicted: [&predicted, &[]],
+            membrane: Some(&membrane),
             ..nothing
         };
         let none = [0.0; POSE_TERMS.len()];

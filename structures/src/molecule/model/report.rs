@@ -35,6 +35,9 @@ pub struct ReadReport {
     pub joined_models: Option<JoinedModels>,
     /// How sure the prediction is that the file holds; nothing where it holds none.
     pub confidence: Option<Confidence>,
+    /// Lowest and highest z (Å) of the planes of a flat membrane that the file marks, as those of OPM and PPM do.
+    #[serde(skip)]
+    pub membrane: Option<[f64; 2]>,
     /// Ends that a selection of residues cut out of chains: they stand for bonds.
     #[serde(skip)]
     pub(crate) cut_ends: Vec<CutEnd>,

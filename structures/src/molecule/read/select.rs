@@ -47,6 +47,7 @@ pub(crate) fn select(
             pseudo_atoms::find(&parsed, &known),
         )
     };
+    report.membrane = membrane(&parsed, &pseudo_atoms);
     let criteria = Criteria::new(&parsed, wanted, options);
     let mut atoms = Vec::with_capacity(parsed.len());
     let mut left_out = Vec::new();
@@ -104,6 +105,21 @@ pub(crate) fn select(
         });
     }
     Ok(atoms)
+}
+
+/// Lowest and highest z of membrane planes: of marks (`DUM`) that all lie in two planes across the z axis.
+fn membrane(parsed: &[Parsed], pseudo_atoms: &[Option<String>]) -> Option<[f64; 2]> {
+    // OPM writes three decimals, and rounds the thickness to one.
+    const FLAT: f64 = 0.1;
+    let marks = parsed
+        .iter()
+        .zip(pseudo_atoms)
+        .filter(|(_, pseudo_atom)| pseudo_atom.as_deref() == Some("DUM"));
+    let z: Vec<f64> = marks.map(|(record, _)| record.exact.position[2]).collect();
+    let low = z.iter().copied().reduce(f64::min)?;
+    let high = z.iter().copied().reduce(f64::max)?;
+    let is_flat = z.iter().all(|z| z - low <= FLAT || high - z <= FLAT);
+    (is_flat && high - low > FLAT).then_some([low, high])
 }
 
 /// The chains and residues that are requested; `None` for all.

@@ -1,10 +1,10 @@
-//! Two small molecules for the tests of restraints.
+//! Two small molecules for the tests of restraints and predictions.
 
 use knotdock_structures::molecule::{Atom, Format, Molecule};
 
 /// A receptor of chains A (10 LYS, 11 ALA, 52 GLY, 52A GLY), D (-3 ALA) and S (1 ALA), and a ligand of chains B
 /// (20 LYS, 21 ALA), `b` (20 GLY), S (1 ALA) and one without a name (7 ALA).
-pub(super) fn molecules() -> [Molecule; 2] {
+pub(crate) fn molecules() -> [Molecule; 2] {
     let receptor = [
         (
             "A",

@@ -1,0 +1,138 @@
+//! Pose term `interface_predictions`: whether the residues in contact are those that a predictor expects there.
+//!
+//! A predictor gives each residue i a probability p(i) to be in the interface. For independent residues the logarithm
+//! of the probability of a pose's interface S, against one in which all residues are equally likely, is up to a
+//! constant
+//!
+//! sum over i in S of logit p(i) - logit p,
+//!
+//! with the mean probability p of the side. So a residue that is no likelier than the mean counts nothing, and neither
+//! large nor small interfaces are preferred. Residues are not independent and predictions are not calibrated, which
+//! the weight has to allow for.
+
+use super::side::Side;
+use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use crate::blocks::Near;
+use crate::se3::Pose;
+use crate::terms::weight::Weight;
+use knotdock_structures::Knots;
+
+/// Definition of the term.
+pub(super) const TERM: TermDefinition = TermDefinition {
+    id: "interface_predictions",
+    label: "interface predictions",
+    weight: Weight {
+        option: "interface-weight",
+        help: "Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of the mean",
+        unit: "score per nat",
+        default: 20.0,
+    },
+    time_share: UNRELAXED,
+    is_shown_always: false,
+    reads: "residues with a prediction",
+    count: |inputs| inputs.predicted.map(<[_]>::len),
+    applies: |inputs| inputs.predicted.iter().any(|side| !side.is_empty()),
+    build: |inputs, weight| {
+        let [receptor, ligand] = inputs.bodies;
+        let predicted = inputs.predicted;
+        Box::new(InterfacePredictions::new(
+            receptor, ligand, predicted, weight,
+        ))
+    },
+};
+
+/// A residue with a predicted probability to be in the interface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PredictedResidue {
+    /// Indices of its knots.
+    pub atoms: Vec<usize>,
+    /// Its log-odds less those of the mean probability, in nats.
+    pub log_odds: f64,
+}
+
+/// Two bodies prepared for the log-odds of the residues in contact.
+pub struct InterfacePredictions {
+    /// Positions of the atoms of each residue of receptor and ligand (Å), and its log-odds. Without those of no odds.
+    residues: [Vec<(Vec<[f64; 3]>, f64)>; 2],
+    receptor: Side,
+    ligand: Side,
+    weight: f64,
+}
+
+impl InterfacePredictions {
+    /// Prepares two sets of knots. `weight` is the score of a nat.
+    pub fn new(
+        receptor: &Knots,
+        ligand: &Knots,
+        predicted: [&[PredictedResidue]; 2],
+        weight: f64,
+    ) -> Self {
+        let of = |knots: &Knots, side: &[PredictedResidue]| {
+            let counting = side.iter().filter(|residue| residue.log_odds != 0.0);
+            let positions = |residue: &PredictedResidue| {
+                let centers = residue.atoms.iter().filter_map(|&at| knots.centers.get(at));
+                (centers.copied().collect(), residue.log_odds)
+            };
+            counting.map(positions).collect()
+        };
+        Self {
+            residues: [of(receptor, predicted[0]), of(ligand, predicted[1])],
+            receptor: Side::new(receptor),
+            ligand: Side::new(ligand),
+            weight,
+        }
+    }
+
+    /// Weight times the log-odds of all residues in contact.
+    pub fn score(&self, pose: &Pose) -> f64 {
+        let mut near = Near::default();
+        let mut sum = |side: &Side, residues: &[(Vec<[f64; 3]>, f64)], pose: &Pose| -> f64 {
+            let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
+            let touching = residues
+                .iter()
+                .filter(|(atoms, _)| atoms.iter().any(&mut touches));
+            touching.map(|(_, log_odds)| log_odds).sum()
+        };
+        let [receptor, ligand] = &self.residues;
+        let odds = sum(&self.ligand, receptor, &pose.inverse()) + sum(&self.receptor, ligand, pose);
+        // Without residues the score is 0, not -0.
+        0.0 + self.weight * odds
+    }
+}
+
+impl PoseTerm for InterfacePredictions {
+    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
+        self.score(pose)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Atoms at 10, 20, 30 and 40 Å on both sides; the receptor's third residue has two atoms.
+    #[test]
+    fn log_odds_of_residues_in_contact_are_summed() {
+        let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
+        let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
+        let residue = |atoms: &[usize], log_odds| PredictedResidue {
+            atoms: atoms.to_vec(),
+            log_odds,
+        };
+        let receptor = [
+            residue(&[0], 2.0),
+            residue(&[1], 0.0),
+            residue(&[2, 3], -0.5),
+        ];
+        let ligand = [residue(&[3], 4.0)];
+        let term = InterfacePredictions::new(&knots, &knots, [&receptor, &ligand], 10.0);
+        let at = |x: f64, y: f64| term.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, y, 0.0]));
+        assert_eq!(at(0.0, 4.9), 55.0);
+        let none = at(0.0, 5.1);
+        assert!(none == 0.0 && none.is_sign_positive());
+        // The ligand's first two atoms lie over the receptor's last two, which are one residue.
+        assert_eq!(at(20.0, 3.0), -5.0);
+        // Its last lies over the receptor's first.
+        assert_eq!(at(-30.0, 3.0), 60.0);
+    }
+}
