@@ -94,6 +94,23 @@ fn poses_that_cannot_satisfy_a_restraint_are_not_searched() {
     assert_eq!(before, comparable(&folder.path().join("again")));
 }
 
+/// Poses that score less than the two apart are kept only where restraints leave nothing else.
+#[test]
+fn overlap_is_kept_where_there_is_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let scores = |text: &str| -> Vec<f64> {
+        let found = dock(folder.path(), "known.csv", text, "");
+        found
+            .iter()
+            .map(|row| number(row, "search_score"))
+            .collect()
+    };
+    let buried = scores("receptor,ligand,upper\nA:228.CA,B:16.CA,1\n");
+    assert!(buried.len() > 20 && buried.iter().all(|score| *score < 0.0));
+    let near = scores(PAIR);
+    assert!(near.len() > 20 && near.iter().all(|score| *score > 0.0));
+}
+
 /// Of several restraints some may be false. Where too many have to hold, no pose is left, and the message says so.
 #[test]
 fn some_restraints_may_be_false() {

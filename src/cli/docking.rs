@@ -31,7 +31,7 @@ use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
-    assumed, error_warning, few_rotations_warning, outcome_text, regions_text,
+    assumed, error_warning, few_rotations_warning, known_text, outcome_text, regions_text,
 };
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::{finish_before_reading, warn_set_aside};
@@ -91,6 +91,9 @@ impl Docking {
                     request.options.kernel.resolution, plan.unit
                 ));
             }
+        }
+        for text in known_text(sides, &plan.restraints) {
+            console.say(text);
         }
         for text in regions_text(sides, &plan.regions) {
             console.say(text);

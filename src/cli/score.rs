@@ -21,7 +21,7 @@ use crate::cli::inputs::poses::pose;
 use crate::cli::inputs::request::lengths;
 use crate::cli::inputs::shapes::is_shape;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{regions_text, site_text};
+use crate::cli::messages::dock::{known_text, regions_text, site_text};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::library_errors::refused;
 
@@ -137,6 +137,9 @@ impl Score {
             });
         let pose_score = scored.exact + pose_terms.sum();
         console.say(format!("\n{}", ladder_text(&scored, "Å")));
+        for text in known_text(&["receptor", "ligand"], &scene.restraints) {
+            console.say(text);
+        }
         for text in regions_text(&["receptor", "ligand"], &scene.regions) {
             console.say(text);
         }

@@ -41,13 +41,26 @@ pub(crate) fn scan<T: Real>(
 ) -> Result<Scanned, SearchError> {
     // No list grows beyond all peaks that there are.
     let most = most.min(plan.rotations.images * groups.len() * plan.per_rotation);
+    let at_least = |least| scan_on_cores(plan, engine, groups, (most, least), deadline, progress);
+    // What is known of the translations may leave nothing but overlap at most rotations. Poses that score less than
+    // the two bodies apart are then kept only where there are no others.
+    let on_cores = || {
+        let scanned = at_least(match plan.allowed {
+            Some(_) => 0.0,
+            None => f64::NEG_INFINITY,
+        });
+        match plan.allowed {
+            Some(_) if scanned.peaks.is_empty() => at_least(f64::NEG_INFINITY),
+            _ => scanned,
+        }
+    };
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
         Some(gpu) => scan_on_card(plan, gpu, groups, most, progress)?,
-        None => scan_on_cores(plan, engine, groups, most, deadline, progress),
+        None => on_cores(),
     };
     #[cfg(not(feature = "gpu"))]
-    let mut scanned = scan_on_cores(plan, engine, groups, most, deadline, progress);
+    let mut scanned = on_cores();
     let peaks = &mut scanned.peaks;
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
@@ -90,13 +103,13 @@ fn scan_on_card(
     })
 }
 
-/// Peaks of the CPU's cores, the best `most` of each thread among them. The groups that are searched are the first
+/// Peaks of the CPU's cores that score `least` or more, the best `most` of each thread among them. The groups that are searched are the first
 /// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
 fn scan_on_cores<T: Real>(
     plan: &SearchPlan,
     engine: &ScanEngine<T>,
     groups: &[RotationGroup],
-    most: usize,
+    (most, least): (usize, f64),
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Scanned {
@@ -122,7 +135,7 @@ fn scan_on_cores<T: Real>(
             let mut regions: [Region; IMAGES] = Default::default();
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
             // What scores less is not kept whatever else is found.
-            let mut floor = f64::NEG_INFINITY;
+            let mut floor = least;
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);
                 let (mut turns, mut images) = ([GridTurn::NONE; IMAGES], [0; IMAGES]);

@@ -7,10 +7,12 @@ use knotdock::dock::outcome::{DockOutcome, EffectCost};
 use knotdock::dock::plan::DockPlan;
 use knotdock::output::tables::report::counted;
 use knotdock::priors::active_residues::AssumedSite;
+use knotdock::priors::restrained::Restrained;
 use knotdock::rank::sharp::SharpFinding;
 use knotdock::rank::sharp::evidence::MARGIN;
 use knotdock::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::terms::effect::Effect;
+use knotdock_scoring::terms::pose::Membrane;
 use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.
@@ -191,6 +193,34 @@ fn joined(names: &[&str]) -> String {
         [name] => (*name).to_owned(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
+}
+
+/// What the user knows of the complex: restraints, predictions and a membrane.
+pub fn known_text(sides: &[&str], known: &Restrained) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !known.is_empty() {
+        let restraints = &known.distances;
+        lines.push(match (restraints.needed, restraints.list.len()) {
+            (needed, count) if needed == count => {
+                format!("{} to satisfy", counted(count, "distance restraint"))
+            }
+            (needed, count) => format!("{needed} of {count} distance restraints to satisfy"),
+        });
+    }
+    for (side, residues) in sides.iter().zip(&known.predicted) {
+        if !residues.is_empty() {
+            let residues = counted(residues.len(), "residue");
+            lines.push(format!("The {side}: interface predictions of {residues}"));
+        }
+    }
+    if let Some(Membrane { side, low, high }) = &known.membrane
+        && let (Some(own), Some(other)) = (sides.get(*side), sides.get(1 - *side))
+    {
+        lines.push(format!(
+            "The {own}: in a membrane from z = {low} to {high} Å of its file, which the {other} stays out of"
+        ));
+    }
+    lines
 }
 
 /// Flexible regions of each side that cost poses score: unresolved segments and residues near termini.
