@@ -1,7 +1,7 @@
 //! Interface predictions: how likely each residue of a molecule is in the interface, as some predictor says.
 //!
-//! They are read of a table ([`table`]), or of the B values of the molecule's own file, where predictors leave them
-//! ([`b_values`]). Residues without a prediction count as average.
+//! They are read from a table (columns `chain`, `residue` and `probability`, in any order), or from the B values of the
+//! molecule's own file, where predictors leave them. Residues without a prediction count as average.
 //!
 //! # Conventions
 //!
