@@ -53,7 +53,7 @@ fn distance(a: [f64; 3], b: [f64; 3], row: &BTreeMap<String, String>) -> f64 {
     (square(0) + square(1) + square(2)).sqrt()
 }
 
-/// Every pose can satisfy the restraint within what the samples leave open, pays 50 for each Å that it does not, and
+/// Every pose can satisfy the restraint within what the samples leave open, pays 400 for each Å that it does not, and
 /// is listed with its distance. A record repeats the run without the file.
 #[test]
 fn poses_that_cannot_satisfy_a_restraint_are_not_searched() {
@@ -72,7 +72,7 @@ fn poses_that_cannot_satisfy_a_restraint_are_not_searched() {
     for (row, listed) in found.iter().zip(&listed) {
         let distance = distance(ends[0], ends[1], row);
         assert!(distance < 18.0, "{distance}");
-        let penalty = -50.0 * (distance - 10.0).max(0.0);
+        let penalty = -400.0 * (distance - 10.0).max(0.0);
         assert!((number(row, "restraints_penalty") - penalty).abs() < 1e-6);
         assert_eq!(listed["rank"], row["rank"]);
         assert!((number(listed, "distance") - distance).abs() < 1e-9);

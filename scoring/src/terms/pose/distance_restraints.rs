@@ -20,7 +20,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         option: "violation-weight",
         help: "Cost of each Å by which a pose violates the distance restraints",
         unit: "score per Å",
-        default: 50.0,
+        default: 400.0,
     },
     time_share: UNRELAXED,
     is_shown_always: false,
