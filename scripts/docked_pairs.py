@@ -104,6 +104,20 @@ def native_options(folder):
     return [word for side in sides for word in (f"--native-{side}", str(find_part(folder, f"{side}_bound")))]
 
 
+def verdicts(knotdock, folder, pair):
+    """Whether each pose of a run meets each of CRITERIA, by rank: measured once and kept beside the run.
+
+    `folder` holds the run as benchmark.py leaves it, `pair` the files of the pair.
+    """
+    table, cache = folder / "run/poses.csv", folder / "verdicts.json"
+    if cache.exists() and cache.stat().st_mtime >= table.stat().st_mtime:
+        return json.loads(cache.read_text())
+    poses = evaluate(knotdock, folder / "run", native_options(pair))
+    found = {str(pose["rank"]): [pose[criterion] for criterion in CRITERIA] for pose in poses}
+    write(cache, json.dumps(found))
+    return found
+
+
 def first_ranks(qualities):
     """The number of poses, and the 1-based rank of the first that meets each criterion (None: none does)."""
     ranks = {"count": len(qualities), **dict.fromkeys(CRITERIA)}

@@ -35,7 +35,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from docked_pairs import CRITERIA, DEPTHS, NOT_FOUND, evaluate, log_rank, native_options, write
+from docked_pairs import DEPTHS, NOT_FOUND, log_rank, verdicts
 
 FEATURES = ("slice_0", "slice_r0", "slice_2r0")
 TERMS = ("electrostatics", "contact", "fine_contact", "atom_pair", "relaxed")
@@ -97,7 +97,7 @@ def load(options, folder, pair):
     and cluster. The other terms are restraint and the pose terms that run.json names, at the weights of the run.
     """
     table = folder / "run/poses.csv"
-    found = verdicts(options, folder, pair, table)
+    found = verdicts(options.knotdock, folder, options.folder / pair)
     run = json.loads((folder / "run/run.json").read_text())
     recorded = {"lambda": run["options"]["kernel"]["lambda"], **run["options"]["terms"]}
     held = ["restraint", *(term["id"] for term in run["pose_terms"] if term["id"] not in TERMS)]
@@ -113,17 +113,6 @@ def load(options, folder, pair):
             rows.append([*slices, *terms, *found[row["rank"]], float(row["pose_score"]), float(row["cluster"])])
     weights = tuple(float(recorded.get(name) or 0) for name in ("lambda", *(f"{name}_weight" for name in TERMS)))
     return np.array(rows, dtype=float), weights, computed
-
-
-def verdicts(options, folder, pair, table):
-    """Whether a pose meets each criterion, by rank: measured once and kept beside the run."""
-    cache = folder / "verdicts.json"
-    if cache.exists() and cache.stat().st_mtime >= table.stat().st_mtime:
-        return json.loads(cache.read_text())
-    poses = evaluate(options.knotdock, folder / "run", native_options(options.folder / pair))
-    found = {str(pose["rank"]): [pose[criterion] for criterion in CRITERIA] for pose in poses}
-    write(cache, json.dumps(found))
-    return found
 
 
 def first_rank(scores, wanted):

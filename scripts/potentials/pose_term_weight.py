@@ -17,13 +17,12 @@ Needs Python 3.9 or later and nothing else.
 
 import argparse
 import csv
-import json
 import statistics
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from docked_pairs import CRITERIA, evaluate, log_rank, native_options, write
+from docked_pairs import CRITERIA, log_rank, verdicts
 
 DEPTHS = (1, 10, 100)
 
@@ -60,17 +59,14 @@ def parse_arguments():
 
 def load(options, folder):
     """Score without the term, the term, and the verdicts of each pose of a run."""
-    table, cache = folder / "run/poses.csv", folder / "verdicts.json"
-    if not cache.exists() or cache.stat().st_mtime < table.stat().st_mtime:
-        found = evaluate(options.knotdock, folder / "run", native_options(options.folder / folder.parent.name))
-        write(cache, json.dumps({str(pose["rank"]): [pose[criterion] for criterion in CRITERIA] for pose in found}))
-    verdicts = json.loads(cache.read_text())
+    table = folder / "run/poses.csv"
+    found = verdicts(options.knotdock, folder, options.folder / folder.parent.name)
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))
     if rows and options.term not in rows[0]:
         sys.exit(f"{table} has no column {options.term}")
     terms = [float(row[options.term] or 0) for row in rows]
-    return [(float(row["pose_score"]) - term, term, verdicts[row["rank"]]) for row, term in zip(rows, terms)]
+    return [(float(row["pose_score"]) - term, term, found[row["rank"]]) for row, term in zip(rows, terms)]
 
 
 def ranks(poses, factor):
