@@ -132,40 +132,37 @@ impl DockOptions {
             value,
             bound: bound.to_owned(),
         };
-        if let Some(membrane) = restraints.membrane {
+        let file = restraints.restraints.as_ref();
+        let of_search = [
+            (
+                "restraints",
+                file.map(|file| file.path.display().to_string()),
+            ),
+            ("membrane", restraints.membrane.map(|of| of.to_string())),
+        ];
+        for (name, value) in of_search {
+            let Some(value) = value else { continue };
             if let Some(symmetry) = self.search.symmetry {
                 let bound = format!("left out with --symmetry {symmetry}");
-                return Err(refused("membrane", membrane.to_string(), &bound));
+                return Err(refused(name, value, &bound));
             }
             if self.search.engine != EngineChoice::Cpu {
-                let bound = "cpu with --membrane";
-                return Err(refused("engine", name_of(self.search.engine), bound));
+                let bound = format!("cpu with --{name}");
+                return Err(refused("engine", name_of(self.search.engine), &bound));
             }
         }
-        let Some(file) = &restraints.restraints else {
-            let bound = "left out without --restraints";
-            if restraints.restraints_need != default.restraints_need {
-                let value = restraints.restraints_need.to_string();
-                return Err(refused("restraints-need", value, bound));
-            }
-            return match restraints.crosslink {
-                Some(crosslink) => Err(refused("crosslink", crosslink.to_string(), bound)),
-                None => Ok(()),
-            };
-        };
-        if let Some(symmetry) = self.search.symmetry {
-            let bound = format!("left out with --symmetry {symmetry}");
-            return Err(refused(
-                "restraints",
-                file.path.display().to_string(),
-                &bound,
-            ));
+        if file.is_some() {
+            return Ok(());
         }
-        if self.search.engine != EngineChoice::Cpu {
-            let bound = "cpu with --restraints";
-            return Err(refused("engine", name_of(self.search.engine), bound));
+        let bound = "left out without --restraints";
+        if restraints.restraints_need != default.restraints_need {
+            let value = restraints.restraints_need.to_string();
+            return Err(refused("restraints-need", value, bound));
         }
-        Ok(())
+        match restraints.crosslink {
+            Some(crosslink) => Err(refused("crosslink", crosslink.to_string(), bound)),
+            None => Ok(()),
+        }
     }
 
     /// Refuses what a search for rings has no part for.

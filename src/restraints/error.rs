@@ -164,7 +164,7 @@ impl RestraintFault {
     /// Remedy for the user.
     pub fn remedy(&self) -> String {
         match self {
-            Self::Unreadable(_) => {
+            Self::Unreadable(_) | Self::Table(TableFault::Unreadable(_)) => {
                 "give a text in UTF-8: a CSV table, or a .tbl file with assign statements"
             }
             Self::NoRestraint => {
@@ -174,7 +174,6 @@ impl RestraintFault {
             Self::TooManyAtoms(_) => "select residues or atoms in place of whole chains",
             Self::Distance { .. } => "write the number with a decimal point, as in 8.5",
             Self::Bounds(_) => "correct the numbers, so that 0 <= lower <= target <= upper and upper is above 0",
-            Self::Table(TableFault::Unreadable(_)) => return Self::Unreadable(String::new()).remedy(),
             Self::Table(TableFault::FieldCount { .. }) => TableFault::FIELD_COUNT_REMEDY,
             Self::Table(_) => {
                 "the first row names the columns: receptor, ligand, lower, target, upper, group; receptor and \

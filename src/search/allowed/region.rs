@@ -24,9 +24,8 @@ pub(crate) struct Region {
     balls: Balls,
     /// Voxels that a membrane takes out.
     slab: Option<Slab>,
-    /// Whether each cell may hold an allowed voxel, row-major, and whether any cell does.
+    /// Whether each cell may hold an allowed voxel, row-major.
     open: Vec<bool>,
-    any_open: bool,
     /// Of each row, by its indices: whether it still holds what is not allowed.
     unchecked: Vec<bool>,
     /// Squares of what the balls leave of their radii along a row.
@@ -70,12 +69,11 @@ impl Region {
                 }
             },
         );
-        self.any_open = self.open.contains(&true);
     }
 
     /// Whether it is known that nothing is allowed.
     pub fn is_empty(&self) -> bool {
-        !self.any_open
+        !self.open.contains(&true)
     }
 
     /// Takes out all voxels of cells that hold none that is allowed: sets them to minus infinity, and updates the

@@ -23,8 +23,10 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     count: |inputs| [0, 1].map(|side| usize::from(inputs.membrane.is_some_and(|m| m.side == side))),
     applies: |inputs| inputs.membrane.is_some(),
     build: |inputs, weight| {
-        let membrane = inputs.membrane.copied().unwrap_or_default();
-        let other = inputs.bodies[1 - membrane.side.min(1)];
+        let Some(&membrane) = inputs.membrane else {
+            unreachable!("the term applies where there is a membrane");
+        };
+        let other = inputs.bodies[1 - membrane.side];
         Box::new(MembraneDepth {
             membrane,
             positions: other.centers.clone(),
@@ -34,7 +36,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 };
 
 /// A slab across the z axis of one side's file.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Membrane {
     /// The side: 0 for the receptor, 1 for the ligand.
     pub side: usize,
