@@ -8,6 +8,7 @@
 
 pub mod bounded_read;
 pub mod dock;
+pub mod ensemble;
 pub mod error;
 pub mod evaluate;
 pub mod geometry;

@@ -20,6 +20,7 @@ mod crash;
 mod dock_run;
 mod documents;
 mod effects;
+mod ensembles;
 mod example;
 mod fuzz;
 mod geometry;

@@ -18,7 +18,7 @@ Runs that are done are kept, and repeated only if the program, its options or th
 named and costs no other.
 
 With --bound ligand, receptor or both the bound structures of these sides are docked, as when a known complex is taken
-apart and docked again.
+apart and docked again. With --also-bound they are docked beside the unbound ones, as an ensemble.
 
 With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
 contact in the known complex, and are drawn by the pair's id and the seed. With --restraints it gets distances
@@ -111,6 +111,7 @@ def parse_arguments():
     add("--jobs", type=int, default=1, help="runs at a time (default: 1; a run uses all cores)")
     add("--out", type=Path, default=Path("benchmark"), help="folder for runs and tables (default: benchmark)")
     add("--bound", type=names, default=[], metavar="SIDES", help="dock the bound structure of receptor, ligand or both")
+    add("--also-bound", type=names, default=[], metavar="SIDES", help="likewise, as a further conformation")
     add("--active", type=int, default=0, metavar="N", help="known contact residues of either side (default: 0)")
     add("--predictions", type=float, metavar="AUC", help="quality of interface predictions (default: none)")
     add("--restraints", choices=KINDS, help="known distances (default: none)")
@@ -118,8 +119,9 @@ def parse_arguments():
     for owned in OWNED:
         if owned in dock_options:
             parser.error(f"this script sets {owned} itself")
-    if not set(options.bound) <= {"receptor", "ligand"}:
-        parser.error("--bound takes receptor, ligand, or both separated by a comma")
+    for sides in (options.bound, options.also_bound):
+        if not set(sides) <= {"receptor", "ligand"}:
+            parser.error("--bound and --also-bound take receptor, ligand, or both separated by a comma")
     options.dock_options = dock_options
     options.knotdock = find_program(parser, options.knotdock)
     # By content: a table that was written anew under its name makes old results stale, too.
@@ -159,6 +161,8 @@ def run_one(options, program, pair, seed):
         settings["tables"] = options.tables
     if options.active:
         settings["active"] = options.active
+    if options.also_bound:
+        settings["also_bound"] = options.also_bound
     if options.restraints:
         settings["restraints"] = options.restraints
     if options.predictions:
@@ -169,7 +173,7 @@ def run_one(options, program, pair, seed):
         settings["inputs"] = {part: checksum(path) for part, path in files.items()}
         if record.exists():
             old = json.loads(record.read_text())
-            if old.get("settings") == settings and "error" not in old and (folder / "run/run.json").exists():
+            if old.get("settings") == settings and "error" not in old and records_of(folder / "run"):
                 return old
             # The run goes next, and a record of it must not outlive it.
             record.unlink()
@@ -188,8 +192,7 @@ def run_one(options, program, pair, seed):
 
 def dock_and_measure(options, folder, files, name, seed):
     """Docks one pair, and returns its cost and the first ranks of both rankings."""
-    rotated = folder / "ligand_rotated.pdb"
-    rotated.write_text(start_orientation(read_text(files["ligand_unbound"]), name, seed))
+    rotated = rotate(files["ligand_unbound"], folder / "ligand_rotated.pdb", name, seed)
     run = folder / "run"
     if run.exists():
         shutil.rmtree(run)
@@ -198,6 +201,10 @@ def dock_and_measure(options, folder, files, name, seed):
     for option, value in (("--no-cluster", []), ("--write-top", ["0"])):
         if option not in options.dock_options:
             command += [option, *value]
+    if "receptor" in options.also_bound:
+        command += ["--receptor-also", str(files["receptor_bound"])]
+    if "ligand" in options.also_bound:
+        command += ["--ligand-also", str(rotate(files["ligand_bound"], folder / "ligand_also.pdb", name, seed))]
     texts = {part: read_text(path) for part, path in files.items()}
     if options.active:
         command += active_residues(texts, name, seed, options.active)
@@ -207,7 +214,8 @@ def dock_and_measure(options, folder, files, name, seed):
         command += prediction_options(options.predictions, texts, name, seed, folder)
     cost = measured(command + options.dock_options, folder / "dock.log")
     # The system's figure for a child can be that of this script before it became the child; the program's own is not.
-    own_peak = json.loads((run / "run.json").read_text())["timing"]["peak_memory_bytes"]
+    timings = [json.loads(record.read_text())["timing"] for record in records_of(run)]
+    own_peak = max(timing["peak_memory_bytes"] or 0 for timing in timings)
     cost["peak_memory_bytes"] = own_peak or cost["peak_memory_bytes"]
     qualities = evaluate(options.knotdock, run, native_options(options.folder / name))
     with open(run / "poses.csv", newline="") as file:
@@ -221,6 +229,19 @@ def dock_and_measure(options, folder, files, name, seed):
         "poses": first_ranks(qualities),
         "clusters": first_ranks([quality for _, quality in sorted(clusters.items())]),
     }
+
+
+def rotate(path, rotated, name, seed):
+    """Writes a ligand in its start orientation."""
+    rotated.write_text(start_orientation(read_text(path), name, seed))
+    return rotated
+
+
+def records_of(run):
+    """The record of a finished run, or those of the members of a finished ensemble."""
+    if (run / "ensemble.json").exists():
+        return sorted(run.glob("members/*/run.json"))
+    return [run / "run.json"] if (run / "run.json").exists() else []
 
 
 def describe(result):

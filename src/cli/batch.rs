@@ -17,6 +17,7 @@ use crate::cli::dock::Dock;
 use crate::cli::inputs::batch_pairs::{Pair, pairs};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::run_summary::summary_line;
 
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///
@@ -164,7 +165,7 @@ fn dock_row(
     let outcome = dock_pair(dock, console).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
     let outcome = match outcome {
         Ok((summary, anew)) => {
-            console.say(format!("{head}: {}", words(&summary, anew, clock)));
+            console.say(format!("{head}: {}", summary_line(&summary, anew, clock)));
             entry["status"] = if anew { "docked" } else { "kept" }.into();
             entry["best"] = summary.best.clone();
             entry["first_acceptable_rank"] = summary.first_acceptable.into();
@@ -186,46 +187,18 @@ fn dock_pair(dock: Dock, console: Console) -> Result<bool, Failure> {
         quiet: true,
         ..Console::default()
     };
-    dock.prepared(silent, |docking| {
-        if docking.is_done(console) {
+    dock.prepared(silent, |prepared| {
+        if prepared.is_done(console) {
             return Ok(false);
         }
-        if let Some(directory) = docking.in_the_way() {
+        if let Some(directory) = prepared.in_the_way() {
             return Err(Failure::input(
                 "the directory holds a run of other inputs or options, or by another version, or only part of this one",
             )
             .at(directory)
             .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
         }
-        docking.run(silent, console)?;
+        prepared.run(silent, console)?;
         Ok(true)
     })
-}
-
-/// What came of a pair, in a line.
-fn words(summary: &RunSummary, anew: bool, clock: Instant) -> String {
-    let [_, clusters] = summary.counts;
-    let mut words = format!(
-        "{} clusters, the best of pose score {}",
-        clusters.unwrap_or(0),
-        rounded(&summary.best["pose_score"], 1).unwrap_or_default()
-    );
-    for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
-        if let Some(value) = rounded(&summary.best[column], digits) {
-            words += &format!(", {name} {value}");
-        }
-    }
-    if let Some(rank) = summary.first_acceptable {
-        words += &format!("; the first acceptable one at rank {rank}");
-    }
-    if anew {
-        words + &format!("; {:.1} s", clock.elapsed().as_secs_f64())
-    } else {
-        words + "; done before"
-    }
-}
-
-/// A number with so many decimals.
-fn rounded(value: &Value, digits: usize) -> Option<String> {
-    Some(format!("{:.digits$}", value.as_f64()?))
 }

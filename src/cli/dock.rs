@@ -1,6 +1,6 @@
 //! `knotdock dock`: from two structures to a ranked list of poses and complexes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args, Command, Id};
 use knotdock::dock::memory::process;
@@ -8,11 +8,17 @@ use knotdock::options::values::{above_zero, duration};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::threads;
 use knotdock::tradeoff::choice::Wanted;
+use serde_json::Value;
 
+use crate::cli::arguments::conformations::ConformationArguments;
 use crate::cli::arguments::machine::settled;
 use crate::cli::arguments::native::NativeArguments;
 use crate::cli::arguments::options::{GivenOptions, OfDock, OptionArguments};
 use crate::cli::docking::{Clock, Docking};
+use crate::cli::ensemble::Ensemble;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::inputs::conformations::{Conformation, conformations};
+use crate::cli::inputs::molecules::label;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -58,7 +64,43 @@ pub struct Dock {
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
     #[command(flatten)]
+    conformations: ConformationArguments,
+    #[command(flatten)]
     native: NativeArguments,
+}
+
+/// What a command line comes to.
+pub enum Prepared {
+    /// One run.
+    Run(Box<Docking>),
+    /// A run for each pair of conformations.
+    Ensemble(Box<Ensemble>),
+}
+
+impl Prepared {
+    /// The directory that holds something else, which is not to be replaced.
+    pub fn in_the_way(&self) -> Option<&Path> {
+        match self {
+            Self::Run(docking) => docking.in_the_way(),
+            Self::Ensemble(ensemble) => ensemble.in_the_way(),
+        }
+    }
+
+    /// Whether the directory holds the results already.
+    pub fn is_done(&self, console: Console) -> bool {
+        match self {
+            Self::Run(docking) => docking.is_done(console),
+            Self::Ensemble(ensemble) => ensemble.is_done(console),
+        }
+    }
+
+    /// Docks, and writes what comes of it; the JSON object. What became of files of the user's is said on `notices`.
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+        match self {
+            Self::Run(docking) => docking.run(console, notices),
+            Self::Ensemble(ensemble) => ensemble.run(console, notices),
+        }
+    }
 }
 
 /// Heading of the options that choose others.
@@ -114,7 +156,7 @@ impl Dock {
     pub fn prepared<T: Send>(
         self,
         console: Console,
-        then: impl FnOnce(Docking) -> Result<T, Failure> + Send,
+        then: impl FnOnce(Prepared) -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
         let clock = Clock::start();
         process::begin();
@@ -126,34 +168,83 @@ impl Dock {
         })?
     }
 
+    /// The conformations of both sides, where options name any.
+    fn sides(&self) -> Result<Option<[Vec<Conformation>; 2]>, Failure> {
+        let ConformationArguments {
+            receptor_models,
+            ligand_models,
+            receptor_also,
+            ligand_also,
+        } = &self.conformations;
+        let (Some(receptor), Some(ligand), true) =
+            (&self.receptor, &self.ligand, self.conformations.are_given())
+        else {
+            return Ok(None);
+        };
+        Ok(Some([
+            conformations(receptor, receptor_also, receptor_models.as_ref())?,
+            conformations(ligand, ligand_also, ligand_models.as_ref())?,
+        ]))
+    }
+
     /// Reads and plans.
     fn prepare(
         self,
         given: GivenOptions,
         clock: Clock,
         console: Console,
-    ) -> Result<Docking, Failure> {
-        let request = match &self.rerun {
-            Some(path) => Request::recorded(path, given.options.machine, console)?,
-            None => self.request(given)?,
-        };
-        let directory = self.output.unwrap_or_else(|| request.directory());
+    ) -> Result<Prepared, Failure> {
         let wanted = Wanted {
             accuracy: self.accuracy,
             budget: self.budget,
         };
+        let request = match (&self.rerun, self.sides()?) {
+            (Some(path), _) => Request::recorded(path, given.options.machine, console)?,
+            (None, None) => self.request(given)?,
+            (None, Some([receptors, ligands])) => {
+                let native = self.native.read()?;
+                if let ([receptor], [ligand]) = (receptors.as_slice(), ligands.as_slice()) {
+                    let specs = [receptor.spec.clone(), ligand.spec.clone()];
+                    Request::of(Bodies::of(specs, &given.options)?, native, given)
+                } else {
+                    if wanted != Wanted::default() {
+                        check_wanted(&given.options)?;
+                    }
+                    let sides = [receptors, ligands];
+                    let directory = self.output.unwrap_or_else(|| named_after(&sides));
+                    let place = (directory, self.force);
+                    let asked = (given, native, wanted);
+                    let ensemble = Ensemble::prepare(&sides, asked, place, clock, console)?;
+                    return Ok(Prepared::Ensemble(Box::new(ensemble)));
+                }
+            }
+        };
+        let directory = self.output.unwrap_or_else(|| request.directory());
         if wanted != Wanted::default() {
             check_wanted(&request.options)?;
         }
-        Docking::prepare(request, wanted, (directory, self.force), clock, console)
+        let docking = Docking::prepare(request, wanted, (directory, self.force), clock, console)?;
+        Ok(Prepared::Run(Box::new(docking)))
     }
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let done = self.prepared(console, |docking| docking.run(console, console))?;
+        let done = self.prepared(console, |prepared| prepared.run(console, console))?;
         console.result(&done)?;
         Ok(())
     }
+}
+
+/// The directory of an ensemble that names none: that of the run of its first conformations.
+fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
+    let label = |side: &Vec<Conformation>| {
+        let first = side.first().map(|conformation| &conformation.spec);
+        first.map_or_else(String::new, |spec| {
+            label(&spec.path, spec.chains.as_deref())
+        })
+    };
+    let [receptor, ligand] = sides.each_ref().map(label);
+    PathBuf::from(format!("knotdock_{receptor}_{ligand}"))
 }
 
 /// Refuses options for which nothing can be chosen by an error or a time.

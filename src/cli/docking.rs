@@ -22,7 +22,7 @@ use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
-use knotdock::tradeoff::cost_model::CostModel;
+use knotdock::tradeoff::cost_model::{CostModel, Workload};
 use serde_json::{Value, json};
 
 use crate::cli::arguments::machine::machine;
@@ -113,6 +113,17 @@ impl Docking {
             deadline,
             clock,
         })
+    }
+
+    /// Memory that the run is expected to take, in bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        self.prepared.plan.memory_bytes()
+    }
+
+    /// Seconds that the search is expected to take on this machine.
+    pub fn expected_seconds(&self, model: &CostModel) -> f64 {
+        let plan = &self.prepared.plan;
+        model.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
     }
 
     /// The directory of the run, if it holds another run that is not to be replaced.
@@ -253,7 +264,7 @@ impl Docking {
             if let Some(budget) = chosen.budget_seconds {
                 console.say(format!(
                     "The whole run took {:.1} s of {budget} s",
-                    self.clock.monotonic.elapsed().as_secs_f64()
+                    self.clock.seconds()
                 ));
             }
         }
@@ -335,6 +346,11 @@ impl Clock {
         }
     }
 
+    /// Seconds since then.
+    pub fn seconds(&self) -> f64 {
+        self.monotonic.elapsed().as_secs_f64()
+    }
+
     fn timing(&self, outcome: &DockOutcome) -> Timing {
         Timing {
             // A clock set before 1970 says nothing.
@@ -342,7 +358,7 @@ impl Clock {
                 .wall
                 .duration_since(UNIX_EPOCH)
                 .map_or(0, |since| since.as_secs()),
-            wall_seconds: self.monotonic.elapsed().as_secs_f64(),
+            wall_seconds: self.seconds(),
             stages: outcome.timing.clone(),
             effects: EffectTime::of(&outcome.effects),
             peak_memory_bytes: process::peak(),

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::evaluate::{Capri, Criterion, PoseQuality};
+use knotdock::evaluate::{Capri, Criterion, Evaluator, PoseQuality};
 use knotdock::options::{InputOptions, Threads, definitions};
+use knotdock::output::records::ensemble_record::is_ensemble;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};
@@ -13,6 +14,7 @@ use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};
 use crate::cli::arguments::output_file::check_output;
+use crate::cli::ensemble::finished::{RunRows, runs};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -65,16 +67,29 @@ impl Evaluate {
             finish_before_reading(directory, console)?;
         }
         let mut table = PoseTable::read(&table_path)?;
-        let (receptor, ligand, native) = self.inputs(&run_path)?;
-        if let Some(file) = &self.output {
-            let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
-            let read = structures.map(|input| input.record.path.as_path());
-            check_output(file, read.chain([run_path.as_path()]), self.force)?;
+        let places: Vec<usize> = (0..table.rows().len()).collect();
+        let directory = run_path.parent().unwrap_or(Path::new(""));
+        if is_ensemble(directory) && (self.receptor.is_some() || self.ligand.is_some()) {
+            return Err(Failure::input(
+                "the poses of an ensemble are of several conformations, and --receptor and --ligand name one",
+            )
+            .at(directory)
+            .remedy("leave them out, or name the run of a member: a folder in members/"));
         }
-        let evaluator = native.evaluator(&receptor.molecule, &ligand.molecule)?;
-        announce(&evaluator, console);
-
-        let qualities = measure(&evaluator, table.rows());
+        let mut qualities: Vec<Option<PoseQuality>> = vec![None; places.len()];
+        let mut matches = Vec::new();
+        for RunRows { run, rows } in runs(directory, &table, &places)? {
+            let evaluator = self.evaluator(&run)?;
+            announce(&evaluator, console);
+            let poses: Vec<PoseRow> = rows.iter().map(|&row| table.rows()[row]).collect();
+            for (row, quality) in rows.into_iter().zip(measure(&evaluator, &poses)) {
+                qualities[row] = Some(quality);
+            }
+            matches.push(serde_json::to_value(evaluator.report()).map_err(Failure::other)?);
+        }
+        // Each row is of one run.
+        let qualities: Vec<PoseQuality> = qualities.into_iter().flatten().collect();
+        assert_eq!(qualities.len(), places.len(), "rows that belong to no run");
         if let Some(path) = &self.output {
             for column in quality::columns(&qualities) {
                 table.set_column(&column);
@@ -102,9 +117,23 @@ impl Evaluate {
                 "near_native": Criterion::NearNative.is_met(quality),
             })
         });
-        let matched = serde_json::to_value(evaluator.report()).map_err(Failure::other)?;
+        let matched = match matches.len() {
+            1 => matches.remove(0),
+            _ => matches.into(),
+        };
         console.result(&json!({ "poses": poses.collect::<Vec<_>>(), "match": matched }))?;
         Ok(())
+    }
+
+    /// The known complex matched with the molecules of a run.
+    fn evaluator(&self, run_path: &Path) -> Result<Evaluator, Failure> {
+        let (receptor, ligand, native) = self.inputs(run_path)?;
+        if let Some(file) = &self.output {
+            let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
+            let read = structures.map(|input| input.record.path.as_path());
+            check_output(file, read.chain([run_path]), self.force)?;
+        }
+        native.evaluator(&receptor.molecule, &ligand.molecule)
     }
 
     /// The molecules docked and the known complex: those named, or else those of the run.

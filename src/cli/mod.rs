@@ -7,6 +7,7 @@ mod calibrate;
 mod collide;
 mod dock;
 mod docking;
+mod ensemble;
 mod evaluate;
 mod export;
 mod inputs;

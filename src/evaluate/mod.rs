@@ -27,6 +27,7 @@
 //! [`Evaluator::new`] aligns, superposes and lists contacts once. A pose then costs one eigenvalue problem of a 4 x 4
 //! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules.
 
+mod conformation;
 mod contacts;
 mod criterion;
 mod dockq;
@@ -48,6 +49,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
+pub use conformation::{ConformationError, Superposed, superpose};
 pub use criterion::Criterion;
 pub use dockq::{Capri, dockq};
 pub use error::EvaluateError;

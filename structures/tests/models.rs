@@ -170,8 +170,8 @@ fn chains_of_later_models_have_names_of_their_own() {
     let whole = read_by("x.cif", &text, &of_model(ModelChoice::All)).unwrap();
     assert_eq!(names(&whole), ["AB", "AB-2", "AB-2+"]);
     let spec = InputSpec {
-        path: "x.cif".into(),
         chains: Some(vec!["AB-2+".to_owned()]),
+        ..InputSpec::whole("x.cif")
     };
     let picked = read_bytes(&spec, text.into_bytes(), &of_model(ModelChoice::All)).unwrap();
     assert_eq!(picked.atoms.len(), 760);

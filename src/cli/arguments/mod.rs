@@ -1,5 +1,6 @@
 //! Options of the commands, by subject, and the values that they take.
 
+pub mod conformations;
 pub mod machine;
 pub mod memory;
 pub mod native;

@@ -33,6 +33,7 @@ pub struct NativeArguments {
 const HEADING: &str = "Known complex";
 
 /// The files of the known complex.
+#[derive(Clone)]
 pub enum NativeFiles {
     /// One file with both partners.
     Complex(Box<Input>),

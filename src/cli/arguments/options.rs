@@ -135,6 +135,7 @@ impl<S: Selection> FromArgMatches for OptionArguments<S> {
 }
 
 /// Options, and which of them were given.
+#[derive(Clone)]
 pub struct GivenOptions {
     /// The options, by default where they were not given.
     pub options: DockOptions,

@@ -1,6 +1,6 @@
 //! Files of balls named on the command line: read, recorded, described.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use knotdock::bounded_read::{MAX_TABLE, read_bounded};
 use knotdock::output::records::input_record::InputRecord;
@@ -62,8 +62,8 @@ pub fn ball_file_of(text: &str) -> Option<InputSpec> {
     let (path, link) = text.rsplit_once(':')?;
     let is_of_balls = ball_file::is_ball_file(Path::new(path)) && !link.is_empty();
     is_of_balls.then(|| InputSpec {
-        path: PathBuf::from(path),
         chains: Some(vec![link.to_owned()]),
+        ..InputSpec::whole(path)
     })
 }
 

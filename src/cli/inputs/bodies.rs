@@ -69,7 +69,8 @@ impl Bodies {
         Self::of(specs, options)
     }
 
-    fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
+    /// Reads two bodies of one kind.
+    pub fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
         let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {

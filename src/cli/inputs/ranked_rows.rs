@@ -11,9 +11,22 @@ use crate::cli::messages::failure::Failure;
 /// The rows of some ranks of the table at a path, in the order of the ranks.
 pub fn ranked_rows(table_path: &Path, ranks: &Ranks) -> Result<Vec<PoseRow>, Failure> {
     let table = PoseTable::read(table_path)?;
-    let of_rank: HashMap<usize, PoseRow> =
-        table.rows().iter().map(|row| (row.rank, *row)).collect();
-    let rows = ranks.0.iter().map(|rank| {
+    let places = ranked_places(&table, table_path, ranks)?;
+    Ok(places
+        .into_iter()
+        .map(|place| table.rows()[place])
+        .collect())
+}
+
+/// Places of the rows of some ranks in the table read from a path, in the order of the ranks.
+pub fn ranked_places(
+    table: &PoseTable,
+    table_path: &Path,
+    ranks: &Ranks,
+) -> Result<Vec<usize>, Failure> {
+    let rows = table.rows().iter().enumerate();
+    let of_rank: HashMap<usize, usize> = rows.map(|(place, row)| (row.rank, place)).collect();
+    let places = ranks.0.iter().map(|rank| {
         of_rank.get(rank).copied().ok_or_else(|| {
             Failure::input(format!(
                 "there is no rank {rank} among the {} rows",
@@ -25,5 +38,5 @@ pub fn ranked_rows(table_path: &Path, ranks: &Ranks) -> Result<Vec<PoseRow>, Fai
             )
         })
     });
-    rows.collect()
+    places.collect()
 }

@@ -50,14 +50,20 @@ impl Request {
         native: Option<NativeFiles>,
         given: GivenOptions,
     ) -> Result<Self, Failure> {
+        let bodies = Bodies::read(receptor, ligand, &given.options)?;
+        Ok(Self::of(bodies, native, given))
+    }
+
+    /// The docking of what has been read, with some options.
+    pub fn of(bodies: Bodies, native: Option<NativeFiles>, given: GivenOptions) -> Self {
         let (offset, lengths) = lengths(&given);
-        Ok(Self {
-            bodies: Bodies::read(receptor, ligand, &given.options)?,
+        Self {
+            bodies,
             native,
             offset,
             given: lengths,
             options: given.options,
-        })
+        }
     }
 
     /// The request of an earlier run, from its run.json, on this machine.

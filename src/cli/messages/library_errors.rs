@@ -181,7 +181,7 @@ impl From<RecordedRunError> for Failure {
         Self::input(&error)
             .at(error.path())
             .on_line(error.line())
-            .remedy("give a run that `knotdock dock` of this version wrote")
+            .remedy(error.remedy())
     }
 }
 

@@ -90,6 +90,13 @@ impl Places<'_> {
     /// Refuses a directory that holds a run, unless `force` is true, or what only looks like one.
     pub fn refuse_existing(&self, product: &Product, force: bool) -> Result<(), StagingError> {
         let directory = self.directory.to_owned();
+        let others = product.not_beside.iter();
+        if let Some(record) = others
+            .copied()
+            .find(|name| self.resolved.join(name).exists())
+        {
+            return Err(StagingError::AnotherKind { directory, record });
+        }
         match self.survey(product)? {
             Found::Nothing => Ok(()),
             Found::Foreign(entry) => Err(StagingError::NotARun { directory, entry }),

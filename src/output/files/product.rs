@@ -11,6 +11,8 @@ pub struct Product {
     pub(super) files: &'static [(&'static str, &'static str)],
     /// A folder of complexes, named by their ranks.
     pub(super) folder: Option<&'static str>,
+    /// Records of other products with files of the same names: they cannot share a directory.
+    pub(super) not_beside: &'static [&'static str],
 }
 
 /// Files of `knotdock dock`.
@@ -18,6 +20,14 @@ pub const RUN: Product = Product {
     record: "run.json",
     files: &[("poses.csv", "rank,score,cluster,")],
     folder: Some("top"),
+    not_beside: &["ensemble.json"],
+};
+
+/// Files of `knotdock dock` of several conformations, beside the folder of their runs.
+pub const ENSEMBLE: Product = Product {
+    record: "ensemble.json",
+    not_beside: &["run.json"],
+    ..RUN
 };
 
 /// Files of `knotdock tradeoff`.
@@ -28,6 +38,7 @@ pub const TRADEOFF: Product = Product {
         ("tradeoff.svg", "<svg width="),
     ],
     folder: None,
+    not_beside: &[],
 };
 
 /// The file in a folder of complexes that lists those which were exported later, with their checksums as `files`.

@@ -19,6 +19,18 @@ pub enum StagingError {
         /// The record.
         record: &'static str,
     },
+    /// The directory holds results of another kind, with files of the same names.
+    #[error(
+        "{} holds {record} and results of another kind: those of one pair and those of an ensemble do not share a \
+         directory",
+        directory.display()
+    )]
+    AnotherKind {
+        /// The directory.
+        directory: PathBuf,
+        /// The record there.
+        record: &'static str,
+    },
     /// Another process is writing its run there.
     #[error("another run is being written to {}: {} is in use", directory.display(), folder.display())]
     Busy {
@@ -58,7 +70,7 @@ impl StagingError {
                 "choose another directory with -o, or pass --force to replace the run"
             }
             Self::Busy { .. } => "wait for it to end, or choose another directory with -o",
-            Self::NotARun { .. } => "choose another directory with -o",
+            Self::NotARun { .. } | Self::AnotherKind { .. } => "choose another directory with -o",
             Self::Interrupted { .. } => {
                 "make the directory writable and run again: what is left is finished first"
             }
@@ -73,6 +85,7 @@ impl StagingError {
             | Self::BrokenRun { directory, .. }
             | Self::Busy { directory, .. }
             | Self::Interrupted { directory, .. }
+            | Self::AnotherKind { directory, .. }
             | Self::NotARun { directory, .. } => directory,
             Self::Write(error) => error.path(),
         }

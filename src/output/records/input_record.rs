@@ -17,6 +17,9 @@ pub struct InputRecord {
     pub path: PathBuf,
     /// Names of the chains that were picked; `null` for all.
     pub chains: Option<Vec<String>>,
+    /// The model that was picked, by its place in the file; not there where the options of reading chose it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<usize>,
     /// SHA-256 of the file as it lies on the disk, in hexadecimal.
     pub sha256: String,
 }
@@ -67,13 +70,14 @@ impl InputRecord {
             // JSON holds no bytes that are not Unicode: such a path is recorded for people, not to be found again.
             path: PathBuf::from(path.to_string_lossy().into_owned()),
             chains: input.chains.clone(),
+            model: input.model,
             sha256: sha256(bytes),
         }
     }
 
-    /// Whether the other has the same content, and the same chains are read of it.
+    /// Whether the other has the same content, and the same chains and model are read of it.
     pub fn is_like(&self, other: &Self) -> bool {
-        (&self.sha256, &self.chains) == (&other.sha256, &other.chains)
+        (&self.sha256, &self.chains, self.model) == (&other.sha256, &other.chains, other.model)
     }
 
     /// What to read.
@@ -81,6 +85,7 @@ impl InputRecord {
         InputSpec {
             path: self.path.clone(),
             chains: self.chains.clone(),
+            model: self.model,
         }
     }
 

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 use crate::options::{DockOptions, MachineOptions};
+use crate::output::records::ensemble_record::{RECORD, is_ensemble};
 use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::manifest::SCHEMA;
 use crate::output::records::program::{COMMIT, VERSION};
@@ -41,6 +42,12 @@ pub enum RecordedRunError {
         /// The system's message.
         source: io::Error,
     },
+    /// The directory is that of an ensemble, each member of which has a record of its own.
+    #[error("{} is an ensemble: each of its members is a run", directory.display())]
+    Ensemble {
+        /// The directory.
+        directory: PathBuf,
+    },
     /// The file is no manifest that this version understands.
     #[error("{} is not a run.json that this version can read: {message}", path.display())]
     Content {
@@ -58,14 +65,26 @@ impl RecordedRunError {
     pub fn path(&self) -> &Path {
         match self {
             Self::Open { path, .. } | Self::Content { path, .. } => path,
+            Self::Ensemble { directory } => directory,
         }
     }
 
     /// The 1-based line in question, where there is one.
     pub fn line(&self) -> Option<u64> {
         match self {
-            Self::Open { .. } => None,
+            Self::Open { .. } | Self::Ensemble { .. } => None,
             Self::Content { line, .. } => *line,
+        }
+    }
+
+    /// Remedy for the user.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Ensemble { .. } => {
+                "name the run of a member, a folder in members/; column `member` of poses.csv says which, and \
+                 `member_rank` the rank there"
+            }
+            _ => "give a run that `knotdock dock` of this version wrote",
         }
     }
 }
@@ -94,6 +113,12 @@ impl RecordedRun {
             receptor: InputRecord,
             ligand: InputRecord,
             native: Option<NativeRecord>,
+        }
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let names_record = path.file_name().is_some_and(|name| name == RECORD);
+        if names_record || (!path.exists() && is_ensemble(directory)) {
+            let directory = directory.to_owned();
+            return Err(RecordedRunError::Ensemble { directory });
         }
         let text =
             read_bounded_file(path, MAX_RECORD).map_err(|source| RecordedRunError::Open {

@@ -68,7 +68,9 @@ impl RunSummary {
                 .as_str()
                 .is_some_and(|class| class != "incorrect")
         };
-        let record = read_bounded_file(&directory.join("run.json"), MAX_RECORD);
+        // An ensemble has a record of its own, with the same counts.
+        let read = |name: &str| read_bounded_file(&directory.join(name), MAX_RECORD);
+        let record = read("run.json").or_else(|_| read("ensemble.json"));
         let record = record.unwrap_or_default();
         let record: Value = serde_json::from_slice(&record).unwrap_or_default();
         Ok(Self {

@@ -39,6 +39,12 @@ impl PoseTable {
         &self.rows
     }
 
+    /// The field of a row in a column, where the table has both.
+    pub fn field(&self, row: usize, column: &str) -> Option<&str> {
+        let place = self.header.iter().position(|name| name == column)?;
+        self.records.get(row)?.get(place)
+    }
+
     /// Rows as JSON objects with the columns' names: numbers, truth values and text, `null` for empty fields. Indices
     /// past the end are skipped.
     pub fn objects(&self, indices: impl IntoIterator<Item = usize>) -> Vec<Value> {

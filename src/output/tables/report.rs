@@ -1,8 +1,10 @@
 //! The tables of the terminal.
 
-use crate::dock::outcome::RankedPose;
+use serde_json::Value;
 
+use crate::dock::outcome::RankedPose;
 use crate::output::tables::fields::Column;
+use crate::output::tables::poses::PoseTable;
 
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;
@@ -44,6 +46,45 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
             }
         }));
         lines.push(line);
+    }
+    align(&lines)
+}
+
+/// Columns of a table of an ensemble's poses that the terminal shows, where the table has them.
+const OF_ENSEMBLES: [&str; 13] = [
+    "rank",
+    "score",
+    "cluster_size",
+    "receptor_model",
+    "ligand_model",
+    "pose_score",
+    "z_score",
+    "restraints_met",
+    "irmsd",
+    "lrmsd",
+    "fnat",
+    "dockq",
+    "capri",
+];
+
+/// The first of these rows of a table that joins runs, with its main columns.
+pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
+    let has = |name: &&str| table.header.iter().any(|column| column == *name);
+    let columns: Vec<&str> = OF_ENSEMBLES.into_iter().filter(has).collect();
+    let mut lines = vec![columns.iter().map(|name| name.replace('_', " ")).collect()];
+    for row in table.objects(rows.into_iter().take(BEST)) {
+        let field = |name: &&str| match (&row[*name], *name) {
+            (Value::Null, _) => String::new(),
+            (Value::String(text), _) => text.clone(),
+            (value, "score" | "pose_score" | "z_score") => value
+                .as_f64()
+                .map_or_else(String::new, |value| format!("{value:.1}")),
+            (value, "irmsd" | "lrmsd" | "fnat" | "dockq") => value
+                .as_f64()
+                .map_or_else(String::new, |value| format!("{value:.2}")),
+            (value, _) => value.to_string(),
+        };
+        lines.push(columns.iter().map(field).collect());
     }
     align(&lines)
 }

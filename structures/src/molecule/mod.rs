@@ -53,7 +53,9 @@ pub use self::read::policy::{
     AlternateLocation, Hetatm, Hydrogens, ModelChoice, PolicyError, ReadOptions, Waters,
 };
 pub use self::read::source::file_bytes;
-pub use self::read::{AtomFate, read, read_bytes, read_bytes_with_fates, read_with_fates};
+pub use self::read::{
+    AtomFate, model_count, read, read_bytes, read_bytes_with_fates, read_with_fates,
+};
 pub use self::write::error::WriteError;
 pub use self::write::{
     ChainMap, ChainName, Partner, complex_format, fits, write_complex, write_molecule,

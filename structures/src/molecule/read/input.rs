@@ -1,4 +1,4 @@
-//! A file to read, and the part of it to read: `file`, `file:H,L` or `file:H:1-120,L`.
+//! A file to read, and the part of it to read: `file`, `file:H,L` or `file:H:1-120,L`, and perhaps one of its models.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -14,6 +14,8 @@ pub struct InputSpec {
     /// Chains to keep by their author names, case-sensitive, `_` for the blank name, and residues of chains, as parts
     /// of a [`ResidueSelection`]: `H`, `H:1-120`; all chains when `None`.
     pub chains: Option<Vec<String>>,
+    /// Model to read, 1 for the first in the file; where `None`, [`ReadOptions`](super::policy::ReadOptions) choose it.
+    pub model: Option<usize>,
 }
 
 impl InputSpec {
@@ -22,6 +24,7 @@ impl InputSpec {
         Self {
             path: path.into(),
             chains: None,
+            model: None,
         }
     }
 
@@ -63,7 +66,16 @@ impl InputSpec {
         Ok(Self {
             path: PathBuf::from(path),
             chains: Some(chains),
+            model: None,
         })
+    }
+
+    /// The same part of the file, of this model.
+    pub fn of_model(self, model: usize) -> Self {
+        Self {
+            model: Some(model),
+            ..self
+        }
     }
 }
 

@@ -73,6 +73,17 @@ pub fn read_bytes(
     read_telling(spec, bytes, options, &mut |_, _| {})
 }
 
+/// Number of models in a file's bytes, at least 1.
+///
+/// # Errors
+/// [`ReadError`] where the bytes are of no known format, or their records cannot be told apart.
+pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, ReadError> {
+    let source = source::unpack(file, bytes)?;
+    let format = source::format_of(file, &source.text).ok_or_else(|| not_a_structure(file))?;
+    let filtered = filter(file, format, &source.text, ModelChoice::Number(1))?;
+    Ok(filtered.models.max(1))
+}
+
 /// Reads like [`read`], and returns the fate of every atom of the model in file order, kept or dropped.
 ///
 /// # Errors
@@ -118,7 +129,15 @@ fn read_telling(
     let file = spec.path.as_path();
     let source = source::unpack(file, bytes)?;
     let format = source::format_of(file, &source.text).ok_or_else(|| not_a_structure(file))?;
-    let mut filtered = filter(file, format, &source.text, options.model)?;
+    let model = spec.model.map_or(options.model, ModelChoice::Number);
+    let mut filtered = filter(file, format, &source.text, model)?;
+    if let Some(model) = spec.model.filter(|&model| model > filtered.models.max(1)) {
+        return Err(ReadError::UnknownModel {
+            file: file.to_path_buf(),
+            model,
+            models: filtered.models.max(1),
+        });
+    }
     drop(source.text);
     if filtered.records.is_empty() {
         return Err(if filtered.recognised {
@@ -136,7 +155,7 @@ fn read_telling(
         compressed: source.compressed,
         ..ReadReport::default()
     };
-    let is_joined = options.model == ModelChoice::All && filtered.models > 1;
+    let is_joined = model == ModelChoice::All && filtered.models > 1;
     report_filtered(&filtered, is_joined, &mut report);
     let provenance = filtered.provenance;
     let (models, ignored) = (filtered.models, std::mem::take(&mut filtered.ignored));

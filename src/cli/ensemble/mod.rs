@@ -1,0 +1,8 @@
+//! `knotdock dock` of several conformations: each pair of them a run, and one ranking.
+
+pub mod finished;
+mod laid;
+mod run;
+mod written;
+
+pub use run::Ensemble;

@@ -1,0 +1,145 @@
+//! What the runs of an ensemble come to together: the joint table, complexes, the record, and the report.
+
+use std::path::Path;
+
+use knotdock::ensemble::table::{DockedMember, JointTable};
+use knotdock::output::files::staging::Staging;
+use knotdock::output::files::whole_file::to_json;
+use knotdock::output::records::ensemble_record::{
+    EnsembleRecord, EnsembleResults, EnsembleTiming, MEMBERS, MemberRecord, RECORD, SCHEMA,
+};
+use knotdock::output::records::program::Program;
+use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::tables::report::{BEST, best_rows, counted};
+use knotdock::pose_space::arrangement::Arrangement;
+use serde_json::{Value, json};
+
+use crate::cli::ensemble::laid::Laid;
+use crate::cli::ensemble::run::Ensemble;
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::warn_set_aside;
+
+impl Ensemble {
+    /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
+    /// the poses that they kept and how many were there already.
+    pub(super) fn write(
+        &self,
+        joint: &JointTable,
+        (docked, poses, kept): (&[DockedMember], u64, usize),
+        staging: Staging,
+        (console, notices): (Console, Console),
+    ) -> Result<Value, Failure> {
+        staging.write("poses.csv", |file| joint.table.write_to(file))?;
+        let names = self.write_top(joint, &staging.folder().join("top"))?;
+        let results = EnsembleResults {
+            rows: joint.table.rows().len(),
+            clusters: joint.clusters,
+            poses,
+        };
+        let record = self.record(docked, results, &staging, kept)?;
+        let record = serde_json::to_value(&record).map_err(Failure::other)?;
+        staging.write(RECORD, |file| to_json(file, &record))?;
+        warn_set_aside(&staging.commit()?, notices);
+        self.report(joint, console);
+        let top = self.directory.join("top");
+        let complexes = names
+            .iter()
+            .map(|name| top.join(name).display().to_string());
+        Ok(json!({
+            "directory": self.directory.display().to_string(),
+            "poses": self.directory.join("poses.csv").display().to_string(),
+            "complexes": complexes.collect::<Vec<_>>(),
+            "best": joint.table.objects(joint.firsts().into_iter().take(BEST)),
+            "ensemble": record,
+        }))
+    }
+
+    /// Writes the complexes of the first ranks, each of its member's conformations; their names.
+    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<String>, Failure> {
+        let rows = joint.table.rows();
+        let count = self.given.options.output.write_top.min(rows.len());
+        let mut names = vec![String::new(); count];
+        for (index, member) in self.members().into_iter().enumerate() {
+            let places: Vec<usize> = (0..count)
+                .filter(|&row| joint.members[row] == index)
+                .collect();
+            if places.is_empty() {
+                continue;
+            }
+            let specs = self.laid(member).map(|laid| laid.spec.clone());
+            let own: Vec<PoseRow> = places.iter().map(|&row| rows[row]).collect();
+            let bodies = Bodies::of(specs, &self.given.options)?;
+            let written = bodies.write(&own, Arrangement::Pair, folder)?;
+            for (place, name) in places.into_iter().zip(written.names) {
+                names[place] = name;
+            }
+        }
+        Ok(names)
+    }
+
+    /// ensemble.json.
+    fn record<'a>(
+        &'a self,
+        docked: &[DockedMember],
+        results: EnsembleResults,
+        staging: &Staging,
+        members_kept: usize,
+    ) -> Result<EnsembleRecord<'a>, Failure> {
+        let member = |docked: &DockedMember| {
+            let best = docked
+                .table
+                .objects([0])
+                .first()
+                .and_then(|row| row["pose_score"].as_f64());
+            let [receptor_model, ligand_model] = docked.conformations.clone();
+            MemberRecord {
+                name: docked.name.clone(),
+                receptor_model,
+                ligand_model,
+                rows: docked.table.rows().len(),
+                best_pose_score: best,
+            }
+        };
+        let [receptor, ligand] = self
+            .laid
+            .sides
+            .each_ref()
+            .map(|side| side.iter().map(Laid::record).collect::<Vec<_>>());
+        Ok(EnsembleRecord {
+            schema: SCHEMA,
+            program: Program::this(),
+            receptor,
+            ligand,
+            options: &self.given.options,
+            members: docked.iter().map(member).collect(),
+            results,
+            files: staging.checksums()?,
+            timing: EnsembleTiming {
+                wall_seconds: self.clock.seconds(),
+                expected_seconds: self.expected_seconds,
+                members_kept,
+            },
+            command: std::env::args_os()
+                .map(|word| word.to_string_lossy().into_owned())
+                .collect(),
+        })
+    }
+
+    /// Reports the joint ranking.
+    fn report(&self, joint: &JointTable, console: Console) {
+        console.say(format!(
+            "\nAll members together, {} in {:.1} s:\n\n{}",
+            counted(joint.clusters, "cluster"),
+            self.clock.seconds(),
+            best_rows(&joint.table, joint.firsts())
+        ));
+        console.say(format!(
+            "\n{} in {}; effects, measured errors and times of each member are in {}",
+            counted(joint.table.rows().len(), "row"),
+            self.directory.join("poses.csv").display(),
+            self.directory.join(MEMBERS).join("*/run.json").display()
+        ));
+    }
+}
