@@ -133,6 +133,14 @@ impl Dock {
         self.options.given().map(drop)
     }
 
+    /// Threads that the options name, and whether the run has to be by itself: it measures time, or works on a graphics
+    /// processor.
+    pub fn own_threads(&self) -> Result<(Option<usize>, bool), Failure> {
+        let options = self.options.given()?.options;
+        let is_alone = self.budget.is_some() || options.search.engine == EngineChoice::Gpu;
+        Ok((options.machine.threads.threads, is_alone))
+    }
+
     /// The run that the command line describes.
     fn request(&self, given: GivenOptions) -> Result<Request, Failure> {
         let given = given.of_rings()?;
@@ -153,14 +161,19 @@ impl Dock {
     }
 
     /// Reads and plans, and hands the docking on to `then`: all on the threads that the options name.
+    /// `count` takes their place where it is given.
     pub fn prepared<T: Send>(
         self,
         console: Console,
+        count: Option<usize>,
         then: impl FnOnce(Prepared) -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
         let clock = Clock::start();
         process::begin();
         let mut given = self.options.given()?;
+        if let Some(count) = count {
+            given.options.machine.threads = count.into();
+        }
         // Known before anything is read, for reading takes memory, too.
         given.options.machine = settled(&given.options.machine);
         threads::on(given.options.machine.threads.count(), || {
@@ -229,7 +242,7 @@ impl Dock {
 
     /// Docks.
     pub fn run(self, console: Console) -> Result<(), Failure> {
-        let done = self.prepared(console, |prepared| prepared.run(console, console))?;
+        let done = self.prepared(console, None, |prepared| prepared.run(console, console))?;
         console.result(&done)?;
         Ok(())
     }

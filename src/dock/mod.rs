@@ -10,4 +10,5 @@ pub mod plan;
 mod plan_text;
 pub mod run;
 pub mod scene;
+pub mod shared_process;
 mod stopwatch;

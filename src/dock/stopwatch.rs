@@ -1,10 +1,11 @@
 //! Wall and CPU time of the stages of a run.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use cpu_time::ProcessTime;
+use cpu_time::{ProcessTime, ThreadTime};
 
 use crate::dock::outcome::StageTime;
+use crate::dock::shared_process::is_shared;
 
 /// Time of stages that follow one another.
 pub(super) struct Stopwatch {
@@ -15,21 +16,44 @@ pub(super) struct Stopwatch {
 /// When a stage began.
 struct Started {
     wall: Instant,
-    /// CPU time of the whole process; `None` where the system does not report it.
-    cpu: Option<ProcessTime>,
+    /// CPU time; `None` where the system does not report it.
+    cpu: Option<CpuTime>,
+}
+
+/// CPU time of the run: that of the process, or where other runs share it that of the run's one thread.
+enum CpuTime {
+    Process(ProcessTime),
+    Thread(ThreadTime),
+}
+
+impl CpuTime {
+    fn now() -> Option<Self> {
+        match (is_shared(), rayon::current_num_threads()) {
+            (false, _) => ProcessTime::try_now().ok().map(Self::Process),
+            (true, 1) => ThreadTime::try_now().ok().map(Self::Thread),
+            (true, _) => None,
+        }
+    }
+
+    fn elapsed(&self) -> Option<Duration> {
+        match self {
+            Self::Process(time) => time.try_elapsed().ok(),
+            Self::Thread(time) => time.try_elapsed().ok(),
+        }
+    }
 }
 
 impl Started {
     fn now() -> Self {
         Self {
             wall: Instant::now(),
-            cpu: ProcessTime::try_now().ok(),
+            cpu: CpuTime::now(),
         }
     }
 
     /// The time since then, as that of a stage.
     fn stage(&self, name: &'static str) -> StageTime {
-        let cpu = self.cpu.and_then(|cpu| cpu.try_elapsed().ok());
+        let cpu = self.cpu.as_ref().and_then(CpuTime::elapsed);
         StageTime {
             name,
             wall_seconds: self.wall.elapsed().as_secs_f64(),

@@ -64,11 +64,31 @@ fn residue(
     for (selected, atom) in selected.iter_mut().zip(&molecule.atoms) {
         *selected &= !atom.is_hydrogen();
     }
-    let residues = molecule.atoms_by_residue(&selected);
+    let mut residues = molecule.atoms_by_residue(&selected);
+    if has_one_number(&residues, molecule) {
+        // Older files number the cofactors of a chain from 1, too.
+        residues.retain(|atoms| has_backbone(atoms, molecule));
+    }
     match <[Vec<usize>; 1]>::try_from(residues) {
         Ok([atoms]) => Ok((name, atoms)),
         Err(_) => Err(no_residue()),
     }
+}
+
+/// Whether several residues are called alike.
+fn has_one_number(residues: &[Vec<usize>], molecule: &Molecule) -> bool {
+    let number = |atoms: &Vec<usize>| {
+        let atom = atoms.first().and_then(|&at| molecule.atoms.get(at))?;
+        Some((atom.residue_number, atom.insertion_code))
+    };
+    let first = residues.first().and_then(number);
+    residues.len() > 1 && residues.iter().all(|atoms| number(atoms) == first)
+}
+
+/// Whether a residue is one of a protein or a nucleic acid.
+fn has_backbone(atoms: &[usize], molecule: &Molecule) -> bool {
+    let mut names = atoms.iter().filter_map(|&at| molecule.atoms.get(at));
+    names.any(|atom| atom.element == "C" && ["CA", "C1'"].contains(&atom.name.as_str()))
 }
 
 fn probability(field: &str) -> Result<f64, PredictionFault> {
@@ -108,6 +128,18 @@ mod tests {
         let [_, ligand] = molecules();
         let nameless = super::read("chain,residue,probability\n,7,0.5\n", &ligand).unwrap();
         assert_eq!(nameless.len(), 1);
+    }
+
+    /// Cytochrome c of 2PCC has GLY 1 and, in the same chain, HEC 1: its predictions were refused.
+    #[test]
+    fn a_cofactor_of_the_same_number_is_passed_over() {
+        let [mut receptor, _] = molecules();
+        let mut iron = receptor.atoms[0].clone();
+        (iron.name, iron.element) = ("FE".to_owned(), "FE".to_owned());
+        (iron.residue_name, iron.residue_number) = ("HEC".to_owned(), 52);
+        receptor.atoms.push(iron);
+        let found = super::read("chain,residue,probability\nA,52,0.5\n", &receptor).unwrap();
+        assert_eq!(found, [(vec![9, 10, 11], 0.5)]);
     }
 
     #[test]

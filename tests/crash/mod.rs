@@ -140,7 +140,7 @@ fn a_batch() {
         fs::write(folder.join("pairs.csv"), table).unwrap();
     };
     let options = SMALL.replace("--quiet", "");
-    let batch = format!("batch pairs.csv -o batch --quiet -- --write-top 1 {options}");
+    let batch = format!("batch pairs.csv -o batch -j 1 --quiet -- --write-top 1 {options}");
     Scenario::new(pairs, &batch)
         .by_directory(&["batch/one", "batch/two"])
         .check();

@@ -13,6 +13,7 @@ use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::arguments::program::with_negative_numbers;
 use crate::cli::dock::{Dock, PLACE, refusing_recorded};
+use crate::cli::inputs::bodies::spec_of;
 use crate::cli::inputs::molecules::label;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::suggestions;
@@ -33,6 +34,8 @@ pub struct Pair {
     pub row: PairRow,
     /// Its command line.
     pub dock: Dock,
+    /// What it is expected to cost beside others: the bytes of its files.
+    pub cost: f64,
 }
 
 /// The pairs of the table with their command lines, each checked as far as words go.
@@ -75,7 +78,13 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                     None => wrong(message, COLUMNS),
                 }
             })?;
-            Ok(Pair { name, row, dock })
+            let cost = cost(&row, folder);
+            Ok(Pair {
+                name,
+                row,
+                dock,
+                cost,
+            })
         });
     pairs.collect()
 }
@@ -195,6 +204,23 @@ fn command(
     let wrong = |error: clap::Error| (first_paragraph(&error), suggestions::suggested(&error));
     Ok(parse(words).map_err(wrong)?.dock)
 }
+
+/// Bytes of a pair's files, packed ones as they may be unpacked: the time of a run grows about as its atoms.
+fn cost(row: &PairRow, folder: &Path) -> f64 {
+    let bytes = |file: &String| {
+        let spec = spec_of(&at(folder, file)).ok()?;
+        let bytes = std::fs::metadata(&spec.path).ok()?.len() as f64;
+        let is_packed = spec.path.extension().is_some_and(|ending| ending == "gz");
+        Some(if is_packed { PACKED * bytes } else { bytes })
+    };
+    [&row.receptor, &row.ligand]
+        .into_iter()
+        .filter_map(bytes)
+        .sum()
+}
+
+/// Bytes of a structure file for each byte of it that is packed by gzip.
+const PACKED: f64 = 4.0;
 
 /// A file of the table as seen from here, its chains behind it.
 fn at(folder: &Path, file: &str) -> String {

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::dock::shared_process::is_shared;
+
 /// The most memory that the process had held when the present run began, in bytes.
 static PEAK_BEFORE: AtomicU64 = AtomicU64::new(0);
 
@@ -10,19 +12,21 @@ pub fn begin() {
     PEAK_BEFORE.store(peak().unwrap_or(0), Ordering::Relaxed);
 }
 
-/// The most memory that the process has held so far, in bytes. `None` off Linux.
+/// The most memory that the process has held so far, in bytes, by all its runs. `None` off Linux.
 pub fn peak() -> Option<u64> {
     status("VmHWM:")
 }
 
-/// Memory that the process holds now, in bytes: program, inputs and all that was made of them. `None` off Linux.
+/// Memory that the process holds now, in bytes: program, inputs and all that was made of them. `None` off Linux, and
+/// where other runs share the process, whose memory is not this one's.
 pub fn held() -> Option<u64> {
-    status("VmRSS:")
+    status("VmRSS:").filter(|_| !is_shared())
 }
 
-/// The most memory that the present run has held so far, in bytes: no less than what it holds now. `None` off Linux.
+/// The most memory that the present run has held so far, in bytes: no less than what it holds now. `None` as of
+/// [`held`].
 pub fn peak_of_run() -> Option<u64> {
-    let peak = peak()?;
+    let peak = peak().filter(|_| !is_shared())?;
     if peak > PEAK_BEFORE.load(Ordering::Relaxed) {
         Some(peak)
     } else {

@@ -1,23 +1,30 @@
 //! `knotdock batch`: many pairs in one call, and one table of what came of them.
 
+mod crew;
+mod row;
+mod schedule;
+
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
+use knotdock::options::Threads;
+use knotdock::options::values::at_least_one;
 use knotdock::output::files::folder_lock::FolderLock;
 use knotdock::output::files::whole_file::FileError;
 use knotdock::output::tables::batch_results::{
-    PairResult, RESULTS, RunSummary, is_ours, rows_of_others, write_results,
+    PairResult, RESULTS, is_ours, rows_of_others, write_results,
 };
 use knotdock::output::tables::report::counted;
 use serde_json::{Value, json};
 
 use crate::cli::arguments::program::is_of_program;
+use crate::cli::batch::crew::{Job, dock_all};
+use crate::cli::batch::row::DockedRow;
+use crate::cli::batch::schedule::{Own, turns};
 use crate::cli::dock::Dock;
 use crate::cli::inputs::batch_pairs::{Pair, pairs};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::run_summary::summary_line;
 
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///
@@ -34,6 +41,10 @@ pub struct Batch {
     /// Directory of the batch, in which each pair's run has a directory of its name [default: knotdock_PAIRS].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Threads of the whole batch. Small pairs are docked at the same time on one thread each, large ones by themselves
+    /// on all. A pair whose own options name a number of threads has that [default: all hardware threads].
+    #[arg(short = 'j', long, value_name = "N", value_parser = at_least_one)]
+    threads: Option<usize>,
     /// Options of `knotdock dock` for all pairs, after `--`; with --force runs of other inputs or options are replaced.
     #[arg(last = true, value_name = "DOCK OPTIONS")]
     options: Vec<String>,
@@ -93,10 +104,24 @@ impl Batch {
             if count == 1 { "goes" } else { "go" },
             directory.display()
         ));
-        let mut entries: Vec<Value> = Vec::new();
-        let (mut waiting, mut table): (Vec<Dock>, Vec<PairResult>) = (Vec::new(), Vec::new());
+        // A file of options that cannot be read is a failure of its pair alone.
+        let own = pairs.iter().map(|pair| pair.dock.own_threads());
+        let own: Vec<(Option<usize>, bool)> = own.map(Result::unwrap_or_default).collect();
+        let threads = self.threads(&own);
+        // Threads that all pairs agree on are those of the batch.
+        let own: Vec<Own> = own
+            .into_iter()
+            .map(|(own, is_alone)| Own {
+                threads: own.filter(|&own| own != threads),
+                is_alone,
+            })
+            .collect();
+        let costs: Vec<f64> = pairs.iter().map(|pair| pair.cost).collect();
+        let turns = turns(&costs, &own, threads);
+        let (mut waiting, mut table): (Vec<Option<Dock>>, Vec<PairResult>) =
+            (Vec::new(), Vec::new());
         for pair in pairs {
-            waiting.push(pair.dock);
+            waiting.push(Some(pair.dock));
             table.push(PairResult {
                 name: pair.name,
                 receptor: pair.row.receptor,
@@ -109,21 +134,34 @@ impl Batch {
                 .at(results)
                 .remedy("move the file away: pairs that are done are not docked again, and get their rows anew")
         })?;
-        let mut code = 0;
-        for (index, dock) in waiting.into_iter().enumerate() {
-            let name = table[index].name.clone();
-            let head = format!("[{}/{count}] {name}", index + 1);
-            let (entry, outcome) = dock_row(dock, &name, &directory.join(&name), &head, console);
-            if let Err(failure) = &outcome {
-                code = match (code, failure.exit_code()) {
-                    (0 | 2, 2) => 2,
-                    _ => 1,
-                };
-            }
-            table[index].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
-            entries.push(entry);
-            write_results(results, &table, &others)?;
-        }
+        let jobs = turns.into_iter().filter_map(|turn| {
+            let name = table[turn.pair].name.clone();
+            Some(Job {
+                turn,
+                dock: waiting[turn.pair].take()?,
+                run: directory.join(&name),
+                head: format!("[{}/{count}] {name}", turn.pair + 1),
+                name,
+            })
+        });
+        let jobs: Vec<Job> = jobs.collect();
+        let (mut code, mut entries) = (0, vec![Value::Null; count]);
+        dock_all(
+            jobs,
+            threads,
+            console,
+            |pair, DockedRow { entry, outcome }| {
+                if let Err(failure) = &outcome {
+                    code = match (code, failure.exit_code()) {
+                        (0 | 2, 2) => 2,
+                        _ => 1,
+                    };
+                }
+                table[pair].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
+                entries[pair] = entry;
+                Ok(write_results(results, &table, &others)?)
+            },
+        )?;
         let done = table
             .iter()
             .filter(|pair| matches!(pair.outcome, Some(Ok(_))));
@@ -143,62 +181,16 @@ impl Batch {
         }))?;
         Ok(code)
     }
-}
 
-/// Docks the pair of one row and reports it; its JSON entry with what came of it.
-fn dock_row(
-    dock: Dock,
-    name: &str,
-    run: &Path,
-    head: &str,
-    console: Console,
-) -> (Value, Result<RunSummary, Failure>) {
-    let clock = Instant::now();
-    let mut entry = json!({
-        "name": name,
-        "directory": run.display().to_string(),
-        "status": "failed",
-        "error": null,
-        "best": null,
-        "first_acceptable_rank": null,
-    });
-    let outcome = dock_pair(dock, console).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
-    let outcome = match outcome {
-        Ok((summary, anew)) => {
-            console.say(format!("{head}: {}", summary_line(&summary, anew, clock)));
-            entry["status"] = if anew { "docked" } else { "kept" }.into();
-            entry["best"] = summary.best.clone();
-            entry["first_acceptable_rank"] = summary.first_acceptable.into();
-            Ok(summary)
-        }
-        Err(failure) => {
-            console.error(format!("{head} failed\n{}", failure.text()));
-            entry["error"] = failure.json()["error"].clone();
-            Err(failure)
-        }
-    };
-    (entry, outcome)
-}
-
-/// Docks a pair into its directory; whether it had to be done.
-fn dock_pair(dock: Dock, console: Console) -> Result<bool, Failure> {
-    // A pair's own words would hide the batch's; its run.json has them.
-    let silent = Console {
-        quiet: true,
-        ..Console::default()
-    };
-    dock.prepared(silent, |prepared| {
-        if prepared.is_done(console) {
-            return Ok(false);
-        }
-        if let Some(directory) = prepared.in_the_way() {
-            return Err(Failure::input(
-                "the directory holds a run of other inputs or options, or by another version, or only part of this one",
-            )
-            .at(directory)
-            .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
-        }
-        prepared.run(silent, console)?;
-        Ok(true)
-    })
+    /// Threads of the batch: those given, or else those that all pairs' own options agree on.
+    fn threads(&self, own: &[(Option<usize>, bool)]) -> usize {
+        let agreed = match own {
+            [(Some(first), _), rest @ ..] if rest.iter().all(|(own, _)| *own == Some(*first)) => {
+                Some(*first)
+            }
+            _ => None,
+        };
+        let threads = self.threads.or(agreed);
+        threads.unwrap_or_else(|| Threads::default().count())
+    }
 }
