@@ -181,8 +181,9 @@ fn a_stopped_ensemble_goes_on() {
     run(folder.path(), &format!("{command} --threads 2"));
     let directory = folder.path().join("run");
     let whole = comparable(&directory);
-    fs::remove_file(directory.join("ensemble.json")).unwrap();
-    fs::remove_file(directory.join("poses.csv")).unwrap();
+    for file in ["ensemble.json", "poses.csv", "view.pml", "view.cxc"] {
+        fs::remove_file(directory.join(file)).unwrap();
+    }
     fs::remove_dir_all(directory.join("top")).unwrap();
     fs::remove_dir_all(directory.join("members/r1_l2")).unwrap();
     run(folder.path(), &format!("{command} --threads 1"));

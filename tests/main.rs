@@ -45,3 +45,4 @@ mod score;
 mod scoring_table;
 mod sharp_fits;
 mod tradeoff;
+mod views;

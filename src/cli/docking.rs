@@ -11,6 +11,9 @@ use knotdock::error::SearchError;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::Staging;
+use knotdock::output::files::viewers::{
+    CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol,
+};
 use knotdock::output::records::manifest::{
     EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
 };
@@ -207,10 +210,18 @@ impl Docking {
         staging.write("poses.csv", |file| table.write_to(file))?;
         let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
         let top = rows.get(..output.write_top).unwrap_or(&rows);
-        let written =
-            request
-                .bodies
-                .write(top, request.arrangement(), &staging.folder().join("top"))?;
+        let written = request.bodies.write(
+            top,
+            request.arrangement(),
+            (&staging.folder().join("top"), None),
+        )?;
+        if let Some(chains) = &written.chains {
+            let names = written.names.iter().zip(top);
+            let viewed: Vec<ViewedComplex> = names
+                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
+                .collect();
+            write_scripts(staging, &viewed)?;
+        }
         let inputs = request.inputs(self.prepared.sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
@@ -275,6 +286,15 @@ impl Docking {
             self.directory.join("poses.csv").display()
         ));
     }
+}
+
+/// Writes the scripts that show complexes in other programs, if there are any.
+pub fn write_scripts(staging: &Staging, complexes: &[ViewedComplex]) -> Result<(), Failure> {
+    if !complexes.is_empty() {
+        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
+        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
+    }
+    Ok(())
 }
 
 /// What a run wrote.

@@ -1,16 +1,19 @@
 //! `knotdock export`: further complexes from a finished run.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use knotdock::dock::pair::Pair;
 use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
+use knotdock::output::files::model_file::{PosedPair, model_file_name, write_model_file};
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
-use knotdock_structures::molecule::ChainMap;
+use knotdock_structures::molecule::{ChainMap, Format};
 use serde_json::json;
 
 use crate::cli::arguments::output_file::check_not_read;
@@ -31,6 +34,13 @@ pub struct Export {
     /// Ranks in poses.csv, such as 37,40-45.
     #[arg(long, value_name = "RANKS")]
     rank: Ranks,
+    /// Of these ranks only the best of each cluster, where the table lists every pose.
+    #[arg(long)]
+    best_of_cluster: bool,
+    /// Format: pdb or cif, a file a rank; or ensemble, one file with a model a rank (ensemble.pdb, or .cif where PDB
+    /// cannot hold it) [default: pdb, or cif where an input was mmCIF or PDB cannot hold it].
+    #[arg(long, value_name = "pdb|cif|ensemble", hide_possible_values = true)]
+    format: Option<ExportFormat>,
     /// Directory to write to [default: DIR/top].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -39,6 +49,14 @@ pub struct Export {
     force: bool,
     #[command(flatten)]
     threads: Threads,
+}
+
+/// How complexes are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ExportFormat {
+    Pdb,
+    Cif,
+    Ensemble,
 }
 
 impl Export {
@@ -54,6 +72,21 @@ impl Export {
         let folder = self.output.clone().unwrap_or(own);
         let exports = self.exports(&folder)?;
         let export = ExportFolder::open(&folder, &self.run)?;
+        if self.format == Some(ExportFormat::Ensemble) {
+            let pairs = exports.iter().map(Placed::pairs);
+            let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, _>>()?.concat();
+            pairs.sort_by_key(|pair| self.place(pair.row.rank));
+            let name = write_model_file(&pairs, export.staged())?;
+            export.place(self.force)?;
+            let path = folder.join(name).display().to_string();
+            console.say(&path);
+            let ranks: Vec<usize> = pairs.iter().map(|pair| pair.row.rank).collect();
+            return console.result(&json!({ "file": path, "ranks": ranks }));
+        }
+        let format = self.format.map(|format| match format {
+            ExportFormat::Pdb => Format::Pdb,
+            _ => Format::Mmcif,
+        });
         let mut written: Vec<(usize, String, Option<ChainMap>)> = Vec::new();
         for Placed {
             rows,
@@ -61,14 +94,12 @@ impl Export {
             arrangement,
         } in &exports
         {
-            let of_run = bodies.write(rows, *arrangement, export.staged())?;
+            let of_run = bodies.write(rows, *arrangement, (export.staged(), format))?;
             let names = rows.iter().zip(of_run.names);
             written.extend(names.map(|(row, name)| (row.rank, name, of_run.chains.clone())));
         }
         export.place(self.force)?;
-        // As the user lists the ranks, whichever runs they are of.
-        let place = |rank: usize| self.rank.0.iter().position(|listed| *listed == rank);
-        written.sort_by_key(|(rank, _, _)| place(*rank));
+        written.sort_by_key(|(rank, _, _)| self.place(*rank));
         let path = |name: &str| folder.join(name).display().to_string();
         let paths: Vec<String> = written.iter().map(|(_, name, _)| path(name)).collect();
         console.say(paths.join("\n"));
@@ -88,11 +119,26 @@ impl Export {
         Ok(())
     }
 
+    /// Place of a rank in the user's list, whichever run it is of.
+    fn place(&self, rank: usize) -> Option<usize> {
+        self.rank.0.iter().position(|listed| *listed == rank)
+    }
+
     /// What is written: of an ensemble the rows of each member.
     fn exports(&self, folder: &Path) -> Result<Vec<Placed>, Failure> {
         let table_path = self.run.join("poses.csv");
         let table = PoseTable::read(&table_path)?;
-        let places = ranked_places(&table, &table_path, &self.rank)?;
+        let mut places = ranked_places(&table, &table_path, &self.rank)?;
+        if self.best_of_cluster {
+            // Rows of a cluster stand best first, and a row without one is by itself.
+            let mut seen = HashSet::new();
+            places.sort_unstable();
+            places.retain(|&place| match table.field(place, "cluster") {
+                None | Some("") => true,
+                Some(cluster) => seen.insert(cluster),
+            });
+            places.sort_by_key(|&place| self.place(table.rows()[place].rank));
+        }
         let runs = runs(&self.run, &table, &places)?.into_iter();
         let exports = runs.map(|RunRows { run: run_path, rows }| {
             let run = RecordedRun::read(&run_path)?;
@@ -108,7 +154,14 @@ impl Export {
                 .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
             }
             let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
-            for name in rows.iter().flat_map(|row| file_names(row.rank)) {
+            if self.format.is_some() && bodies.are_meshes() {
+                let error = "--format is of molecules, and this is a run of meshes";
+                return Err(Failure::input(error)
+                    .at(&run_path)
+                    .remedy("leave it out: assemblies are written as .obj"));
+            }
+            let models = [Format::Pdb, Format::Mmcif].map(model_file_name);
+            for name in rows.iter().flat_map(|row| file_names(row.rank)).chain(models) {
                 let read = bodies.records().map(|record| record.path.as_path());
                 check_not_read(&folder.join(name), read)?;
             }
@@ -119,6 +172,21 @@ impl Export {
             })
         });
         exports.collect()
+    }
+}
+
+impl Placed {
+    /// Each pose with its molecules.
+    fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Failure> {
+        let Pair::Molecules(molecules) = self.bodies.pair() else {
+            return Err(Failure::input("these are no molecules"));
+        };
+        let posed = self.rows.iter().map(|row| PosedPair {
+            molecules,
+            arrangement: self.arrangement,
+            row: *row,
+        });
+        Ok(posed.collect())
     }
 }
 

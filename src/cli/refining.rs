@@ -134,7 +134,8 @@ impl<'a> Refining<'a> {
             pose: refined.pose,
         }];
         let pair = Arrangement::Pair;
-        let mut written = write_complexes(molecules, pair, &placed, ", refined", self.staged)?;
+        let mut written =
+            write_complexes(molecules, pair, &placed, ", refined", (self.staged, None))?;
         let row = RefinedRow {
             rank: row.rank,
             refined,

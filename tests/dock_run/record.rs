@@ -134,7 +134,14 @@ fn an_older_run_goes_only_when_forced_and_when_the_new_one_is_done() {
     assert_eq!(after["notes.txt"], b"mine");
     assert_eq!(
         after.keys().map(String::as_str).collect::<Vec<_>>(),
-        ["notes.txt", "poses.csv", "run.json", "top/rank_0001.pdb"]
+        [
+            "notes.txt",
+            "poses.csv",
+            "run.json",
+            "top/rank_0001.pdb",
+            "view.cxc",
+            "view.pml"
+        ]
     );
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use knotdock::ensemble::table::{DockedMember, JointTable};
 use knotdock::output::files::staging::Staging;
+use knotdock::output::files::viewers::ViewedComplex;
 use knotdock::output::files::whole_file::to_json;
 use knotdock::output::records::ensemble_record::{
     EnsembleRecord, EnsembleResults, EnsembleTiming, MEMBERS, MemberRecord, RECORD, SCHEMA,
@@ -14,6 +15,7 @@ use knotdock::output::tables::report::{BEST, best_rows, counted};
 use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::{Value, json};
 
+use crate::cli::docking::write_scripts;
 use crate::cli::ensemble::laid::Laid;
 use crate::cli::ensemble::run::Ensemble;
 use crate::cli::inputs::bodies::Bodies;
@@ -32,7 +34,8 @@ impl Ensemble {
         (console, notices): (Console, Console),
     ) -> Result<Value, Failure> {
         staging.write("poses.csv", |file| joint.table.write_to(file))?;
-        let names = self.write_top(joint, &staging.folder().join("top"))?;
+        let viewed = self.write_top(joint, &staging.folder().join("top"))?;
+        write_scripts(&staging, &viewed)?;
         let results = EnsembleResults {
             rows: joint.table.rows().len(),
             clusters: joint.clusters,
@@ -44,9 +47,9 @@ impl Ensemble {
         warn_set_aside(&staging.commit()?, notices);
         self.report(joint, console);
         let top = self.directory.join("top");
-        let complexes = names
+        let complexes = viewed
             .iter()
-            .map(|name| top.join(name).display().to_string());
+            .map(|complex| top.join(&complex.file).display().to_string());
         Ok(json!({
             "directory": self.directory.display().to_string(),
             "poses": self.directory.join("poses.csv").display().to_string(),
@@ -56,27 +59,26 @@ impl Ensemble {
         }))
     }
 
-    /// Writes the complexes of the first ranks, each of its member's conformations; their names.
-    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<String>, Failure> {
+    /// Writes the complexes of the first ranks, each of its member's conformations, in the order of the ranks.
+    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<ViewedComplex>, Failure> {
         let rows = joint.table.rows();
         let count = self.given.options.output.write_top.min(rows.len());
-        let mut names = vec![String::new(); count];
+        let mut viewed = Vec::new();
         for (index, member) in self.members().into_iter().enumerate() {
-            let places: Vec<usize> = (0..count)
-                .filter(|&row| joint.members[row] == index)
-                .collect();
-            if places.is_empty() {
+            let own = (0..count).filter(|&row| joint.members[row] == index);
+            let own: Vec<PoseRow> = own.map(|row| rows[row]).collect();
+            if own.is_empty() {
                 continue;
             }
             let specs = self.laid(member).map(|laid| laid.spec.clone());
-            let own: Vec<PoseRow> = places.iter().map(|&row| rows[row]).collect();
             let bodies = Bodies::of(specs, &self.given.options)?;
-            let written = bodies.write(&own, Arrangement::Pair, folder)?;
-            for (place, name) in places.into_iter().zip(written.names) {
-                names[place] = name;
-            }
+            let written = bodies.write(&own, Arrangement::Pair, (folder, None))?;
+            let chains = written.chains.unwrap_or_default();
+            let names = own.iter().zip(&written.names);
+            viewed.extend(names.map(|(row, name)| ViewedComplex::new(row.rank, name, &chains)));
         }
-        Ok(names)
+        viewed.sort_by_key(|complex| complex.rank);
+        Ok(viewed)
     }
 
     /// ensemble.json.

@@ -13,7 +13,7 @@ use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
-use knotdock_structures::molecule::{ChainMap, InputSpec};
+use knotdock_structures::molecule::{ChainMap, Format, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 
 use crate::cli::inputs::ball_files::ball_file_of;
@@ -176,17 +176,18 @@ impl Bodies {
         }
     }
 
-    /// Writes the bodies in the poses of `rows` into a folder, of a ring all its copies.
+    /// Writes the bodies in the poses of `rows` into a folder, of a ring all its copies; molecules in a format, where
+    /// one is given.
     pub fn write(
         &self,
         rows: &[PoseRow],
         arrangement: Arrangement,
-        folder: &Path,
+        (folder, format): (&Path, Option<Format>),
     ) -> Result<WrittenBodies, Failure> {
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                let written = write_complexes(molecules, arrangement, rows, "", folder)?;
+                let written = write_complexes(molecules, arrangement, rows, "", (folder, format))?;
                 Ok(WrittenBodies {
                     names: written.names,
                     chains: Some(written.chains),

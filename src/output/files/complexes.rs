@@ -33,8 +33,9 @@ pub fn file_names(rank: usize) -> [String; 3] {
     ["pdb", "cif", "obj"].map(|extension| file_name(rank, extension))
 }
 
-/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was mmCIF or a
-/// complex does not fit the PDB format. Of a ring all copies are written. `note` follows the rank in the remarks.
+/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was
+/// mmCIF or a complex does not fit the PDB format, or in the format that is `wanted`. Of a ring all copies are written.
+/// `note` follows the rank in the remarks.
 ///
 /// # Errors
 /// [`FileError`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
@@ -44,7 +45,7 @@ pub fn write_complexes(
     arrangement: Arrangement,
     rows: &[PoseRow],
     note: &str,
-    folder: &Path,
+    (folder, wanted): (&Path, Option<Format>),
 ) -> Result<Written, FileError> {
     if !rows.is_empty() {
         disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
@@ -68,6 +69,7 @@ pub fn write_complexes(
         _ => Vec::new(),
     };
     let format = match rows {
+        _ if wanted.is_some() => wanted.unwrap_or(Format::Mmcif),
         [] => complex_format(&with(receptor, &unplaced)),
         _ if fits => Format::Pdb,
         _ => Format::Mmcif,
@@ -94,6 +96,22 @@ pub fn write_complexes(
             .map_err(|error| FileError::writing(folder, io_error(error)))?,
     };
     Ok(Written { names, chains })
+}
+
+/// What a pose places about the receptor: the ligand, or of a ring all copies but the receptor.
+///
+/// # Errors
+/// [`FileError`] where the pose is not one of such a ring.
+pub(crate) fn placed_copies(
+    ligand: &Molecule,
+    arrangement: Arrangement,
+    row: &PoseRow,
+    folder: &Path,
+) -> Result<Vec<Molecule>, FileError> {
+    let images = arrangement.images(&row.pose);
+    let poses = images.ok_or_else(|| no_ring(arrangement, row, folder))?;
+    let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
+    Ok(poses.iter().map(moved).collect())
 }
 
 /// The molecules of a complex: the receptor, and those placed about it.

@@ -18,7 +18,11 @@ pub struct Product {
 /// Files of `knotdock dock`.
 pub const RUN: Product = Product {
     record: "run.json",
-    files: &[("poses.csv", "rank,score,cluster,")],
+    files: &[
+        ("poses.csv", "rank,score,cluster,"),
+        ("view.pml", "# The best poses in PyMOL"),
+        ("view.cxc", "# The best poses in ChimeraX"),
+    ],
     folder: Some("top"),
     not_beside: &["ensemble.json"],
 };
@@ -70,8 +74,11 @@ impl Product {
     }
 }
 
-/// Whether a name is that of a complex of some rank.
+/// Whether a name is that of a complex of some rank, or of many complexes in one file.
 fn is_complex(name: &str) -> bool {
+    if ["ensemble.pdb", "ensemble.cif"].contains(&name) {
+        return true;
+    }
     let rest = name
         .strip_prefix("rank_")
         .and_then(|rest| rest.split_once('.'));

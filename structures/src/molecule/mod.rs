@@ -58,6 +58,6 @@ pub use self::read::{
 };
 pub use self::write::error::WriteError;
 pub use self::write::{
-    ChainMap, ChainName, Partner, complex_format, fits, write_complex, write_molecule,
+    ChainMap, ChainName, ModelWriter, Partner, complex_format, fits, write_complex, write_molecule,
     write_renamed,
 };

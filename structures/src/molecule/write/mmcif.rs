@@ -35,6 +35,13 @@ pub(crate) fn write<W: Write>(
     rows: &[Row<'_>],
     remarks: &[String],
 ) -> Result<(), WriteError> {
+    write_head(writer, remarks)?;
+    write_model(writer, rows, (1, 0))?;
+    write_end(writer)
+}
+
+/// Writes remarks and the names of the columns.
+pub(crate) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> Result<(), WriteError> {
     writeln!(writer, "data_knotdock\n_entry.id knotdock")?;
     if !remarks.is_empty() {
         writeln!(
@@ -52,6 +59,21 @@ pub(crate) fn write<W: Write>(
     for column in COLUMNS {
         writeln!(writer, "_atom_site.{column}")?;
     }
+    Ok(())
+}
+
+/// Writes the end of the table.
+pub(crate) fn write_end<W: Write>(writer: &mut W) -> Result<(), WriteError> {
+    writeln!(writer, "#")?;
+    Ok(())
+}
+
+/// Writes the rows of a model with its number, after so many rows of others.
+pub(crate) fn write_model<W: Write>(
+    writer: &mut W,
+    rows: &[Row<'_>],
+    (number, before): (usize, usize),
+) -> Result<(), WriteError> {
     for (index, row) in rows.iter().enumerate() {
         let atom = row.atom;
         let group = if atom.hetero { "HETATM" } else { "ATOM" };
@@ -65,14 +87,13 @@ pub(crate) fn write<W: Write>(
         writeln!(
             writer,
             "{group:<6} {} {element} {name} . {residue} {chain} ? . {insertion} {x:.3} {y:.3} {z:.3} {:.2} {:.2} {} \
-             {residue} {chain} {name} 1",
-            index + 1,
+             {residue} {chain} {name} {number}",
+            before + index + 1,
             rounded(atom.occupancy, 100.0),
             rounded(atom.b_factor, 100.0),
             atom.residue_number,
         )?;
     }
-    writeln!(writer, "#")?;
     Ok(())
 }
 

@@ -7,6 +7,7 @@
 pub(crate) mod chains;
 pub(crate) mod error;
 pub(crate) mod mmcif;
+pub(crate) mod models;
 pub(crate) mod pdb;
 pub(crate) mod row;
 
@@ -14,6 +15,7 @@ use std::collections::HashMap;
 use std::io::Write;
 
 pub use crate::molecule::write::chains::{ChainMap, ChainName, Partner};
+pub use crate::molecule::write::models::ModelWriter;
 
 use crate::molecule::model::atom::Atom;
 use crate::molecule::model::format::Format;
@@ -185,6 +187,15 @@ fn write_rows<W: Write>(
     rows: &[Row<'_>],
     remarks: &[String],
 ) -> Result<(), WriteError> {
+    check(format, rows)?;
+    match format {
+        Format::Pdb => pdb::write(writer, rows, remarks),
+        Format::Mmcif => mmcif::write(writer, rows, remarks),
+    }
+}
+
+/// Whether a format can hold rows.
+fn check(format: Format, rows: &[Row<'_>]) -> Result<(), WriteError> {
     for row in rows {
         let atom = row.atom;
         let numbers = [atom.occupancy, atom.b_factor];
@@ -193,10 +204,7 @@ fn write_rows<W: Write>(
         }
     }
     match format {
-        Format::Pdb => {
-            pdb::check(rows)?;
-            pdb::write(writer, rows, remarks)
-        }
-        Format::Mmcif => mmcif::write(writer, rows, remarks),
+        Format::Pdb => pdb::check(rows),
+        Format::Mmcif => Ok(()),
     }
 }

@@ -70,11 +70,43 @@ pub(crate) fn write<W: Write>(
     rows: &[Row<'_>],
     remarks: &[String],
 ) -> Result<(), WriteError> {
+    write_remarks(writer, remarks)?;
+    write_atoms(writer, rows)?;
+    write_end(writer)
+}
+
+/// Writes remarks, which come before everything else.
+pub(crate) fn write_remarks<W: Write>(
+    writer: &mut W,
+    remarks: &[String],
+) -> Result<(), WriteError> {
     for remark in remarks {
         for line in wrapped(remark) {
             writeln!(writer, "{:<80}", format!("{REMARK}{line}"))?;
         }
     }
+    Ok(())
+}
+
+/// Writes rows that [`check`] has passed as a model.
+pub(crate) fn write_model<W: Write>(
+    writer: &mut W,
+    rows: &[Row<'_>],
+    number: usize,
+) -> Result<(), WriteError> {
+    writeln!(writer, "{:<80}", format!("MODEL     {number:>4}"))?;
+    write_atoms(writer, rows)?;
+    writeln!(writer, "{:<80}", "ENDMDL")?;
+    Ok(())
+}
+
+/// Writes the last line.
+pub(crate) fn write_end<W: Write>(writer: &mut W) -> Result<(), WriteError> {
+    writeln!(writer, "{:<80}", "END")?;
+    Ok(())
+}
+
+fn write_atoms<W: Write>(writer: &mut W, rows: &[Row<'_>]) -> Result<(), WriteError> {
     // TER takes a serial number of its own, unless that would be the 100,000th.
     let ends = rows.iter().filter(|row| row.ends_chain).count();
     let numbers_ends = rows.len() + ends <= 99_999;
@@ -109,7 +141,6 @@ pub(crate) fn write<W: Write>(
             writeln!(writer, "{:<80}", "TER")?;
         }
     }
-    writeln!(writer, "{:<80}", "END")?;
     Ok(())
 }
 

@@ -1,0 +1,77 @@
+//! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model a rank, for viewers that play them.
+
+use std::path::Path;
+
+use knotdock_structures::molecule::{Format, ModelWriter, Molecule, complex_format};
+
+use crate::output::files::complexes::{io_error, placed_copies};
+use crate::output::files::disk;
+use crate::output::files::whole_file::{FileError, write_new};
+use crate::output::records::program::VERSION;
+use crate::output::tables::poses::PoseRow;
+use crate::pose_space::arrangement::Arrangement;
+
+/// A pose, and what is placed by it.
+#[derive(Clone, Copy)]
+pub struct PosedPair<'a> {
+    /// Receptor and ligand.
+    pub molecules: [&'a Molecule; 2],
+    /// What they are put together to.
+    pub arrangement: Arrangement,
+    /// The pose.
+    pub row: PoseRow,
+}
+
+/// Name of the file in a format.
+pub fn model_file_name(format: Format) -> String {
+    format!("ensemble.{}", format.extension())
+}
+
+/// Writes complexes into a staging folder as the models of one file, in the order given; as mmCIF where one of the
+/// inputs was mmCIF or a complex does not fit the PDB format. Returns the file's name.
+///
+/// # Errors
+/// [`FileError`] when the file cannot be written, or a row's pose is not one of such a ring.
+pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, FileError> {
+    let complex =
+        |pair: &PosedPair| placed_copies(pair.molecules[1], pair.arrangement, &pair.row, folder);
+    // Placed molecules are made twice: all at once may not fit into the memory.
+    let mut format = Format::Pdb;
+    for pair in pairs {
+        let others = complex(pair)?;
+        let all: Vec<&Molecule> = [pair.molecules[0]].into_iter().chain(&others).collect();
+        if complex_format(&all) != Format::Pdb {
+            format = Format::Mmcif;
+            break;
+        }
+    }
+    let name = model_file_name(format);
+    let path = folder.join(&name);
+    disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+    let numbered = pairs.iter().zip(1..);
+    let lines = numbered.map(|(pair, model)| format!("model {model} is rank {}", pair.row.rank));
+    let remarks: Vec<String> = [format!("knotdock {VERSION}")]
+        .into_iter()
+        .chain(lines)
+        .collect();
+    let mut failed = None;
+    let written = write_new(&path, |mut file| {
+        let mut models = ModelWriter::new(&mut file, format, &remarks).map_err(io_error)?;
+        for pair in pairs {
+            match complex(pair) {
+                Ok(others) => {
+                    let all: Vec<&Molecule> =
+                        [pair.molecules[0]].into_iter().chain(&others).collect();
+                    models.write(&all).map_err(io_error)?;
+                }
+                Err(error) => {
+                    failed = Some(error);
+                    break;
+                }
+            }
+        }
+        models.finish().map_err(io_error)
+    });
+    written.map_err(|source| FileError::writing(&path, source))?;
+    failed.map_or(Ok(name), Err)
+}

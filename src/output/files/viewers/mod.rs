@@ -1,0 +1,129 @@
+//! Scripts that show the complexes of a run in PyMOL and ChimeraX.
+//!
+//! Both load the complexes that lie in `top/`. The receptor is grey and each ligand has a colour of its own, after Okabe
+//! and Ito's palette, which colour-blind people can tell apart (K. Ito and M. Okabe, Color Universal Design, 2008). The
+//! first pose is shown with the residues of its interface as sticks; the others are loaded and hidden.
+
+mod chimerax;
+mod pymol;
+
+use std::io::{self, Write};
+
+use knotdock_structures::molecule::{ChainMap, Partner};
+
+/// Name of the script for PyMOL.
+pub const PYMOL: &str = "view.pml";
+/// Name of the script for ChimeraX.
+pub const CHIMERAX: &str = "view.cxc";
+
+/// Residues with an atom within this distance of the other side are the interface, Å.
+const INTERFACE: f64 = 5.0;
+
+/// Colours of the ligands in the order of the ranks, then again.
+const COLOURS: [&str; 7] = [
+    "e69f00", "56b4e9", "009e73", "cc79a7", "0072b2", "d55e00", "f0e442",
+];
+/// Colour of the receptor.
+const RECEPTOR: &str = "bfbfbf";
+
+/// A complex to look at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewedComplex {
+    /// Its rank.
+    pub rank: usize,
+    /// Name of its file in `top/`.
+    pub file: String,
+    /// Names of the chains of the receptor, and of all that was placed.
+    pub chains: [Vec<String>; 2],
+}
+
+impl ViewedComplex {
+    /// A complex with the chains of a map.
+    pub fn new(rank: usize, file: &str, map: &ChainMap) -> Self {
+        let names = |is_receptor: bool| -> Vec<String> {
+            let of_side = map
+                .chains
+                .iter()
+                .filter(|chain| (chain.partner == Partner::Receptor) == is_receptor);
+            of_side.map(|chain| chain.written.clone()).collect()
+        };
+        Self {
+            rank,
+            file: file.to_owned(),
+            chains: [names(true), names(false)],
+        }
+    }
+}
+
+/// Colour of the complex at a place among those shown.
+fn colour(place: usize) -> &'static str {
+    COLOURS[place % COLOURS.len()]
+}
+
+/// Writes the script for PyMOL.
+///
+/// # Errors
+/// Those of the stream.
+pub fn write_pymol(stream: &mut dyn Write, complexes: &[ViewedComplex]) -> io::Result<()> {
+    stream.write_all(pymol::script(complexes).as_bytes())
+}
+
+/// Writes the script for ChimeraX.
+///
+/// # Errors
+/// Those of the stream.
+pub fn write_chimerax(stream: &mut dyn Write, complexes: &[ViewedComplex]) -> io::Result<()> {
+    stream.write_all(chimerax::script(complexes).as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complexes() -> Vec<ViewedComplex> {
+        let complex = |rank: usize| ViewedComplex {
+            rank,
+            file: format!("rank_{rank:04}.pdb"),
+            chains: [vec!["A".to_owned()], vec!["H".to_owned(), "L-2".to_owned()]],
+        };
+        (1..=9).map(complex).collect()
+    }
+
+    /// Every complex is loaded and coloured once, and only the first is shown.
+    #[test]
+    fn scripts_load_every_complex() {
+        let (pymol, chimerax) = (pymol::script(&complexes()), chimerax::script(&complexes()));
+        for rank in 1..=9 {
+            assert_eq!(
+                pymol
+                    .matches(&format!("load top/rank_{rank:04}.pdb"))
+                    .count(),
+                1
+            );
+            assert_eq!(
+                chimerax
+                    .matches(&format!("open top/rank_{rank:04}.pdb"))
+                    .count(),
+                1
+            );
+        }
+        assert!(pymol.contains("enable rank_0001\n") && !pymol.contains("enable rank_0002"));
+        // The eighth has the colour of the first again.
+        assert_eq!(pymol.matches("0xe69f00").count(), 2);
+        assert_eq!(chimerax.matches("#e69f00").count(), 2);
+    }
+
+    /// A hyphen is a range in both programs.
+    #[test]
+    fn names_of_chains_are_no_ranges() {
+        assert!(pymol::script(&complexes()).contains("chain \"L-2\""));
+        assert!(chimerax::script(&complexes()).contains("::chain_id=\"L-2\""));
+    }
+
+    /// Where no complex was written there is nothing to show, and the scripts are whole.
+    #[test]
+    fn no_complex_is_an_empty_scene() {
+        assert!(!pymol::script(&[]).contains("load"));
+        assert!(!chimerax::script(&[]).contains("open"));
+    }
+}
