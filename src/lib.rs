@@ -12,6 +12,7 @@ pub mod ensemble;
 pub mod error;
 pub mod evaluate;
 pub mod geometry;
+pub mod interface;
 pub mod mesh;
 pub mod named_columns;
 pub mod options;

@@ -28,6 +28,7 @@ mod geometry;
 mod graphics;
 mod hard_cases;
 mod hostile_names;
+mod interface;
 mod json_objects;
 mod known_complex;
 mod known_surfaces;

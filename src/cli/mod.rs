@@ -12,6 +12,7 @@ mod evaluate;
 mod export;
 mod inputs;
 mod inspect;
+mod interface;
 mod messages;
 mod morph;
 mod obstacle;
@@ -62,6 +63,7 @@ enum Command {
     Refine(refine::Refine),
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
+    Interface(Box<interface::InterfaceCommand>),
     Inspect(inspect::Inspect),
     Obstacle(Box<obstacle::Obstacle>),
     Morph(Box<morph::Morph>),
@@ -104,6 +106,11 @@ pub fn main() -> ExitCode {
         Command::Refine(command) => command.run(console),
         Command::Evaluate(command) => command.run(console),
         Command::Score(command) => command.run(console),
+        Command::Interface(command) => match command.run(console) {
+            Ok(0) => Ok(()),
+            Ok(code) => return ExitCode::from(code),
+            Err(failure) => Err(failure),
+        },
         Command::Inspect(command) => command.run(console),
         Command::Obstacle(command) => command.run(console),
         Command::Morph(command) => command.run(console),

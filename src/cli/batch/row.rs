@@ -1,5 +1,6 @@
 //! One pair of a batch: docked unless its run is there, and reported.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
@@ -35,8 +36,15 @@ pub fn dock_row(
         "best": null,
         "first_acceptable_rank": null,
     });
-    let outcome =
-        dock_pair(dock, threads, console).and_then(|anew| Ok((RunSummary::of(run)?, anew)));
+    // A fault of the program costs no other pair, either.
+    let docked = catch_unwind(AssertUnwindSafe(|| dock_pair(dock, threads, console)));
+    let docked = docked.unwrap_or_else(|_| {
+        Err(
+            Failure::other("knotdock failed on this pair, which is a fault of the program")
+                .remedy("report it with the files of the pair; the other pairs go on"),
+        )
+    });
+    let outcome = docked.and_then(|anew| Ok((RunSummary::of(run)?, anew)));
     let outcome = match outcome {
         Ok((summary, anew)) => {
             console.say(format!("{head}: {}", summary_line(&summary, anew, clock)));

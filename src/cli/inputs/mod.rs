@@ -3,6 +3,7 @@
 mod ball_files;
 pub mod batch_pairs;
 pub mod bodies;
+pub mod complex_sides;
 pub mod conformations;
 pub mod meshes;
 pub mod molecules;

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use knotdock::output::records::ensemble_record::MEMBERS;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
 use knotdock_structures::molecule::{
@@ -13,15 +14,19 @@ use knotdock_structures::molecule::{
 use crate::cli::inputs::meshes::is_mesh;
 use crate::cli::messages::failure::Failure;
 
-/// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were.
+/// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were; of
+/// a member of an ensemble those of the ensemble as well.
 pub fn folders_of(run: &Path) -> Vec<PathBuf> {
     // A relative path may not name the one above.
     let run = std::path::absolute(run).unwrap_or_else(|_| run.to_owned());
-    run.ancestors()
-        .skip(1)
-        .take(2)
-        .map(Path::to_owned)
-        .collect()
+    let above = run.ancestors().nth(2).and_then(Path::file_name);
+    let levels = if above.is_some_and(|name| name == MEMBERS) {
+        4
+    } else {
+        2
+    };
+    let folders = run.ancestors().skip(1).take(levels);
+    folders.map(Path::to_owned).collect()
 }
 
 /// A structure as read.
@@ -302,6 +307,21 @@ fn stem(name: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An ensemble that is moved with its inputs finds them beside itself.
+    #[test]
+    fn inputs_lie_beside_a_run_or_its_ensemble() {
+        let folders = |run: &str| -> Vec<String> {
+            let found = folders_of(Path::new(run));
+            found
+                .iter()
+                .map(|folder| folder.display().to_string())
+                .collect()
+        };
+        assert_eq!(folders("/a/b/run.json"), ["/a/b", "/a"]);
+        let of_member = ["/a/b/members/r1_l1", "/a/b/members", "/a/b", "/a"];
+        assert_eq!(folders("/a/b/members/r1_l1/run.json"), of_member);
+    }
 
     #[test]
     fn long_names_leave_room_for_another() {

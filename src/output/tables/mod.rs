@@ -6,6 +6,7 @@ pub mod cells;
 pub mod collisions;
 pub(crate) mod csv_lines;
 pub mod fields;
+pub mod interface;
 pub mod pair_table;
 pub(super) mod pose_columns;
 pub mod pose_list;

@@ -123,7 +123,7 @@ mod tests {
     /// Where no complex was written there is nothing to show, and the scripts are whole.
     #[test]
     fn no_complex_is_an_empty_scene() {
-        assert!(!pymol::script(&[]).contains("load"));
-        assert!(!chimerax::script(&[]).contains("open"));
+        assert!(!pymol::script(&[]).contains("\nload "));
+        assert!(!chimerax::script(&[]).contains("\nopen "));
     }
 }

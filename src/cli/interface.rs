@@ -1,0 +1,250 @@
+//! `knotdock interface`: what holds a complex together, and how it scores, of any complex file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use knotdock::interface::{Interface, PlacedScore, score_in_place};
+use knotdock::options::DockOptions;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
+use knotdock::output::tables::report::{align, counted};
+use knotdock::threads;
+use knotdock_structures::molecule::Molecule;
+use rayon::prelude::*;
+use serde_json::json;
+
+use crate::cli::arguments::options::{OfScore, OptionArguments};
+use crate::cli::arguments::output_file::check_output;
+use crate::cli::inputs::complex_sides::{ComplexSides, is_chains};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::library_errors::refused;
+
+/// Describe the interface of complexes: contacts, hydrogen bonds, salt bridges, buried surface, and the score of each.
+///
+/// Any complex file will do: of a crystal, of a predictor, of another docking program, or of knotdock.
+#[derive(Args, Debug)]
+pub struct InterfaceCommand {
+    /// Complex files (.pdb, .ent, .cif, each also .gz), and perhaps the chains of both sides, such as H,L A. Without
+    /// them the sides are those that a complex of knotdock names, or the two chains of a file that has two.
+    #[arg(value_name = "COMPLEX ... [CHAINS CHAINS]", required = true)]
+    words: Vec<String>,
+    /// Write a row for each file to this table.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Write a row for each pair of residues in contact to this table.
+    #[arg(long, value_name = "FILE")]
+    contacts: Option<PathBuf>,
+    /// Replace these files where they are already there.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    options: OptionArguments<OfScore>,
+}
+
+impl InterfaceCommand {
+    /// Describes the complexes; the exit code: 2 where some could not be.
+    pub fn run(self, console: Console) -> Result<u8, Failure> {
+        let options = self.options.given()?.options;
+        threads::on(options.machine.threads.count(), || {
+            self.describe(&options, console)
+        })?
+    }
+
+    /// Describes them on the threads of the caller.
+    fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Failure> {
+        let (files, sides) = self.files()?;
+        let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+        for file in [&self.output, &self.contacts].into_iter().flatten() {
+            check_output(file, read.iter().map(PathBuf::as_path), self.force)?;
+        }
+        let described: Vec<Result<InterfaceRow, Failure>> = files
+            .par_iter()
+            .map(|file| row(file, sides.as_ref(), options))
+            .collect();
+        let (mut rows, mut code) = (Vec::new(), 0);
+        for described in described {
+            match described {
+                Ok(row) => rows.push(row),
+                Err(failure) if files.len() == 1 => return Err(failure),
+                Err(failure) => {
+                    console.error(failure.text());
+                    code = code.max(failure.exit_code());
+                }
+            }
+        }
+        if let Some(path) = &self.output {
+            write_whole(path, |file| write_rows(file, &rows))?;
+        }
+        if let Some(path) = &self.contacts {
+            write_whole(path, |file| write_pairs(file, &rows))?;
+        }
+        match rows.as_slice() {
+            [row] => console.say(text(row)),
+            rows => console.say(listing(rows)),
+        }
+        console.result(&json!({ "complexes": objects(&rows) }))?;
+        Ok(code)
+    }
+
+    /// The files, and the chains of both sides where they are named.
+    fn files(&self) -> Result<(&[String], Option<[String; 2]>), Failure> {
+        let words = self.words.as_slice();
+        let named = words
+            .iter()
+            .rev()
+            .take_while(|word| is_chains(word))
+            .count();
+        let (files, chains) = words.split_at(words.len() - named);
+        let chains = match chains {
+            [] => None,
+            [first, second] => Some([first.clone(), second.clone()]),
+            others => {
+                return Err(Failure::input(format!(
+                    "chains are named {} times, and a complex has two sides",
+                    others.len()
+                ))
+                .remedy("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`"));
+            }
+        };
+        if files.is_empty() {
+            return Err(Failure::input("no complex is named")
+                .remedy("name a file, whose name has a point or a folder in it, as in ./complex"));
+        }
+        Ok((files, chains))
+    }
+}
+
+/// The interface of a file.
+fn row(
+    file: &str,
+    chains: Option<&[String; 2]>,
+    options: &DockOptions,
+) -> Result<InterfaceRow, Failure> {
+    let sides = ComplexSides::read(file, chains, &options.input.reading())?;
+    let molecules: [&Molecule; 2] = sides.molecules.each_ref();
+    let interface = Interface::of(molecules, options.terms.ph);
+    if interface.pairs.is_empty() {
+        return Err(Failure::input(format!(
+            "the sides do not touch: no heavy atoms of chains {} and {} are within 5 Å of each other",
+            sides.chains[0], sides.chains[1]
+        ))
+        .at(&sides.path)
+        .remedy("name the chains of both sides, as in `knotdock interface x.pdb H,L A`"));
+    }
+    let score: PlacedScore = score_in_place(molecules, options).map_err(refused)?;
+    Ok(InterfaceRow {
+        file: file.to_owned(),
+        chains: sides.chains,
+        interface,
+        score,
+    })
+}
+
+/// One complex in words.
+fn text(row: &InterfaceRow) -> String {
+    let InterfaceRow {
+        interface, score, ..
+    } = row;
+    let [first, second] = &row.chains;
+    let mut lines = vec![
+        [
+            "residue",
+            "residue",
+            "distance",
+            "hydrogen bonds",
+            "salt bridge",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+    ];
+    lines.extend(
+        interface
+            .pairs
+            .iter()
+            .filter(|pair| pair.hydrogen_bonds > 0 || pair.salt_bridge)
+            .map(|pair| {
+                let [a, b] = pair.residues.each_ref().map(|residue| {
+                    format!("{} {}:{}", residue.name, residue.chain, residue.number)
+                });
+                let bonds = pair.hydrogen_bonds;
+                vec![
+                    a,
+                    b,
+                    format!("{:.2}", pair.distance),
+                    if bonds > 0 {
+                        bonds.to_string()
+                    } else {
+                        String::new()
+                    },
+                    if pair.salt_bridge {
+                        "yes".to_owned()
+                    } else {
+                        String::new()
+                    },
+                ]
+            }),
+    );
+    format!(
+        "{}, chains {first} with {second}\n\
+         {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0})\n\
+         Score {:.1}: {}\n\n{}",
+        row.file,
+        counted(interface.pairs.len(), "contact"),
+        interface.residues[0],
+        interface.residues[1],
+        counted(interface.hydrogen_bonds, "hydrogen bond"),
+        counted(interface.salt_bridges, "salt bridge"),
+        interface.buried[0] + interface.buried[1],
+        interface.buried[0],
+        interface.buried[1],
+        score.pose_score(),
+        terms(score),
+        align(&lines)
+    )
+}
+
+/// The terms of a score in words.
+fn terms(score: &PlacedScore) -> String {
+    let effects = knotdock_scoring::terms::effect::Effect::ALL
+        .into_iter()
+        .filter_map(|effect| {
+            Some(format!(
+                "{} {:.1}",
+                effect.name(),
+                score.effects[effect as usize]?
+            ))
+        });
+    let pose = score
+        .pose_terms
+        .iter()
+        .filter_map(|(term, value)| Some(format!("{} {:.1}", term.label, value?)));
+    effects.chain(pose).collect::<Vec<_>>().join(", ")
+}
+
+/// Many complexes as a table.
+fn listing(rows: &[InterfaceRow]) -> String {
+    let header = [
+        "file",
+        "chains",
+        "contacts",
+        "hydrogen bonds",
+        "salt bridges",
+        "buried, Å²",
+        "score",
+    ];
+    let mut lines = vec![header.map(str::to_owned).to_vec()];
+    lines.extend(rows.iter().map(|row| {
+        let interface = &row.interface;
+        vec![
+            row.file.clone(),
+            format!("{} {}", row.chains[0], row.chains[1]),
+            interface.pairs.len().to_string(),
+            interface.hydrogen_bonds.to_string(),
+            interface.salt_bridges.to_string(),
+            format!("{:.0}", interface.buried[0] + interface.buried[1]),
+            format!("{:.1}", row.score.pose_score()),
+        ]
+    }));
+    align(&lines)
+}
