@@ -9,6 +9,7 @@ use knotdock::options::Threads;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::exported::ExportFolder;
 use knotdock::output::files::model_file::{PosedPair, model_file_name, write_model_file};
+use knotdock::output::records::ensemble_record::is_ensemble;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
@@ -126,6 +127,10 @@ impl Export {
 
     /// What is written: of an ensemble the rows of each member.
     fn exports(&self, folder: &Path) -> Result<Vec<Placed>, Failure> {
+        if !is_ensemble(&self.run) {
+            // A record that cannot be read says more of what is wrong than a table that is not there.
+            RecordedRun::read(&self.run.join("run.json"))?;
+        }
         let table_path = self.run.join("poses.csv");
         let table = PoseTable::read(&table_path)?;
         let mut places = ranked_places(&table, &table_path, &self.rank)?;
