@@ -9,6 +9,7 @@ use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
 use crate::dock_run::run::{files, number, rows, run};
+use crate::program::refused;
 
 fn example(name: &str) -> String {
     let file = format!("structures/examples/1ppe_{name}.pdb");
@@ -307,20 +308,11 @@ fn what_is_no_ensemble_is_refused() {
             "cannot be used with",
         ),
     ] {
-        let output = cargo_bin_cmd!("knotdock")
-            .current_dir(folder.path())
-            .arg("dock")
-            .args(options.split(' '))
-            .args(["--rotations", "24", "-o", "none", "--json"])
-            .output()
-            .unwrap();
-        assert_eq!(output.status.code(), Some(2), "{options}");
+        let words = format!("dock {options} --rotations 24 -o none");
+        let error = refused(folder.path(), words.split(' '));
         assert!(!folder.path().join("none").exists());
-        let error: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let error = &error["error"];
         let message = error["message"].as_str().unwrap();
         assert!(message.contains(said), "{options}: {message}");
-        assert!(error["remedy"].is_string(), "{options}: {error}");
     }
     // A run and an ensemble do not share a directory, and what reads one run says what this is.
     run(

@@ -9,6 +9,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 use crate::dock_run::run::{number, rows, run};
+use crate::program::refused;
 
 fn example(name: &str) -> String {
     let file = format!("structures/examples/1ppe_{name}_bound.pdb");
@@ -164,18 +165,10 @@ fn what_is_no_complex_is_refused() {
         ("three.pdb I J E", "named 3 times"),
         ("complex.pdb -o complex.pdb", "one of those read"),
     ] {
-        let output = cargo_bin_cmd!("knotdock")
-            .current_dir(folder.path())
-            .arg("interface")
-            .args(words.split(' '))
-            .arg("--json")
-            .output()
-            .unwrap();
-        assert_eq!(output.status.code(), Some(2), "{words}");
-        let error: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let message = error["error"]["message"].as_str().unwrap();
+        let words = format!("interface {words}");
+        let error = refused(folder.path(), words.split(' '));
+        let message = error["message"].as_str().unwrap();
         assert!(message.contains(said), "{words}: {message}");
-        assert!(error["error"]["remedy"].is_string(), "{words}");
     }
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder.path())

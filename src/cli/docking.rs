@@ -288,6 +288,15 @@ impl Docking {
     }
 }
 
+/// The refusal of a directory that holds something else, which `force` would replace.
+pub fn held_by_another(directory: &Path, force: &str) -> Failure {
+    Failure::input(
+        "the directory holds a run of other inputs or options, or by another version, or only part of this one",
+    )
+    .at(directory)
+    .remedy(format!("pass {force} to replace it, or choose another directory with -o"))
+}
+
 /// Writes the scripts that show complexes in other programs, if there are any.
 pub fn write_scripts(staging: &Staging, complexes: &[ViewedComplex]) -> Result<(), Failure> {
     if !complexes.is_empty() {

@@ -8,6 +8,7 @@ use knotdock::output::tables::batch_results::RunSummary;
 use serde_json::{Value, json};
 
 use crate::cli::dock::Dock;
+use crate::cli::docking::held_by_another;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::run_summary::summary_line;
@@ -74,11 +75,7 @@ fn dock_pair(dock: Dock, threads: usize, console: Console) -> Result<bool, Failu
             return Ok(false);
         }
         if let Some(directory) = prepared.in_the_way() {
-            return Err(Failure::input(
-                "the directory holds a run of other inputs or options, or by another version, or only part of this one",
-            )
-            .at(directory)
-            .remedy("pass `-- --force` to replace it, or choose another directory with -o"));
+            return Err(held_by_another(directory, "`-- --force`"));
         }
         prepared.run(silent, console)?;
         Ok(true)

@@ -17,7 +17,7 @@ use serde_json::Value;
 use crate::cli::arguments::native::NativeFiles;
 use crate::cli::arguments::options::GivenOptions;
 use crate::cli::calibrate::cost_model;
-use crate::cli::docking::{Clock, Docking};
+use crate::cli::docking::{Clock, Docking, held_by_another};
 use crate::cli::ensemble::laid::{Laid, LaidSides};
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::conformations::Conformation;
@@ -211,11 +211,7 @@ impl Ensemble {
             return Ok(false);
         }
         if let Some(directory) = docking.in_the_way() {
-            return Err(Failure::input(
-                "the directory holds a run of other inputs or options, or by another version, or only part of this one",
-            )
-            .at(directory)
-            .remedy("pass --force to replace it, or choose another directory with -o"));
+            return Err(held_by_another(directory, "--force"));
         }
         docking.run(SILENT, notices)?;
         Ok(true)

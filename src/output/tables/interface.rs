@@ -73,14 +73,11 @@ pub fn objects(rows: &[InterfaceRow]) -> Vec<Value> {
 /// Those of the stream.
 pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Result<()> {
     let mut table = TableWriter::new(stream);
-    let mut header = None;
+    if let Some(first) = rows.first() {
+        table.row(first.columns().keys())?;
+    }
     for row in rows {
-        let columns = row.columns();
-        if header.is_none() {
-            table.row(columns.keys())?;
-            header = Some(());
-        }
-        table.row(columns.values().map(field))?;
+        table.row(row.columns().values().map(field))?;
     }
     table.flush()
 }
