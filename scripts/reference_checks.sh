@@ -22,7 +22,7 @@ install() {
 }
 # DockQ wants an older numpy than the rest.
 install dockq dockq
-install others rdkit gemmi solids
+install others rdkit gemmi solids biotite
 [ "${1:-}" != --install ] || exit 0
 old_numpy() { "$target/python/dockq/bin/python" "$@"; }
 python() { "$target/python/others/bin/python" "$@"; }
@@ -41,7 +41,10 @@ poses() {
     old_numpy scripts/checks/check_atom_pairs.py
     old_numpy scripts/reference/pair_sum.py "$knotdock"
 }
-shapes() { python scripts/checks/check_rdkit.py "$knotdock" structures/examples; }
+shapes() {
+    python scripts/checks/check_rdkit.py "$knotdock" structures/examples
+    python scripts/checks/check_interface.py "$knotdock" structures/examples
+}
 # The full set of files, five times as many, goes without --few.
 files() {
     python scripts/checks/check_gemmi.py "$knotdock" "$target/stress" --few

@@ -25,6 +25,7 @@ pub mod priors;
 pub mod progress;
 pub mod rank;
 pub mod refine;
+pub mod report;
 pub mod restraints;
 pub mod score;
 pub mod search;

@@ -159,10 +159,10 @@ fn what_is_no_complex_is_refused() {
     for (words, said) in [
         ("three.pdb", "the file has E, I, J"),
         ("receptor.pdb", "the file has E"),
-        ("complex.pdb E", "named 1 times"),
+        ("complex.pdb E", "chains of one side"),
         ("complex.pdb E Z", "Z"),
         ("none.pdb", "no such file"),
-        ("three.pdb I J E", "named 3 times"),
+        ("three.pdb I J E", "chains of 3 sides"),
         ("complex.pdb -o complex.pdb", "one of those read"),
     ] {
         let words = format!("interface {words}");

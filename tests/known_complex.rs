@@ -229,3 +229,75 @@ const ROWS_OF_ONE_COMPLEX: [&str; 2] = [
     "334,0.18696203313426699,-0.1310166216455086,0.5704582597886773,-0.7889595787223659,6.819910548451693,20.686046678738595,11.02562402964174",
     "334,0.18696203313426699,0.1310166216455086,-0.5704582597886773,0.7889595787223659,15.376229103972596,15.248683827162377,11.271083018425106",
 ];
+
+/// Complexes of any program are measured where they stand: those of a run as its table says, the known one as itself, and
+/// one that cannot be read costs no other.
+#[test]
+fn complex_files_are_measured_where_they_stand() {
+    let folder = place();
+    let native = atoms("receptor_bound", 'E') + &atoms("ligand_bound", 'I');
+    fs::write(folder.path().join("native.pdb"), native).unwrap();
+    let dock = "dock receptor.pdb ligand.pdb --native native.pdb --rotations 60 --write-top 3 -o run --quiet";
+    succeed(folder.path(), dock.split_whitespace());
+    let rows = crate::dock_run::run::rows(&folder.path().join("run"));
+    let files = "run/top/rank_0001.pdb run/top/rank_0002.pdb run/top/rank_0003.pdb";
+    let evaluate = format!("evaluate {files} native.pdb --native native.pdb -o models.csv");
+    let found = measured(folder.path(), &evaluate);
+    let complexes = found["complexes"].as_array().unwrap();
+    assert_eq!(complexes.len(), 4);
+    for (complex, row) in complexes.iter().zip(&rows[..3]) {
+        for column in ["irmsd", "lrmsd", "fnat", "dockq"] {
+            let expected: f64 = row[column].parse().unwrap();
+            // Files have three decimals, and a contact may lie at its limit.
+            let own = complex[column].as_f64().unwrap();
+            assert!((own - expected).abs() < 0.02, "{column}: {own} {expected}");
+        }
+        assert_eq!(complex["capri"], row["capri"].as_str());
+    }
+    assert!(complexes[3]["irmsd"].as_f64().unwrap() < 1e-6);
+    assert!((complexes[3]["dockq"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    let mut table = csv::Reader::from_path(folder.path().join("models.csv")).unwrap();
+    assert_eq!(table.records().count(), 4);
+    let words = format!("evaluate {files} nowhere.pdb A B --native native.pdb --json");
+    let mut program = cargo_bin_cmd!("knotdock");
+    let output = program
+        .current_dir(folder.path())
+        .args(words.split_whitespace())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(said["complexes"].as_array().unwrap().len(), 3);
+    for words in [
+        "evaluate native.pdb",
+        "evaluate native.pdb E --native native.pdb",
+        "evaluate native.pdb --native native.pdb --receptor receptor.pdb",
+        "evaluate run run --native native.pdb",
+    ] {
+        crate::program::refused(folder.path(), words.split_whitespace());
+    }
+}
+
+/// Without `-o` the first ten rows are shown, and all are counted.
+#[test]
+fn a_long_table_is_summed_up() {
+    let folder = place();
+    let native = atoms("receptor_bound", 'E') + &atoms("ligand_bound", 'I');
+    fs::write(folder.path().join("native.pdb"), native).unwrap();
+    let table = fs::read_to_string(folder.path().join("poses.csv")).unwrap();
+    let (header, row) = table.trim_end().split_once("\n1,").unwrap();
+    let many: String = (1..=30).map(|rank| format!("\n{rank},{row}")).collect();
+    fs::write(folder.path().join("poses.csv"), format!("{header}{many}\n")).unwrap();
+    let output = succeed(folder.path(), EVALUATE.split_whitespace());
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("1 of the first 1, 10 of the first 10, 30 of all 30"),
+        "{text}"
+    );
+    assert!(text.contains("The first 10 of 30 rows are shown"), "{text}");
+    assert_eq!(
+        text.lines().filter(|line| line.ends_with("medium")).count(),
+        10,
+        "{text}"
+    );
+}

@@ -38,6 +38,7 @@ mod mesh_docking;
 mod paper_figures;
 mod reading;
 mod refine;
+mod reports;
 mod residues_by_name;
 mod restraints;
 mod rings;

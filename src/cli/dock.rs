@@ -25,7 +25,8 @@ use crate::cli::messages::failure::Failure;
 
 /// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
 ///
-/// Writes poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of the run. The same input
+/// Writes report.html to look at, poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of
+/// the run. The same input
 /// and options give the same bytes for any number of threads, except with --budget.
 #[derive(Args, Debug)]
 pub struct Dock {

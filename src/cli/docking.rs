@@ -10,6 +10,7 @@ use knotdock::dock::run::dock_until;
 use knotdock::error::SearchError;
 use knotdock::evaluate::Evaluator;
 use knotdock::options::{Precision, SharpChoice};
+use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::Staging;
 use knotdock::output::files::viewers::{
     CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol,
@@ -19,10 +20,12 @@ use knotdock::output::records::manifest::{
 };
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::interface_shares::{INTERFACE, write_shares};
 use knotdock::output::tables::quality;
 use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
+use knotdock::report::{RunReport, Viewer};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::{CostModel, Workload};
@@ -182,6 +185,7 @@ impl Docking {
         Ok(json!({
             "directory": directory.display().to_string(),
             "poses": directory.join("poses.csv").display().to_string(),
+            "report": written.report.then(|| directory.join(REPORT).display().to_string()),
             "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
             "best": written.best,
             "run": written.manifest,
@@ -222,6 +226,13 @@ impl Docking {
                 .collect();
             write_scripts(staging, &viewed)?;
         }
+        let shown = table.table();
+        let contacts = request.bodies.contacts(&shown, &request.options);
+        if let Some(contacts) = &contacts {
+            let [receptor, ligand] = contacts.shares();
+            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
+            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+        }
         let inputs = request.inputs(self.prepared.sampling.as_deref())?;
         let manifest = Manifest::new(ManifestParts {
             inputs: &inputs,
@@ -246,8 +257,21 @@ impl Docking {
         })
         .map_err(Failure::other)?;
         staging.write("run.json", |file| manifest.write_to(file))?;
+        let record = serde_json::to_value(&manifest).map_err(Failure::other)?;
+        if !output.no_report {
+            let report = RunReport {
+                record: &record,
+                options: &request.options,
+                table: &shown,
+                bodies: request.bodies.shown(contacts.as_ref()),
+                directory: &self.directory.display().to_string(),
+            };
+            let text = report.text(Viewer::embedded());
+            staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+        }
         Ok(Written {
-            manifest: serde_json::to_value(&manifest).map_err(Failure::other)?,
+            manifest: record,
+            report: !output.no_report,
             complexes: written.names,
             best,
             quality,
@@ -312,6 +336,8 @@ struct Written {
     best: Vec<Value>,
     /// Columns of the table that a known complex added.
     quality: Vec<Column>,
+    /// Whether there is a report.
+    report: bool,
     /// Names of the complexes in `top/`.
     complexes: Vec<String>,
     /// run.json.

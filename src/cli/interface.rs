@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::inputs::complex_sides::{ComplexSides, is_chains};
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::library_errors::refused;
@@ -53,7 +53,7 @@ impl InterfaceCommand {
 
     /// Describes them on the threads of the caller.
     fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Failure> {
-        let (files, sides) = self.files()?;
+        let (files, sides) = files_and_chains(&self.words, "interface")?;
         let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
         for file in [&self.output, &self.contacts].into_iter().flatten() {
             check_output(file, read.iter().map(PathBuf::as_path), self.force)?;
@@ -85,33 +85,6 @@ impl InterfaceCommand {
         }
         console.result(&json!({ "complexes": objects(&rows) }))?;
         Ok(code)
-    }
-
-    /// The files, and the chains of both sides where they are named.
-    fn files(&self) -> Result<(&[String], Option<[String; 2]>), Failure> {
-        let words = self.words.as_slice();
-        let named = words
-            .iter()
-            .rev()
-            .take_while(|word| is_chains(word))
-            .count();
-        let (files, chains) = words.split_at(words.len() - named);
-        let chains = match chains {
-            [] => None,
-            [first, second] => Some([first.clone(), second.clone()]),
-            others => {
-                return Err(Failure::input(format!(
-                    "chains are named {} times, and a complex has two sides",
-                    others.len()
-                ))
-                .remedy("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`"));
-            }
-        };
-        if files.is_empty() {
-            return Err(Failure::input("no complex is named")
-                .remedy("name a file, whose name has a point or a folder in it, as in ./complex"));
-        }
-        Ok((files, chains))
     }
 }
 
@@ -187,7 +160,7 @@ fn text(row: &InterfaceRow) -> String {
     );
     format!(
         "{}, chains {first} with {second}\n\
-         {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0})\n\
+         {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0}){}\n\
          Score {:.1}: {}\n\n{}",
         row.file,
         counted(interface.pairs.len(), "contact"),
@@ -198,6 +171,10 @@ fn text(row: &InterfaceRow) -> String {
         interface.buried[0] + interface.buried[1],
         interface.buried[0],
         interface.buried[1],
+        match interface.shape_complementarity {
+            Some(value) => format!("; shape complementarity {value:.2}"),
+            None => String::new(),
+        },
         score.pose_score(),
         terms(score),
         align(&lines)
@@ -231,6 +208,7 @@ fn listing(rows: &[InterfaceRow]) -> String {
         "hydrogen bonds",
         "salt bridges",
         "buried, Å²",
+        "Sc",
         "score",
     ];
     let mut lines = vec![header.map(str::to_owned).to_vec()];
@@ -243,6 +221,9 @@ fn listing(rows: &[InterfaceRow]) -> String {
             interface.hydrogen_bonds.to_string(),
             interface.salt_bridges.to_string(),
             format!("{:.0}", interface.buried[0] + interface.buried[1]),
+            interface
+                .shape_complementarity
+                .map_or_else(String::new, |value| format!("{value:.2}")),
             format!("{:.1}", row.score.pose_score()),
         ]
     }));

@@ -18,6 +18,7 @@ mod morph;
 mod obstacle;
 mod refine;
 mod refining;
+mod report;
 mod sample;
 mod score;
 mod se3;
@@ -64,6 +65,7 @@ enum Command {
     Evaluate(evaluate::Evaluate),
     Score(Box<score::Score>),
     Interface(Box<interface::InterfaceCommand>),
+    Report(report::Report),
     Inspect(inspect::Inspect),
     Obstacle(Box<obstacle::Obstacle>),
     Morph(Box<morph::Morph>),
@@ -104,13 +106,18 @@ pub fn main() -> ExitCode {
         },
         Command::Export(command) => command.run(console),
         Command::Refine(command) => command.run(console),
-        Command::Evaluate(command) => command.run(console),
+        Command::Evaluate(command) => match command.run(console) {
+            Ok(0) => Ok(()),
+            Ok(code) => return ExitCode::from(code),
+            Err(failure) => Err(failure),
+        },
         Command::Score(command) => command.run(console),
         Command::Interface(command) => match command.run(console) {
             Ok(0) => Ok(()),
             Ok(code) => return ExitCode::from(code),
             Err(failure) => Err(failure),
         },
+        Command::Report(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
         Command::Obstacle(command) => command.run(console),
         Command::Morph(command) => command.run(console),

@@ -24,11 +24,12 @@ use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
+use crate::cli::report::write_listed;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
 /// and with combinations.
 ///
-/// Writes tradeoff.csv, tradeoff.json and tradeoff.svg into a directory, and says which setting to take.
+/// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and report.html into a directory, and says which setting to take.
 #[derive(Args, Debug)]
 pub struct TradeoffCommand {
     /// What stays, as for `knotdock dock`.
@@ -126,6 +127,7 @@ impl TradeoffCommand {
         .map_err(Failure::other)?;
         staging.write("tradeoff.json", |file| record.write_to(file))?;
         warn_set_aside(&staging.commit()?, console);
+        write_listed(&directory, console)?;
 
         console.say(format!("\n{}", table(&tradeoff)));
         if let Some(advice) = &advice {

@@ -11,17 +11,24 @@
 //! - **Salt bridge**: a nitrogen of a positive side chain within 4 Å of an oxygen of a negative one (Barlow & Thornton,
 //!   J. Mol. Biol. 168 (1983) 867-885), at most one for two residues. The charges of the electrostatic effect say which
 //!   side chains are charged; ends of chains are not counted.
+//! - **Shape complementarity**: Sc of Lawrence & Colman (J. Mol. Biol. 234 (1993) 946-950).
 //! - **Buried surface**: accessible area (probe of 1.4 Å) alone less that in the complex.
 
+mod complementarity;
+mod contacts;
 mod score;
+mod shares;
+mod surface_dots;
 
+pub use complementarity::shape_complementarity;
+pub use contacts::{Contact, ContactFinder, heavy_residues};
 pub use score::{PlacedScore, score_in_place};
+pub use shares::{CONSENSUS, ResidueShare, residue_shares};
 
-use knotdock_structures::PolarAtom;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{Atom, Molecule};
-use knotdock_structures::neighbours::{CellList, Member};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use crate::pose_geometry::SURFACE_POINTS;
 
@@ -31,13 +38,8 @@ pub const CONTACT: f64 = 5.0;
 pub const HYDROGEN_BOND: f64 = 3.5;
 /// Largest distance between the charged atoms of a salt bridge, in Å.
 pub const SALT_BRIDGE: f64 = 4.0;
-/// Least charge of a side chain that is charged, in e.
-const CHARGED: f64 = 0.5;
-/// Atoms that belong to no side chain.
-const BACKBONE: [&str; 5] = ["N", "CA", "C", "O", "OXT"];
-
 /// A residue as files name it.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct ResidueName {
     /// Its chain, by the author's name.
     pub chain: String,
@@ -48,7 +50,7 @@ pub struct ResidueName {
 }
 
 impl ResidueName {
-    fn of(atom: &Atom) -> Self {
+    pub(crate) fn of(atom: &Atom) -> Self {
         let insertion = atom.insertion_code.map(String::from).unwrap_or_default();
         Self {
             chain: atom.chain.clone(),
@@ -84,129 +86,41 @@ pub struct Interface {
     pub salt_bridges: usize,
     /// Surface that each side loses to the other, in Å^2.
     pub buried: [f64; 2],
-}
-
-/// What the pairs of atoms say of two residues.
-#[derive(Default)]
-struct Found {
-    /// Square of the least distance.
-    square: f64,
-    hydrogen_bonds: usize,
-    salt_bridge: bool,
-}
-
-/// An atom with what it may do.
-struct Site<'a> {
-    residue: usize,
-    atom: &'a Atom,
-    polar: PolarAtom,
-    /// Sign of the charge that its side chain may bring to a salt bridge by it.
-    sign: i8,
+    /// Shape complementarity Sc, 1 for surfaces that match; `None` where nothing is buried but a rim.
+    pub shape_complementarity: Option<f64>,
 }
 
 impl Interface {
     /// The interface of two molecules where they stand; charges are those at a pH.
     pub fn of([first, second]: [&Molecule; 2], ph: f64) -> Self {
-        let (first_sites, first_names) = sites(first, ph);
-        let (second_sites, second_names) = sites(second, ph);
-        let members = second_sites.iter().enumerate().map(|(item, site)| Member {
-            position: site.atom.position,
-            item,
-        });
-        let cells = CellList::new(members.collect(), CONTACT);
-        let mut found: BTreeMap<(usize, usize), Found> = BTreeMap::new();
-        for one in &first_sites {
-            cells.visit_within(one.atom.position, CONTACT, |&at, square| {
-                let other = &second_sites[at];
-                let pair = found.entry((one.residue, other.residue)).or_insert(Found {
-                    square,
-                    ..Found::default()
-                });
-                pair.square = pair.square.min(square);
-                pair.hydrogen_bonds += usize::from(is_bond(one, other, square));
-                pair.salt_bridge |= is_bridge(one, other, square);
-            });
-        }
-        let pairs: Vec<ResiduePair> = found
-            .iter()
-            .map(|(&(i, j), found)| ResiduePair {
-                residues: [first_names[i].clone(), second_names[j].clone()],
-                distance: found.square.sqrt(),
-                hydrogen_bonds: found.hydrogen_bonds,
-                salt_bridge: found.salt_bridge,
-            })
-            .collect();
-        let touching = |side: fn(&(usize, usize)) -> usize| {
-            let residues: std::collections::BTreeSet<usize> = found.keys().map(side).collect();
-            residues.len()
+        let finder = ContactFinder::new([first, second], ph);
+        let contacts = finder.contacts(&[Pose::identity()]);
+        let [first_names, second_names] = finder.residues();
+        let touching = |side: usize| {
+            let residues = contacts.iter().map(|contact| contact.residues[side]);
+            residues.collect::<BTreeSet<usize>>().len()
+        };
+        let pair = |contact: &Contact| ResiduePair {
+            residues: [
+                first_names[contact.residues[0]].clone(),
+                second_names[contact.residues[1]].clone(),
+            ],
+            distance: contact.distance,
+            hydrogen_bonds: contact.hydrogen_bonds,
+            salt_bridge: contact.salt_bridge,
         };
         Self {
-            residues: [touching(|pair| pair.0), touching(|pair| pair.1)],
-            hydrogen_bonds: pairs.iter().map(|pair| pair.hydrogen_bonds).sum(),
-            salt_bridges: pairs.iter().filter(|pair| pair.salt_bridge).count(),
+            residues: [touching(0), touching(1)],
+            hydrogen_bonds: contacts.iter().map(|contact| contact.hydrogen_bonds).sum(),
+            salt_bridges: contacts
+                .iter()
+                .filter(|contact| contact.salt_bridge)
+                .count(),
             buried: first.buried_areas(second, SURFACE_POINTS),
-            pairs,
+            shape_complementarity: shape_complementarity([first, second]),
+            pairs: contacts.iter().map(pair).collect(),
         }
     }
-}
-
-/// The heavy atoms of a molecule, and the names of the residues that they point to.
-fn sites(molecule: &Molecule, ph: f64) -> (Vec<Site<'_>>, Vec<ResidueName>) {
-    let heavy: Vec<bool> = molecule
-        .atoms
-        .iter()
-        .map(|atom| !atom.is_hydrogen())
-        .collect();
-    let (polar, labels) = (molecule.polar_atoms(), molecule.labels(ph));
-    let (mut sites, mut names) = (Vec::new(), Vec::new());
-    for (residue, atoms) in molecule.atoms_by_residue(&heavy).into_iter().enumerate() {
-        let of_side_chain = atoms
-            .iter()
-            .filter(|&&at| !BACKBONE.contains(&molecule.atoms[at].name.as_str()));
-        let charge: f64 = of_side_chain.map(|&at| labels.charges[at]).sum();
-        for &at in &atoms {
-            let atom = &molecule.atoms[at];
-            let is_end = BACKBONE.contains(&atom.name.as_str());
-            sites.push(Site {
-                residue,
-                atom,
-                polar: polar[at],
-                sign: match atom.element.as_str() {
-                    "N" if charge > CHARGED && !is_end => 1,
-                    "O" if charge < -CHARGED && !is_end => -1,
-                    _ => 0,
-                },
-            });
-        }
-        names.extend(
-            atoms
-                .first()
-                .map(|&at| ResidueName::of(&molecule.atoms[at])),
-        );
-    }
-    (sites, names)
-}
-
-/// Whether two atoms make a hydrogen bond.
-fn is_bond(one: &Site, other: &Site, square: f64) -> bool {
-    square <= HYDROGEN_BOND * HYDROGEN_BOND
-        && one.polar.may_bond(&other.polar)
-        && faces(one, other)
-        && faces(other, one)
-}
-
-/// Whether an atom's free side is towards another; one without a direction has no other side.
-fn faces(one: &Site, other: &Site) -> bool {
-    let direction = one.polar.direction;
-    let along: f64 = (0..3)
-        .map(|axis| direction[axis] * (other.atom.position[axis] - one.atom.position[axis]))
-        .sum();
-    direction == [0.0; 3] || along > 0.0
-}
-
-/// Whether two atoms make a salt bridge.
-fn is_bridge(one: &Site, other: &Site, square: f64) -> bool {
-    square <= SALT_BRIDGE * SALT_BRIDGE && one.sign * other.sign < 0
 }
 
 #[cfg(test)]

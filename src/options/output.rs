@@ -14,4 +14,8 @@ pub struct OutputOptions {
     /// Add the diagnostic columns to poses.csv.
     #[arg(long)]
     pub diagnostics: bool,
+    /// Write no report.html.
+    #[arg(long)]
+    #[serde(default)]
+    pub no_report: bool,
 }

@@ -25,6 +25,7 @@ use crate::cli::dock::Dock;
 use crate::cli::inputs::batch_pairs::{Pair, pairs};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::report::write_listed;
 
 /// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
 ///
@@ -162,6 +163,7 @@ impl Batch {
                 Ok(write_results(results, &table, &others)?)
             },
         )?;
+        write_listed(directory, console)?;
         let done = table
             .iter()
             .filter(|pair| matches!(pair.outcome, Some(Ok(_))));

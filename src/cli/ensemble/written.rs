@@ -22,6 +22,7 @@ use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
+use crate::cli::report::write_listed;
 
 impl Ensemble {
     /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
@@ -45,6 +46,9 @@ impl Ensemble {
         let record = serde_json::to_value(&record).map_err(Failure::other)?;
         staging.write(RECORD, |file| to_json(file, &record))?;
         warn_set_aside(&staging.commit()?, notices);
+        if !self.given.options.output.no_report {
+            write_listed(&self.directory, notices)?;
+        }
         self.report(joint, console);
         let top = self.directory.join("top");
         let complexes = viewed

@@ -11,8 +11,9 @@ use knotdock::output::files::assemblies::write_assemblies;
 use knotdock::output::files::complexes::write_complexes;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
-use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::report::{ReportBodies, RunContacts};
 use knotdock_structures::molecule::{ChainMap, Format, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 
@@ -200,6 +201,35 @@ impl Bodies {
                     chains: None,
                 })
             }
+        }
+    }
+
+    /// The contacts of molecules in the poses of a table.
+    pub fn contacts(&self, table: &PoseTable, options: &DockOptions) -> Option<RunContacts<'_>> {
+        let Self::Molecules(inputs) = self else {
+            return None;
+        };
+        let molecules = inputs.each_ref().map(|input| &input.molecule);
+        let arrangement = Arrangement::from(options.search.symmetry);
+        Some(RunContacts::of(
+            molecules,
+            table,
+            arrangement,
+            options.terms.ph,
+        ))
+    }
+
+    /// What a report shows of them.
+    pub fn shown<'a>(&'a self, contacts: Option<&'a RunContacts<'a>>) -> ReportBodies<'a> {
+        match (self, contacts) {
+            (Self::Molecules(inputs), Some(contacts)) => {
+                let molecules = inputs.each_ref().map(|input| &input.molecule);
+                ReportBodies::Molecules(molecules, contacts)
+            }
+            (Self::Meshes(inputs), _) => {
+                ReportBodies::Solids(inputs.each_ref().map(ShapeInput::surface))
+            }
+            (Self::Molecules(_), None) => unreachable!("molecules come with their contacts"),
         }
     }
 

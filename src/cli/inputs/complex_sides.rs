@@ -51,8 +51,42 @@ impl ComplexSides {
     }
 }
 
+/// The files that words name, and the chains of both sides where they stand behind them.
+///
+/// # Errors
+/// [`Failure`] where the words name no file, or the chains of one side or of more than two.
+pub fn files_and_chains<'a>(
+    words: &'a [String],
+    command: &str,
+) -> Result<(&'a [String], Option<[String; 2]>), Failure> {
+    let last = words.iter().rev();
+    let named = last.take_while(|word| is_chains(word)).count();
+    let (files, chains) = words.split_at(words.len() - named);
+    let chains = match chains {
+        [] => None,
+        [first, second] => Some([first.clone(), second.clone()]),
+        others => {
+            let sides = match others.len() {
+                1 => "one side".to_owned(),
+                count => format!("{count} sides"),
+            };
+            return Err(Failure::input(format!(
+                "the chains of {sides} are named, and a complex has two"
+            ))
+            .remedy(format!(
+                "name the chains of both sides behind the files, as in `knotdock {command} x.pdb H,L A`"
+            )));
+        }
+    };
+    if files.is_empty() {
+        return Err(Failure::input("no complex is named")
+            .remedy("name a file, whose name has a point or a folder in it, as in ./complex"));
+    }
+    Ok((files, chains))
+}
+
 /// Whether a word names chains and no file: it has neither a point nor a folder.
-pub fn is_chains(word: &str) -> bool {
+fn is_chains(word: &str) -> bool {
     !word.contains(['.', '/', '\\'])
 }
 

@@ -17,6 +17,7 @@ use knotdock::output::records::recorded_run::RecordedRunError;
 use knotdock::output::tables::pair_table::PairTableError;
 use knotdock::output::tables::poses_reader::PoseTableError;
 use knotdock::predictions::PredictionError;
+use knotdock::report::{ListError, ViewerError};
 use knotdock::restraints::RestraintFileError;
 use knotdock::threads::ThreadsError;
 use knotdock_structures::ball_file::BallFileError;
@@ -51,6 +52,18 @@ pub fn refused(error: SearchError) -> Failure {
             unreadable(&error, at.path.as_deref(), at.line, remedy)
         }
         _ => Failure::input(&error).remedy(remedy),
+    }
+}
+
+impl From<ListError> for Failure {
+    fn from(error: ListError) -> Self {
+        Self::input(&error).at(&error.path).remedy(error.remedy())
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Self {
+        Self::input(&error).at(&error.path).remedy(error.remedy())
     }
 }
 

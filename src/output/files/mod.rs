@@ -15,6 +15,7 @@ mod own_files;
 mod places;
 pub mod product;
 pub mod sample_picture;
+pub mod seal;
 pub mod staging;
 mod staging_error;
 mod staging_folder;

@@ -16,6 +16,7 @@ use crate::bounded_read::MAX_RECORD;
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::product::{EXPORTED, Product};
+use super::seal::{REPORT, is_sealed};
 use super::whole_file::is_blank;
 
 /// What a directory holds of a product.
@@ -76,7 +77,7 @@ pub(super) fn survey(product: &Product, directory: &Path) -> io::Result<Found> {
         Record::None | Record::Broken => None,
         Record::Foreign => return Ok(Found::Foreign(first)),
     };
-    let own = match recorded {
+    let mut own = match recorded {
         Some(recorded) => unchanged(directory, recorded)?,
         None => {
             if let Some(name) = foreign(product, directory)? {
@@ -85,6 +86,11 @@ pub(super) fn survey(product: &Product, directory: &Path) -> io::Result<Found> {
             alike(product, directory)?
         }
     };
+    // A report is not recorded: it says for itself that it is as it was written.
+    let report = directory.join(REPORT);
+    if product.may_hold(Path::new(REPORT)) && is_sealed(&report) {
+        own.0.insert(REPORT.into(), sha256_of_file(&report)?);
+    }
     Ok(match record {
         Record::Whole(_) => Found::Run(own),
         _ => Found::Broken(own),

@@ -2,6 +2,8 @@
 
 use std::path::{Component, Path};
 
+use super::seal::{BEGINNING, REPORT};
+
 /// Files that a command puts into its directory.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Product {
@@ -22,6 +24,8 @@ pub const RUN: Product = Product {
         ("poses.csv", "rank,score,cluster,"),
         ("view.pml", "# The best poses in PyMOL"),
         ("view.cxc", "# The best poses in ChimeraX"),
+        ("interface.csv", "side,chain,residue,"),
+        (REPORT, BEGINNING),
     ],
     folder: Some("top"),
     not_beside: &["ensemble.json"],
@@ -40,6 +44,7 @@ pub const TRADEOFF: Product = Product {
     files: &[
         ("tradeoff.csv", "setting,parameter,"),
         ("tradeoff.svg", "<svg width="),
+        (REPORT, BEGINNING),
     ],
     folder: None,
     not_beside: &[],

@@ -45,6 +45,10 @@ impl InterfaceRow {
         );
         add("buried_area_1", json!(interface.buried[0]));
         add("buried_area_2", json!(interface.buried[1]));
+        add(
+            "shape_complementarity",
+            json!(interface.shape_complementarity),
+        );
         add("pose_score", json!(score.pose_score()));
         add("search_score", json!(score.search_score));
         for effect in Effect::ALL {

@@ -9,7 +9,7 @@ use crate::dock::outcome::RankedPose;
 use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 use crate::output::tables::pose_columns::{PoseColumn, columns};
-use crate::output::tables::poses::{PoseRow, row_object};
+use crate::output::tables::poses::{PoseRow, PoseTable, row_object};
 
 /// The table of a search's poses in the order given, ranked from 1.
 pub struct RunTable<'a> {
@@ -50,6 +50,18 @@ impl<'a> RunTable<'a> {
             record.push_field(column.fields.get(index).map_or("", String::as_str));
         }
         record
+    }
+
+    /// The table as it would be read from its file.
+    pub fn table(&self) -> PoseTable {
+        let poses = self.poses.iter().enumerate();
+        PoseTable {
+            header: self.header(),
+            records: poses
+                .map(|(index, pose)| self.record(index, pose))
+                .collect(),
+            rows: pose_rows(self.poses),
+        }
     }
 
     /// Rows as JSON objects with the columns' names, as those of a table that is read have. Indices past the end are

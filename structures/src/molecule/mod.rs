@@ -30,7 +30,7 @@ pub use self::chemistry::hydrogen_bonds::{HydrogenBonding, hydrogen_bonding};
 pub use self::chemistry::labels::{LabelReport, Labels};
 pub use self::chemistry::rotamers::{Rotamer, log_probability, rotamers};
 pub use self::chemistry::standard_names::{plain_residue_name, standard_residue_name};
-pub use self::model::accessible::PROBE;
+pub use self::model::accessible::{PROBE, spiral};
 pub use self::model::atom::Atom;
 pub use self::model::copies::CopiesError;
 pub use self::model::format::Format;

@@ -77,8 +77,8 @@ impl Molecule {
     }
 }
 
-/// Directions spread evenly over the sphere.
-fn spiral(count: usize) -> Vec<[f64; 3]> {
+/// Directions spread evenly over the sphere: a spiral of Fibonacci, of `count` > 0 unit vectors.
+pub fn spiral(count: usize) -> Vec<[f64; 3]> {
     let golden = std::f64::consts::PI * (1.0 + 5f64.sqrt());
     (0..count)
         .map(|k| {

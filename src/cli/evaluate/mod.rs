@@ -1,4 +1,6 @@
-//! `knotdock evaluate`: how near the poses of a table are to a known complex.
+//! `knotdock evaluate`: how near the poses of a table, or the complexes of files, are to a known complex.
+
+mod complexes;
 
 use std::path::{Path, PathBuf};
 
@@ -20,14 +22,18 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
 
-/// Measure the poses of a run against a known complex.
+/// Measure the poses of a run, or complexes of any program, against a known complex.
 ///
-/// Gives interface and ligand RMSD (Å), the fraction of native contacts, DockQ and the CAPRI class of every pose.
+/// Gives interface and ligand RMSD (Å), the fraction of native contacts, DockQ and the CAPRI class of each.
 #[derive(Args, Debug)]
 pub struct Evaluate {
-    /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz.
-    #[arg(value_name = "DIR|POSES.CSV")]
-    poses: PathBuf,
+    /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz; or complex files
+    /// (.pdb, .ent, .cif, each also .gz), and perhaps the chains of their sides behind them, such as H,L A.
+    #[arg(
+        value_name = "DIR|POSES.CSV|COMPLEX ... [CHAINS CHAINS]",
+        required = true
+    )]
+    words: Vec<String>,
     /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json, and read as the run
     /// read it].
     #[arg(long, value_name = "FILE")]
@@ -50,17 +56,28 @@ pub struct Evaluate {
 }
 
 impl Evaluate {
-    /// Evaluates.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
-        threads::on(self.threads.count(), || self.evaluate(console))?
+    /// Evaluates; the exit code: 2 where some complexes could not be.
+    pub fn run(self, console: Console) -> Result<u8, Failure> {
+        threads::on(self.threads.count(), || {
+            if self.words.iter().any(|word| is_complex(word)) {
+                return self.complexes(console);
+            }
+            match self.words.as_slice() {
+                [poses] => self.evaluate(Path::new(poses), console).map(|()| 0),
+                _ => Err(
+                    Failure::input("the poses of one run are evaluated at a time").remedy(
+                        "name one directory or table; of complexes, files that end in .pdb or .cif",
+                    ),
+                ),
+            }
+        })?
     }
 
-    /// Evaluates on the threads of the caller.
-    fn evaluate(self, console: Console) -> Result<(), Failure> {
-        let table_path = if self.poses.is_dir() {
-            self.poses.join("poses.csv")
-        } else {
-            self.poses.clone()
+    /// Evaluates the poses of a run or a table.
+    fn evaluate(&self, poses: &Path, console: Console) -> Result<(), Failure> {
+        let table_path = match poses.is_dir() {
+            true => poses.join("poses.csv"),
+            false => poses.to_owned(),
         };
         let run_path = table_path.with_file_name("run.json");
         if let Some(directory) = run_path.parent() {
@@ -95,15 +112,22 @@ impl Evaluate {
                 table.set_column(&column);
             }
             table.write(path)?;
-            console.say(format!("\n{}", firsts(table.rows(), &qualities)));
+            console.say(format!("\n{}", summary(table.rows(), &qualities)));
             console.say(format!(
                 "{} in {}",
                 report::counted(qualities.len(), "row"),
                 path.display()
             ));
         } else if !console.json {
-            console.say(format!("\n{}", listing(table.rows(), &qualities)));
-            console.say(format!("\n{}", firsts(table.rows(), &qualities)));
+            let shown = qualities.len().min(report::BEST);
+            console.say(format!("\n{}", listing(&table.rows()[..shown], &qualities)));
+            console.say(format!("\n{}", summary(table.rows(), &qualities)));
+            if shown < qualities.len() {
+                console.say(format!(
+                    "The first {shown} of {} are shown; -o FILE writes all",
+                    report::counted(qualities.len(), "row")
+                ));
+            }
         }
         let poses = table.rows().iter().zip(&qualities).map(|(row, quality)| {
             json!({
@@ -208,6 +232,37 @@ fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
         ]
     }));
     report::align(&lines)
+}
+
+/// Whether a word names a complex file.
+fn is_complex(word: &str) -> bool {
+    let name = word.to_lowercase();
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    [".pdb", ".ent", ".cif"]
+        .iter()
+        .any(|ending| name.ends_with(ending))
+}
+
+/// How many of the first poses are acceptable, and the first rank of each CAPRI class or better.
+fn summary(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
+    let good = |most: usize| {
+        let first = qualities.iter().take(most);
+        first
+            .filter(|quality| quality.capri >= Capri::Acceptable)
+            .count()
+    };
+    let all = qualities.len();
+    let parts: Vec<String> = [1, 10, 100]
+        .into_iter()
+        .filter(|&most| most < all)
+        .map(|most| format!("{} of the first {most}", good(most)))
+        .chain([format!("{} of all {all}", good(all))])
+        .collect();
+    format!(
+        "Acceptable or better: {}\n{}",
+        parts.join(", "),
+        firsts(rows, qualities)
+    )
 }
 
 /// The first rank of each CAPRI class or better.

@@ -1,0 +1,111 @@
+//! Complex files against a known complex: models of any program.
+
+use std::path::PathBuf;
+
+use knotdock::evaluate::PoseQuality;
+use knotdock::options::InputOptions;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::tables::complexes::{EvaluatedComplex, write_complexes};
+use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::tables::report::align;
+use knotdock_scoring::se3::Pose;
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::Evaluate;
+use crate::cli::arguments::native::{NativeFiles, measure};
+use crate::cli::arguments::output_file::check_output;
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains};
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+
+impl Evaluate {
+    /// Evaluates complex files; the exit code: 2 where some could not be.
+    pub(super) fn complexes(&self, console: Console) -> Result<u8, Failure> {
+        let (files, chains) = files_and_chains(&self.words, "evaluate")?;
+        if self.receptor.is_some() || self.ligand.is_some() {
+            let error = "--receptor and --ligand name what poses move, and these are complexes";
+            return Err(Failure::input(error)
+                .remedy("leave them out; chains of the sides go behind the files, such as H,L A"));
+        }
+        let Some(native) = self.native.read()? else {
+            return Err(Failure::input("no known complex is named").remedy(
+                "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
+            ));
+        };
+        if let Some(path) = &self.output {
+            let complexes: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+            let natives = native.inputs().map(|input| input.record.path.as_path());
+            let read = complexes.iter().map(PathBuf::as_path).chain(natives);
+            check_output(path, read, self.force)?;
+        }
+        let evaluated: Vec<Result<EvaluatedComplex, Failure>> = files
+            .par_iter()
+            .map(|file| evaluated(file, chains.as_ref(), &native, &self.input))
+            .collect();
+        let (mut rows, mut code) = (Vec::new(), 0);
+        for row in evaluated {
+            match row {
+                Ok(row) => rows.push(row),
+                Err(failure) if files.len() == 1 => return Err(failure),
+                Err(failure) => {
+                    console.error(failure.text());
+                    code = code.max(failure.exit_code());
+                }
+            }
+        }
+        if let Some(path) = &self.output {
+            write_whole(path, |file| write_complexes(&rows, file))?;
+        }
+        console.say(listing(&rows));
+        let objects: Vec<_> = rows.iter().map(EvaluatedComplex::object).collect();
+        console.result(&json!({ "complexes": objects }))?;
+        Ok(code)
+    }
+}
+
+/// How near a file is to the known complex: its sides where they stand.
+fn evaluated(
+    file: &str,
+    chains: Option<&[String; 2]>,
+    native: &NativeFiles,
+    input: &InputOptions,
+) -> Result<EvaluatedComplex, Failure> {
+    let sides = ComplexSides::read(file, chains, &input.reading())?;
+    let [receptor, ligand] = &sides.molecules;
+    let evaluator = native.evaluator(receptor, ligand)?;
+    let in_place = PoseRow {
+        rank: 1,
+        pose: Pose::identity(),
+    };
+    let quality: Option<PoseQuality> = measure(&evaluator, &[in_place]).pop();
+    let quality = quality.ok_or_else(|| Failure::other("a pose has no quality"))?;
+    Ok(EvaluatedComplex {
+        file: file.to_owned(),
+        chains: sides.chains,
+        matched: evaluator.report().interface_share,
+        quality,
+    })
+}
+
+/// Many complexes as a table.
+fn listing(rows: &[EvaluatedComplex]) -> String {
+    let header = [
+        "file", "chains", "irmsd", "lrmsd", "fnat", "dockq", "capri", "matched",
+    ];
+    let mut lines = vec![header.map(str::to_owned).to_vec()];
+    lines.extend(rows.iter().map(|row| {
+        let quality = &row.quality;
+        vec![
+            row.file.clone(),
+            row.chains.join(" "),
+            format!("{:.2}", quality.irmsd),
+            format!("{:.2}", quality.lrmsd),
+            format!("{:.3}", quality.fnat),
+            format!("{:.3}", quality.dockq),
+            quality.capri.name().to_owned(),
+            format!("{:.0}%", 100.0 * row.matched),
+        ]
+    }));
+    align(&lines)
+}

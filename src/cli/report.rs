@@ -1,0 +1,115 @@
+//! `knotdock report`: a page on which results are looked at.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
+use knotdock::options::Threads;
+use knotdock::output::files::seal::{REPORT, is_sealed};
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::records::recorded_run::{RecordedRun, RecordedRunError};
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::report::{Listed, RunReport, Viewer};
+use knotdock::threads;
+use serde_json::{Value, json};
+
+use crate::cli::inputs::bodies::Bodies;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::finish_before_reading;
+
+/// Write report.html of finished runs, batches, ensembles and sweeps: a page that shows the ranked poses as a table, in three dimensions and in charts.
+///
+/// It opens in any browser, offline. `knotdock dock` writes it by itself; this writes it again, as after `knotdock
+/// evaluate`, or with the view where the program was built without it.
+#[derive(Args, Debug)]
+pub struct Report {
+    /// Directories that `dock`, `batch` or `tradeoff` wrote.
+    #[arg(value_name = "DIR", required = true)]
+    runs: Vec<PathBuf>,
+    /// Folder of npm's package 3dmol, for the three-dimensional view [default: what the program was built with].
+    #[arg(long, value_name = "DIR")]
+    viewer: Option<PathBuf>,
+    /// Replace reports that someone has changed.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+impl Report {
+    /// Writes the reports.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.write(console))?
+    }
+
+    fn write(self, console: Console) -> Result<(), Failure> {
+        let read = self.viewer.as_deref().map(Viewer::read).transpose()?;
+        let viewer = read.as_ref().or(Viewer::embedded());
+        let mut written: Vec<String> = Vec::new();
+        for run in &self.runs {
+            finish_before_reading(run, console)?;
+            let path = run.join(REPORT);
+            if path.symlink_metadata().is_ok() && !is_sealed(&path) && !self.force {
+                return Err(
+                    Failure::input("the report there was changed since it was written")
+                        .at(&path)
+                        .remedy("keep it under another name, or pass --force to replace it"),
+                );
+            }
+            let text = page(run, viewer)?;
+            write_whole(&path, |file| file.write_all(text.as_bytes()))?;
+            console.say(path.display().to_string());
+            written.push(path.display().to_string());
+        }
+        console.result(&json!({ "reports": written }))
+    }
+}
+
+/// Writes the report of a directory that holds no single run. One that someone has changed stays.
+pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
+    let path = directory.join(REPORT);
+    if path.symlink_metadata().is_ok() && !is_sealed(&path) {
+        console.warn(format!(
+            "{} was changed since it was written and is left unchanged; `knotdock report --force` replaces it",
+            path.display()
+        ));
+        return Ok(());
+    }
+    let text = page(directory, None)?;
+    write_whole(&path, |file| file.write_all(text.as_bytes()))?;
+    Ok(())
+}
+
+/// The page of a directory.
+fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Failure> {
+    let name = directory.display().to_string();
+    if let Some(listed) = Listed::in_directory(directory) {
+        return Ok(listed.report(directory, &name)?);
+    }
+    let record_path = directory.join("run.json");
+    let run = RecordedRun::read(&record_path)?;
+    let record = value(&record_path)?;
+    let table = PoseTable::read(&directory.join("poses.csv"))?;
+    let bodies = Bodies::recorded([&run.receptor, &run.ligand], &record_path, &run.options)?;
+    let contacts = bodies.contacts(&table, &run.options);
+    let report = RunReport {
+        record: &record,
+        options: &run.options,
+        table: &table,
+        bodies: bodies.shown(contacts.as_ref()),
+        directory: &name,
+    };
+    Ok(report.text(viewer))
+}
+
+/// A record as JSON.
+fn value(path: &Path) -> Result<Value, Failure> {
+    let open = |source| RecordedRunError::Open {
+        path: path.to_owned(),
+        source,
+    };
+    let bytes = read_bounded_file(path, MAX_RECORD).map_err(open)?;
+    let value = serde_json::from_slice(&bytes);
+    value.map_err(|error| Failure::input(error).at(path))
+}

@@ -1,0 +1,157 @@
+//! Contacts between two molecules, of which one is moved by a pose.
+
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::PolarAtom;
+use knotdock_structures::molecule::{Atom, Molecule};
+use knotdock_structures::neighbours::{CellList, Member};
+use std::collections::BTreeMap;
+
+use super::{CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
+
+/// Least charge of a side chain that is charged, in e.
+const CHARGED: f64 = 0.5;
+/// Atoms that belong to no side chain.
+const BACKBONE: [&str; 5] = ["N", "CA", "C", "O", "OXT"];
+
+/// Two residues in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// That of each side, by its place in [`ContactFinder::residues`].
+    pub residues: [usize; 2],
+    /// Distance of their nearest heavy atoms, in Å.
+    pub distance: f64,
+    /// Hydrogen bonds between them.
+    pub hydrogen_bonds: usize,
+    /// Whether they make a salt bridge.
+    pub salt_bridge: bool,
+}
+
+/// Two molecules made ready to find their contacts in any number of poses.
+pub struct ContactFinder<'a> {
+    /// By their places relative to the middle: coordinates may be far from zero.
+    fixed: CellList<Site<'a>>,
+    middle: [f64; 3],
+    moved: Vec<Site<'a>>,
+    residues: [Vec<ResidueName>; 2],
+}
+
+impl<'a> ContactFinder<'a> {
+    /// Of two molecules, the second of which moves; charges are those at a pH.
+    pub fn new([fixed, moved]: [&'a Molecule; 2], ph: f64) -> Self {
+        let (fixed, first) = sites(fixed, ph);
+        let (moved, second) = sites(moved, ph);
+        let count = fixed.len().max(1) as f64;
+        let middle = std::array::from_fn(|axis| {
+            let along = fixed.iter().map(|site| site.atom.position[axis]);
+            along.sum::<f64>() / count
+        });
+        let members = fixed.into_iter().map(|site| Member {
+            position: from(middle, site.atom.position),
+            item: site,
+        });
+        Self {
+            fixed: CellList::new(members.collect(), CONTACT),
+            middle,
+            moved,
+            residues: [first, second],
+        }
+    }
+
+    /// The residues of each side that have heavy atoms, in the order of the file.
+    pub fn residues(&self) -> [&[ResidueName]; 2] {
+        self.residues.each_ref().map(Vec::as_slice)
+    }
+
+    /// The residues in contact where the second molecule takes each of some poses at once (the copies of a ring), in
+    /// the order of side 0, then of side 1.
+    pub fn contacts(&self, poses: &[Pose]) -> Vec<Contact> {
+        let mut found: BTreeMap<[usize; 2], Contact> = BTreeMap::new();
+        for pose in poses {
+            for other in &self.moved {
+                let at = pose.apply(other.atom.position);
+                let direction = pose.rotation * nalgebra::Vector3::from(other.polar.direction);
+                let relative = from(self.middle, at);
+                self.fixed.visit_within(relative, CONTACT, |one, square| {
+                    let residues = [one.residue, other.residue];
+                    let contact = found.entry(residues).or_insert(Contact {
+                        residues,
+                        distance: f64::INFINITY,
+                        hydrogen_bonds: 0,
+                        salt_bridge: false,
+                    });
+                    contact.distance = contact.distance.min(square.sqrt());
+                    let between = from(one.atom.position, at);
+                    contact.hydrogen_bonds += usize::from(
+                        square <= HYDROGEN_BOND * HYDROGEN_BOND
+                            && one.polar.may_bond(&other.polar)
+                            && faces(one.polar.direction, between)
+                            && faces(direction.into(), between.map(|part| -part)),
+                    );
+                    contact.salt_bridge |=
+                        square <= SALT_BRIDGE * SALT_BRIDGE && one.sign * other.sign < 0;
+                });
+            }
+        }
+        found.into_values().collect()
+    }
+}
+
+/// An atom with what it may do.
+struct Site<'a> {
+    residue: usize,
+    atom: &'a Atom,
+    polar: PolarAtom,
+    /// Sign of the charge that its side chain may bring to a salt bridge by it.
+    sign: i8,
+}
+
+/// The heavy atoms of a molecule, and the names of the residues that they point to.
+fn sites(molecule: &Molecule, ph: f64) -> (Vec<Site<'_>>, Vec<ResidueName>) {
+    let (polar, labels) = (molecule.polar_atoms(), molecule.labels(ph));
+    let (mut sites, mut names) = (Vec::new(), Vec::new());
+    for (residue, atoms) in heavy_residues(molecule).into_iter().enumerate() {
+        let of_side_chain = atoms
+            .iter()
+            .filter(|&&at| !BACKBONE.contains(&molecule.atoms[at].name.as_str()));
+        let charge: f64 = of_side_chain.map(|&at| labels.charges[at]).sum();
+        for &at in &atoms {
+            let atom = &molecule.atoms[at];
+            let is_end = BACKBONE.contains(&atom.name.as_str());
+            sites.push(Site {
+                residue,
+                atom,
+                polar: polar[at],
+                sign: match atom.element.as_str() {
+                    "N" if charge > CHARGED && !is_end => 1,
+                    "O" if charge < -CHARGED && !is_end => -1,
+                    _ => 0,
+                },
+            });
+        }
+        names.extend(
+            atoms
+                .first()
+                .map(|&at| ResidueName::of(&molecule.atoms[at])),
+        );
+    }
+    (sites, names)
+}
+
+/// Places of the heavy atoms of each residue that has any: the residues of [`ContactFinder::residues`].
+pub fn heavy_residues(molecule: &Molecule) -> Vec<Vec<usize>> {
+    let atoms = molecule.atoms.iter();
+    let heavy: Vec<bool> = atoms.map(|atom| !atom.is_hydrogen()).collect();
+    molecule.atoms_by_residue(&heavy)
+}
+
+/// What lies between one place and another.
+fn from(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| other[axis] - one[axis])
+}
+
+/// Whether a free side in a direction is towards what lies `between` two atoms away; one without a direction has no
+/// other side.
+fn faces(direction: [f64; 3], between: [f64; 3]) -> bool {
+    let along: f64 = (0..3).map(|axis| direction[axis] * between[axis]).sum();
+    direction == [0.0; 3] || along > 0.0
+}

@@ -1,0 +1,78 @@
+//! Complexes of any program against a known one: a row a file.
+
+use std::io;
+
+use serde_json::{Value, json};
+
+use crate::evaluate::{Criterion, PoseQuality};
+use crate::output::tables::cells::TableWriter;
+use crate::output::tables::fields::number;
+
+/// A complex, and how near it is to the known one.
+#[derive(Clone, Debug)]
+pub struct EvaluatedComplex {
+    /// Its file as it was named.
+    pub file: String,
+    /// Chains of each side, with commas between them.
+    pub chains: [String; 2],
+    /// Share of the interface residues of the known complex that it has.
+    pub matched: f64,
+    /// How near it is.
+    pub quality: PoseQuality,
+}
+
+impl EvaluatedComplex {
+    /// Its row as a JSON object.
+    pub fn object(&self) -> Value {
+        let quality = &self.quality;
+        json!({
+            "file": self.file,
+            "chains_1": self.chains[0],
+            "chains_2": self.chains[1],
+            "irmsd": quality.irmsd,
+            "lrmsd": quality.lrmsd,
+            "fnat": quality.fnat,
+            "dockq": quality.dockq,
+            "capri": quality.capri.name(),
+            "acceptable": Criterion::Acceptable.is_met(quality),
+            "near_native": Criterion::NearNative.is_met(quality),
+            "interface_share": self.matched,
+        })
+    }
+}
+
+/// Writes a row for each complex: `file`, `chains_1`, `chains_2`, `irmsd` and `lrmsd` in Å, `fnat`, `dockq`, `capri` and
+/// `interface_share` (the share of the known complex's interface residues that the file has).
+///
+/// # Errors
+/// Those of the stream.
+pub fn write_complexes(rows: &[EvaluatedComplex], stream: &mut dyn io::Write) -> io::Result<()> {
+    let mut table = TableWriter::new(stream);
+    let header = [
+        "file",
+        "chains_1",
+        "chains_2",
+        "irmsd",
+        "lrmsd",
+        "fnat",
+        "dockq",
+        "capri",
+        "interface_share",
+    ];
+    table.row(header)?;
+    for row in rows {
+        let quality = &row.quality;
+        table.row([
+            row.file.clone(),
+            row.chains[0].clone(),
+            row.chains[1].clone(),
+            number(quality.irmsd),
+            number(quality.lrmsd),
+            number(quality.fnat),
+            number(quality.dockq),
+            quality.capri.name().to_owned(),
+            number(row.matched),
+        ])?;
+    }
+    table.flush()
+}

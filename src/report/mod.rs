@@ -1,0 +1,34 @@
+//! Reports: one HTML file in which results are looked at, offline.
+//!
+//! A report holds all that it shows and asks no network: its security policy forbids requests. What JavaScript shows (the
+//! table, the charts, the view) is packed: JSON, then gzip, then base64. What is said in words is plain HTML, and reads
+//! without JavaScript.
+//!
+//! | file | what |
+//! |---|---|
+//! | `contacts` | residues in contact in each pose, and where the best clusters gather |
+//! | `columns` | what the columns of `poses.csv` are called, and how many digits are shown |
+//! | `run_data` | what the scripts of a run's report read |
+//! | `run_words` | the sections of a run's report that are words |
+//! | `list`, `lists` | reports that are tables: of batches, ensembles and sweeps |
+//! | `html` | the page itself: sections, scripts, seal |
+//! | `viewer` | the library of the three-dimensional view, where there is one |
+//! | `page/` | style and scripts |
+
+mod columns;
+mod contacts;
+mod html;
+mod list;
+mod lists;
+mod run;
+mod run_data;
+mod run_words;
+mod viewer;
+
+pub use contacts::RunContacts;
+pub use lists::{ListError, Listed};
+pub use run::{ReportBodies, RunReport};
+pub use viewer::{Viewer, ViewerError};
+
+/// Rows that a report shows, the best ones; the table of the run has all.
+pub const MAX_ROWS: usize = 2000;

@@ -1,0 +1,80 @@
+/** What a residue is called: A:57 HIS. */
+function residueName(body, place) {
+  const [chain, number, name] = body.residues[place];
+  return `${chain || "_"}:${number} ${name}`;
+}
+
+/** Names of the terms that a chart has colours for, the largest first, then the rest together. */
+function shownTerms(data, column) {
+  const size = (name) => data.rows.slice(0, 50).reduce((sum, row) => sum + Math.abs(row[column(name)] ?? 0), 0);
+  const terms = data.terms.map((name) => [name, size(name)]).filter(([, sum]) => sum > 0).sort((one, other) => other[1] - one[1]).map(([name]) => name);
+  return [terms.slice(0, COLOURS.length), terms.slice(COLOURS.length)];
+}
+
+/** The parts of a row's score, by their names for people. */
+function partsOf(data, column, row, [shown, others]) {
+  const value = (name) => data.rows[row][column(name)] ?? 0;
+  const parts = Object.fromEntries(shown.map((name) => [name.replaceAll("_", " "), value(name)]));
+  if (others.length > 0) parts["other terms"] = others.reduce((sum, name) => sum + value(name), 0);
+  return parts;
+}
+
+function drawTerms(data, column, row, choose) {
+  const terms = shownTerms(data, column);
+  const best = data.rows.slice(0, 10).map((_, place) => place);
+  const bars = [...new Set([...best, row])].map((place) => ({
+    label: `rank ${data.rows[place][column("rank")]}`, chosen: place === row, parts: partsOf(data, column, place, terms), choose: () => choose(place),
+  }));
+  if (bars.length > 0) stackedBars(byId("terms"), bars, Object.keys(bars[0].parts));
+}
+
+function drawDistribution(data, column, row) {
+  const scores = data.rows.map((fields) => fields[column("score")]).filter((value) => typeof value === "number");
+  histogram(byId("distribution"), scores, data.rows[row][column("score")], "score");
+}
+
+/** The axes that a funnel may have: distances from the known complex, and from the selected pose. */
+function funnelAxes(data, column) {
+  const known = [["irmsd", "i-RMSD from the known complex, Å"], ["lrmsd", "L-RMSD from the known complex, Å"], ["dockq", "DockQ"]];
+  const own = data.placed[0]?.length > 0 ? [["selected", "RMSD from the selected pose, Å"]] : [];
+  return [...known.filter(([name]) => column(name) >= 0), ...own];
+}
+
+function drawFunnel(data, column, row, axis, name, points, choose) {
+  const distance = axis === "selected"
+    ? (place) => data.placed[place][0] && data.placed[row][0] ? distanceOf(points, data.placed[place][0], data.placed[row][0]) : null
+    : (place) => data.rows[place][column(axis)];
+  const drawn = data.rows.map((fields, place) => ({ x: distance(place), y: fields[column("score")], row: place }));
+  scatter(byId("funnel"), drawn.filter(({ x, y }) => typeof x === "number" && typeof y === "number"), [name, "score"], row, choose);
+}
+
+const INTERFACE_COLUMNS = [
+  { label: "residue", digits: null }, { label: "touches", digits: null }, { label: "distance, Å", digits: 2 },
+  { label: "hydrogen bonds", digits: 0 }, { label: "salt bridge", digits: null },
+].map((column) => ({ ...column, help: "", main: true }));
+
+function interfaceRows(data, row) {
+  return pairsOf(data, row).map(([first, second, distance, bonds, bridge]) => [
+    residueName(data.bodies[0], first), residueName(data.bodies[1], second), distance, bonds, bridge ? "yes" : null,
+  ]);
+}
+
+function drawMap(data, row, sides) {
+  const names = data.bodies.map((body) => body.residues.map((_, place) => residueName(body, place)));
+  contactMap(byId("map"), pairsOf(data, row).map(([first, second, distance]) => [first, second, distance]), names, sides);
+}
+
+/** A table a side: residues that the best clusters touch, the most touched first. */
+function drawConsensus(data, sides) {
+  byId("counted").textContent = data.counted;
+  sides.forEach((side, place) => {
+    const touched = data.shares[place].map((clusters, residue) => [residue, clusters]).filter(([, clusters]) => clusters > 0);
+    touched.sort((one, other) => other[1] - one[1] || one[0] - other[0]);
+    makeTable(byId(`consensus-${place}`), {
+      caption: `Residues of the ${side}`,
+      columns: [["residue", null], ["clusters", 0], ["share", 2]].map(([label, digits]) => ({ label, digits, help: "", main: true })),
+      rows: touched.map(([residue, clusters]) => [residueName(data.bodies[place], residue), clusters, clusters / Math.max(data.counted, 1)]),
+      empty: "No residue is touched",
+    });
+  });
+}

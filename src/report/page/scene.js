@@ -1,0 +1,144 @@
+const RECEPTOR = "#bfbfbf";
+const LIGANDS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442"];
+const KNOWN = "#cc79a7";
+const BLOCKED = "#000000";
+
+/** A shade from white to blue for a share from 0 to 1. */
+function shade(share) {
+  const part = (low, high) => Math.round(low + (high - low) * share).toString(16).padStart(2, "0");
+  return `#${part(240, 0)}${part(240, 70)}${part(240, 150)}`;
+}
+
+/** The three-dimensional view: `show(row)` and `style(choices)` change what is seen. */
+function makeScene(root, data) {
+  const library = window.$3Dmol;
+  const viewer = library.createViewer(root, { backgroundColor: "white", antialias: true, preserveDrawingBuffer: true, disableFog: true });
+  const isMesh = data.bodies[0].format === "mesh";
+  const copies = Math.max(1, data.placed[0]?.length ?? 1);
+  const choices = { sticks: false, known: true, colour: "partner" };
+  let row = 0;
+  const models = isMesh ? [] : [0, ...Array(copies).fill(1)].map((body) => {
+    const { text, format } = data.bodies[body];
+    const model = viewer.addModel(text, format, { keepH: true, altLoc: "*", assignBonds: true });
+    const atoms = model.selectedAtoms({});
+    return { model, body, atoms, start: atoms.map((atom) => [atom.x, atom.y, atom.z]) };
+  });
+  let shapes = [];
+
+  // Meshes may be of any size: the view is made for some 50 units, about the origin.
+  const frame = isMesh ? frameOf(data.bodies[0].positions ?? []) : null;
+  const bounds = isMesh ? viewer.addModel() : null;
+
+  function place() {
+    const placements = data.placed[row] ?? [];
+    if (isMesh) {
+      shapes.forEach((shape) => viewer.removeShape(shape));
+      const bodies = [null, ...placements].map((placement, index) => [data.bodies[index === 0 ? 0 : 1], placement, index]).filter(([body]) => body.positions);
+      shapes = bodies.map(([body, placement, index]) => surface(vertices(body, placement), body.triangles, index === 0 ? RECEPTOR : LIGANDS[0], index === 0 ? 0.75 : 1));
+      // What is zoomed to are atoms; these are not drawn.
+      bounds.removeAtoms(bounds.selectedAtoms({}));
+      bounds.addAtoms(bodies.flatMap(([body, placement]) => vertices(body, placement)).map(({ x, y, z }, serial) => ({ elem: "H", x, y, z, serial, bonds: [], bondOrder: [], properties: {} })));
+      bounds.setStyle({}, { hidden: true });
+      return;
+    }
+    models.slice(1).forEach(({ atoms, start }, copy) => {
+      atoms.forEach((atom, index) => {
+        [atom.x, atom.y, atom.z] = placements[copy] ? apply(placements[copy], start[index]) : start[index];
+      });
+    });
+  }
+
+  /** Vertices of a mesh where a placement puts it, in the frame of the view. */
+  function vertices(body, placement) {
+    const points = [];
+    for (let at = 0; at < body.positions.length; at += 3) {
+      const point = body.positions.slice(at, at + 3);
+      const [x, y, z] = (placement ? apply(placement, point) : point).map((part, axis) => (part - frame.middle[axis]) * frame.scale);
+      points.push({ x, y, z });
+    }
+    return points;
+  }
+
+  function surface(vertexArr, triangles, color, opacity) {
+    const normalArr = vertexArr.map(() => ({ x: 0, y: 0, z: 0 }));
+    for (let at = 0; at < triangles.length; at += 3) {
+      const corners = triangles.slice(at, at + 3);
+      const [a, b, c] = corners.map((corner) => vertexArr[corner]);
+      const [u, v] = [b, c].map((end) => [end.x - a.x, end.y - a.y, end.z - a.z]);
+      const normal = { x: u[1] * v[2] - u[2] * v[1], y: u[2] * v[0] - u[0] * v[2], z: u[0] * v[1] - u[1] * v[0] };
+      for (const corner of corners) for (const axis of ["x", "y", "z"]) normalArr[corner][axis] += normal[axis];
+    }
+    return viewer.addCustom({ vertexArr, normalArr, faceArr: triangles, color, opacity });
+  }
+
+  function paint() {
+    if (isMesh) return;
+    models.forEach(({ model, body, atoms }, index) => {
+      const { residue_of_atom: residueOf, active, blocked } = data.bodies[body];
+      const share = choices.colour === "consensus" ? (atom) => shade((data.shares[body][residueOf[atom.index]] ?? 0) / Math.max(data.counted, 1)) : null;
+      const plain = index === 0 ? RECEPTOR : LIGANDS[(index - 1) % LIGANDS.length];
+      const colour = share ? { colorfunc: share } : { color: plain };
+      model.setStyle({}, { cartoon: { ...colour, arrows: true } });
+      // What has no cartoon: cofactors, and chains of CA atoms too short for one.
+      model.setStyle({ hetflag: true }, { stick: { radius: 0.15, ...colour }, sphere: { radius: 0.35, ...colour } });
+      const of = (residues) => { const set = new Set(residues); return atoms.filter((atom) => set.has(residueOf[atom.index])).map((atom) => atom.index); };
+      if (choices.sticks) {
+        const side = index === 0 ? 0 : 1;
+        const touching = pairsOf(data, row).map((pair) => pair[side]);
+        model.setStyle({ index: of(touching) }, { stick: { radius: 0.18, colorscheme: { prop: "elem", map: { C: plain, N: "#3050f8", O: "#ff0d0d", S: "#d5b000" } } } }, true);
+      }
+      if (choices.known) {
+        for (const [residues, color] of [[active, KNOWN], [blocked, BLOCKED]]) {
+          if (residues.length > 0) model.setStyle({ index: of(residues) }, { stick: { radius: 0.3, color } }, true);
+        }
+      }
+    });
+  }
+
+  function interfaceAtoms() {
+    return models.map(({ body, model }, index) => {
+      const side = index === 0 ? 0 : 1;
+      const touching = new Set(pairsOf(data, row).map((pair) => pair[side]));
+      const { residue_of_atom: residueOf } = data.bodies[body];
+      return { model, index: residueOf.flatMap((residue, atom) => touching.has(residue) ? [atom] : []) };
+    });
+  }
+
+  place();
+  paint();
+  viewer.zoomTo();
+  viewer.render();
+  // Prints cannot show the canvas of the graphics card.
+  const picture = make("img", { alt: "The selected pose" });
+  root.append(picture);
+  window.addEventListener("beforeprint", () => { picture.src = viewer.pngURI(); });
+  window.addEventListener("resize", () => viewer.resize());
+  return {
+    show(next) { row = next; place(); paint(); viewer.render(); },
+    style(changed) { Object.assign(choices, changed); paint(); viewer.render(); },
+    whole() { viewer.zoomTo(); viewer.render(); },
+    toInterface() {
+      const chosen = interfaceAtoms().filter(({ index }) => index.length > 0);
+      if (chosen.length > 0) viewer.zoomTo({ or: chosen.map(({ model, index }) => ({ model: model.getID?.() ?? model.id, index })) }, 300);
+      viewer.render();
+    },
+    picture: () => viewer.pngURI(),
+    turn(angle, axis) { viewer.rotate(angle, axis); },
+  };
+}
+
+/** Middle of some points, and the factor that brings them to the size of a protein. */
+function frameOf(positions) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  positions.forEach((part, at) => { low[at % 3] = Math.min(low[at % 3], part); high[at % 3] = Math.max(high[at % 3], part); });
+  const size = Math.max(...high.map((part, axis) => part - low[axis]));
+  return { middle: low.map((part, axis) => (part + high[axis]) / 2), scale: size > 0 && Number.isFinite(size) ? 50 / size : 1 };
+}
+
+/** Pairs of residues in contact in a row: [receptor, ligand, distance in Å, hydrogen bonds, salt bridge]. */
+function pairsOf(data, row) {
+  const flat = data.contacts?.[row] ?? [];
+  const pairs = [];
+  for (let at = 0; at < flat.length; at += 5) pairs.push([flat[at], flat[at + 1], flat[at + 2] / 100, flat[at + 3], flat[at + 4]]);
+  return pairs;
+}

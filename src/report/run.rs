@@ -1,0 +1,80 @@
+//! The report of one run.
+
+use knotdock_structures::molecule::Molecule;
+use serde_json::Value;
+
+use crate::options::DockOptions;
+use crate::output::files::assemblies::Surface;
+use crate::output::tables::poses::PoseTable;
+use crate::report::contacts::RunContacts;
+use crate::report::html::{Page, section};
+use crate::report::viewer::Viewer;
+use crate::report::{run_data, run_words};
+
+/// What a run put together.
+pub enum ReportBodies<'a> {
+    /// Molecules, and their contacts in the poses of the table.
+    Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
+    /// Meshes, or balls as surfaces.
+    Solids([Surface<'a>; 2]),
+}
+
+/// A finished run, as it is shown.
+pub struct RunReport<'a> {
+    /// Its run.json.
+    pub record: &'a Value,
+    /// The options in it.
+    pub options: &'a DockOptions,
+    /// Its poses.csv.
+    pub table: &'a PoseTable,
+    /// What was docked.
+    pub bodies: ReportBodies<'a>,
+    /// Its directory as commands would name it.
+    pub directory: &'a str,
+}
+
+impl RunReport<'_> {
+    /// The page, whole. Without a viewer it says how to get the view.
+    pub fn text(&self, viewer: Option<&Viewer>) -> String {
+        let data = run_data::data(self);
+        let explorer = include_str!("page/explorer.html");
+        let lacking = match viewer {
+            Some(_) => "",
+            None => LACKING,
+        };
+        let mut sections = vec![
+            section("summary", "Summary", &run_words::summary(self)),
+            section("poses", "Poses", &explorer.replace("{{lacking}}", lacking)),
+        ];
+        if matches!(self.bodies, ReportBodies::Molecules(..)) {
+            let consensus = include_str!("page/consensus.html");
+            sections.push(section(
+                "consensus",
+                "Where the best clusters gather",
+                consensus,
+            ));
+        }
+        sections.push(section(
+            "cost",
+            "What accuracy cost",
+            &run_words::cost(self),
+        ));
+        sections.push(section(
+            "options",
+            "Options, and how to repeat the run",
+            &run_words::options(self),
+        ));
+        Page {
+            title: run_words::title(self),
+            sections,
+            data: &data,
+            viewer,
+        }
+        .text()
+    }
+}
+
+/// What stands in the place of the view, where there is none.
+const LACKING: &str = "<p>This report has no three-dimensional view: the program was built without it. To add one, run \
+                       <code>npm install 3dmol</code> and then <code>knotdock report DIR --viewer \
+                       node_modules/3dmol</code>.</p>";

@@ -1,0 +1,162 @@
+//! Reports: what stands in them, which files they touch, and how they are refused. `scripts/browser_checks.sh` opens
+//! them in a browser.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+
+use crate::dock_run::run::{place, rows, run};
+use crate::program::refused;
+
+const SMALL: &str = "--rotations 36 --poses 60 --write-top 2 --quiet";
+
+/// What the scripts of a report read.
+fn data(report: &Path) -> Value {
+    let text = fs::read_to_string(report).unwrap();
+    let (_, rest) = text.split_once("id=\"data\">").unwrap();
+    let packed = STANDARD.decode(rest.split_once('<').unwrap().0).unwrap();
+    let mut json = String::new();
+    let mut reader = flate2::read::GzDecoder::new(packed.as_slice());
+    reader.read_to_string(&mut json).unwrap();
+    serde_json::from_str(&json).unwrap()
+}
+
+/// The rows are those of poses.csv, the placements its poses, and the shares those that the contacts give.
+#[test]
+fn a_report_holds_what_the_tables_hold() {
+    let folder = place();
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb {SMALL} --no-cluster -o run"),
+    );
+    let directory = folder.path().join("run");
+    let data = data(&directory.join("report.html"));
+    let table = rows(&directory);
+    let shown = data["rows"].as_array().unwrap();
+    assert_eq!(shown.len(), table.len());
+    let columns = data["columns"].as_array().unwrap();
+    assert_eq!(columns.len(), table[0].len());
+    for (row, (fields, placed)) in table
+        .iter()
+        .zip(shown.iter().zip(data["placed"].as_array().unwrap()))
+    {
+        for (column, field) in columns.iter().zip(fields.as_array().unwrap()) {
+            let name = column["name"].as_str().unwrap();
+            match field.as_f64() {
+                Some(value) => assert!(
+                    (value - row[name].parse::<f64>().unwrap()).abs() < 1e-4,
+                    "{name}"
+                ),
+                None => assert_eq!(field.as_str().unwrap_or(""), row[name], "{name}"),
+            }
+        }
+        let names = ["qw", "qx", "qy", "qz", "tx", "ty", "tz"];
+        for (name, value) in names.iter().zip(placed[0].as_array().unwrap()) {
+            assert!((row[*name].parse::<f64>().unwrap() - value.as_f64().unwrap()).abs() < 1e-4);
+        }
+    }
+    // Of the first pose of each cluster, how many touch each residue.
+    let mut counts: [BTreeMap<u64, u64>; 2] = Default::default();
+    let mut seen = std::collections::BTreeSet::new();
+    for (row, contacts) in table.iter().zip(data["contacts"].as_array().unwrap()) {
+        if seen.len() == 50 || !seen.insert(row["cluster"].clone()) {
+            continue;
+        }
+        let numbers: Vec<u64> = contacts
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|n| n.as_u64().unwrap())
+            .collect();
+        for (side, counts) in counts.iter_mut().enumerate() {
+            let touched: std::collections::BTreeSet<u64> =
+                numbers.chunks(5).map(|pair| pair[side]).collect();
+            for residue in touched {
+                *counts.entry(residue).or_default() += 1;
+            }
+        }
+    }
+    assert!(!counts[0].is_empty());
+    let mut reader = csv::Reader::from_path(directory.join("interface.csv")).unwrap();
+    let shares: Vec<BTreeMap<String, String>> =
+        reader.deserialize().map(|row| row.unwrap()).collect();
+    for (side, name) in ["receptor", "ligand"].into_iter().enumerate() {
+        let of_side: Vec<_> = shares.iter().filter(|row| row["side"] == name).collect();
+        assert_eq!(
+            of_side.len(),
+            data["bodies"][side]["residues"].as_array().unwrap().len()
+        );
+        for (residue, row) in (0..).zip(of_side) {
+            let count = counts[side].get(&residue).copied().unwrap_or(0);
+            assert_eq!(row["clusters"], count.to_string());
+            assert_eq!(data["shares"][side][residue as usize], count);
+            let share: f64 = row["share"].parse().unwrap();
+            assert!((share - count as f64 / seen.len() as f64).abs() < 1e-9);
+        }
+    }
+}
+
+/// A report goes with its run, unless someone has changed it; it is refused or replaced as other files of a user are.
+#[test]
+fn a_changed_report_is_kept() {
+    let folder = place();
+    let dock = format!("dock receptor.pdb ligand.pdb {SMALL} -o run");
+    run(folder.path(), &dock);
+    let directory = folder.path().join("run");
+    let report = directory.join("report.html");
+    let written = fs::read_to_string(&report).unwrap();
+    // Not a request to anywhere, in spite of what is in it.
+    assert!(written.contains("default-src 'none'") && !written.contains("src=\"http"));
+    run(folder.path(), &format!("{dock} --force --no-report"));
+    assert!(!report.exists());
+    assert!(!directory.join("report.kept.html").exists());
+    run(folder.path(), "report run");
+    fs::write(&report, written.replace("Summary", "My notes")).unwrap();
+    let said = refused(folder.path(), ["report", "run"]).to_string();
+    assert!(said.contains("was changed"), "{said}");
+    run(folder.path(), &format!("{dock} --force"));
+    let kept = fs::read_to_string(directory.join("report.kept.html")).unwrap();
+    assert!(kept.contains("My notes"));
+    assert!(fs::read_to_string(&report).unwrap().contains("Summary"));
+}
+
+/// What a report needs and does not find is named.
+#[test]
+fn what_is_missing_is_named() {
+    let folder = place();
+    let said = refused(folder.path(), ["report", "nowhere"]).to_string();
+    assert!(said.contains("run.json"), "{said}");
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb {SMALL} -o run"),
+    );
+    let said = refused(folder.path(), ["report", "run", "--viewer", "nowhere"]).to_string();
+    assert!(
+        said.contains("3Dmol-min.js") && said.contains("npm install 3dmol"),
+        "{said}"
+    );
+    fs::remove_file(folder.path().join("ligand.pdb")).unwrap();
+    let said = refused(folder.path(), ["report", "run"]).to_string();
+    assert!(said.contains("ligand.pdb"), "{said}");
+}
+
+/// Names of files and chains are text in a page, whatever stands in them.
+#[cfg(unix)]
+#[test]
+fn names_are_no_markup() {
+    let folder = place();
+    let name = "<img src=x onerror=alert(1)>.pdb";
+    fs::rename(folder.path().join("ligand.pdb"), folder.path().join(name)).unwrap();
+    let words = ["dock", "receptor.pdb", name, "-o", "run"]
+        .into_iter()
+        .chain(SMALL.split_whitespace());
+    crate::program::succeed(folder.path(), words);
+    let text = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+    assert!(!text.contains("<img src=x"));
+    assert!(text.contains("&lt;img src=x"));
+}

@@ -1,0 +1,53 @@
+// Every kind of report opens without a fault, fits its window and is small.
+
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { after, test } from "node:test";
+import { end, open } from "./browser.mjs";
+import { reports } from "./reports.mjs";
+
+after(end);
+
+for (const [kind, report] of Object.entries(reports())) {
+  for (const width of [1280, 400]) {
+    test(`${kind}, ${width} pixels wide`, async () => {
+      const { page, faults, requests, address, close } = await open(report, { width });
+      try {
+        await page.waitForTimeout(200);
+        assert.deepEqual(faults, []);
+        assert.deepEqual(requests, [address]);
+        const [scroll, client] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
+        assert.ok(scroll <= client, `${scroll} pixels of content in ${client}`);
+        const wide = await page.evaluate(() => [...document.querySelectorAll("main *")].filter((one) => !one.closest(".scroll, svg, .hidden") && one.getBoundingClientRect().right > document.documentElement.clientWidth + 1).map((one) => one.outerHTML.slice(0, 80)));
+        assert.deepEqual(wide, []);
+        assert.ok(await page.locator("tbody tr").count() > 0);
+      } finally {
+        await close();
+      }
+    });
+  }
+  test(`${kind} is smaller than 6 MB`, () => assert.ok(statSync(report).size < 6e6));
+}
+
+test("names of pairs lead to their reports", async () => {
+  const { page, close } = await open(reports().batch);
+  try {
+    await page.click("tbody a");
+    await page.waitForFunction(() => window.knotdock?.choose !== undefined);
+    assert.match(await page.title(), /docked to/);
+  } finally {
+    await close();
+  }
+});
+
+test("a report without the library says what it lacks, and shows the rest", async () => {
+  const { page, faults, close } = await open(reports().bare);
+  try {
+    assert.deepEqual(faults, []);
+    assert.match(await page.locator("#scene-side").innerText(), /no three-dimensional view/);
+    assert.equal(await page.locator("#scene").isVisible(), false);
+    assert.ok(await page.locator("#funnel circle").count() > 100);
+  } finally {
+    await close();
+  }
+});
