@@ -31,6 +31,8 @@ pub struct ContactFinder<'a> {
     /// By their places relative to the middle: coordinates may be far from zero.
     fixed: CellList<Site<'a>>,
     middle: [f64; 3],
+    /// Most atoms of a pose are far from the fixed ones, which this says at once.
+    near: NearCells,
     moved: Vec<Site<'a>>,
     residues: [Vec<ResidueName>; 2],
 }
@@ -49,8 +51,11 @@ impl<'a> ContactFinder<'a> {
             position: from(middle, site.atom.position),
             item: site,
         });
+        let members: Vec<Member<Site>> = members.collect();
+        let positions = members.iter().map(|member| member.position);
         Self {
-            fixed: CellList::new(members.collect(), CONTACT),
+            near: NearCells::new(positions.collect()),
+            fixed: CellList::new(members, CONTACT),
             middle,
             moved,
             residues: [first, second],
@@ -69,8 +74,11 @@ impl<'a> ContactFinder<'a> {
         for pose in poses {
             for other in &self.moved {
                 let at = pose.apply(other.atom.position);
-                let direction = pose.rotation * nalgebra::Vector3::from(other.polar.direction);
                 let relative = from(self.middle, at);
+                if !self.near.may_hold(relative) {
+                    continue;
+                }
+                let direction = pose.rotation * nalgebra::Vector3::from(other.polar.direction);
                 self.fixed.visit_within(relative, CONTACT, |one, square| {
                     let residues = [one.residue, other.residue];
                     let contact = found.entry(residues).or_insert(Contact {
@@ -93,6 +101,76 @@ impl<'a> ContactFinder<'a> {
             }
         }
         found.into_values().collect()
+    }
+}
+
+/// Cells of the edge [`CONTACT`] that may hold something in contact with one of some points.
+struct NearCells {
+    low: [f64; 3],
+    counts: [usize; 3],
+    /// Empty where there would be too many cells: then any place may.
+    marked: Vec<bool>,
+}
+
+impl NearCells {
+    /// Most cells; points that lie farther apart are no molecule.
+    const MAX: usize = 1 << 22;
+
+    fn new(points: Vec<[f64; 3]>) -> Self {
+        let end = |pick: fn(f64, f64) -> f64, start: f64| {
+            points.iter().fold([start; 3], |end: [f64; 3], point| {
+                std::array::from_fn(|axis| pick(end[axis], point[axis]))
+            })
+        };
+        let (low, high) = (
+            end(f64::min, f64::INFINITY),
+            end(f64::max, f64::NEG_INFINITY),
+        );
+        // One cell more at either end.
+        let low = low.map(|part| part - CONTACT);
+        let counts: [usize; 3] =
+            std::array::from_fn(|axis| ((high[axis] - low[axis]) / CONTACT) as usize + 2);
+        let all = counts
+            .iter()
+            .try_fold(1_usize, |all, &count| all.checked_mul(count));
+        let mut cells = Self {
+            low,
+            counts,
+            marked: Vec::new(),
+        };
+        let Some(all) = all.filter(|&all| !points.is_empty() && all <= Self::MAX) else {
+            return cells;
+        };
+        let mut marked = vec![false; all];
+        for point in points {
+            let Some([x, y, z]) = cells.cell(point) else {
+                continue;
+            };
+            let about =
+                |center: usize, count: usize| center.saturating_sub(1)..(center + 2).min(count);
+            for i in about(x, counts[0]) {
+                for j in about(y, counts[1]) {
+                    for k in about(z, counts[2]) {
+                        marked[(i * counts[1] + j) * counts[2] + k] = true;
+                    }
+                }
+            }
+        }
+        cells.marked = marked;
+        cells
+    }
+
+    fn cell(&self, point: [f64; 3]) -> Option<[usize; 3]> {
+        let places: [f64; 3] = std::array::from_fn(|axis| (point[axis] - self.low[axis]) / CONTACT);
+        let is_inside =
+            (0..3).all(|axis| places[axis] >= 0.0 && places[axis] < self.counts[axis] as f64);
+        is_inside.then(|| places.map(|place| place as usize))
+    }
+
+    fn may_hold(&self, point: [f64; 3]) -> bool {
+        let marked =
+            |[x, y, z]: [usize; 3]| self.marked[(x * self.counts[1] + y) * self.counts[2] + z];
+        self.marked.is_empty() || self.cell(point).is_some_and(marked)
     }
 }
 

@@ -65,3 +65,55 @@ fn buried_surface_is_shared_alike() {
     let apart = Interface::of([&carbon('A', 0.0), &carbon('B', 9.0)], 7.0);
     assert_eq!(apart.buried, [0.0, 0.0]);
 }
+
+/// In any pose, near and far, the contacts are those of all pairs of atoms.
+#[test]
+fn contacts_of_poses_are_those_of_all_pairs() {
+    let block = |chain, count: i32| {
+        let places = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let atoms: Vec<AtomRow> = places
+            .map(|(i, j)| {
+                let at = [
+                    3.9 * f64::from(i),
+                    4.1 * f64::from(j),
+                    f64::from((i * j) % 5),
+                ];
+                ("CA", "GLY", chain, 20 * i + j, "C", at)
+            })
+            .collect();
+        molecule(&atoms)
+    };
+    let (fixed, moved) = (block('A', 9), block('B', 4));
+    let finder = ContactFinder::new([&fixed, &moved], 7.0);
+    let mut touching = 0;
+    for step in 0..200 {
+        let turn = f64::from(step);
+        let quaternion = [turn.cos(), 0.6 * turn.sin(), 0.8 * turn.sin(), 0.0];
+        let translation = [
+            0.4 * turn - 20.0,
+            17.0 * (0.1 * turn).sin(),
+            0.2 * turn - 25.0,
+        ];
+        let pose = Pose::from_parts(quaternion, translation);
+        let mut expected = Vec::new();
+        for (i, one) in fixed.atoms.iter().enumerate() {
+            for (j, other) in moved.atoms.iter().enumerate() {
+                let at = pose.apply(other.position);
+                let square: f64 = (0..3)
+                    .map(|axis| (at[axis] - one.position[axis]).powi(2))
+                    .sum();
+                if square.sqrt() < CONTACT {
+                    expected.push(([i, j], square.sqrt()));
+                }
+            }
+        }
+        let found = finder.contacts(&[pose]);
+        assert_eq!(found.len(), expected.len(), "{step}");
+        for (contact, (residues, distance)) in found.iter().zip(&expected) {
+            assert_eq!(contact.residues, *residues);
+            assert!((contact.distance - distance).abs() < 1e-9);
+        }
+        touching += usize::from(!found.is_empty());
+    }
+    assert!((50..200).contains(&touching), "{touching}");
+}

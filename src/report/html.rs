@@ -1,16 +1,12 @@
 //! The page of a report: head, sections, packed data, scripts and seal.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use serde_json::Value;
 
 use crate::output::files::seal::{BEGINNING, sealed};
 use crate::output::records::program::VERSION_WITH_COMMIT;
+use crate::report::packed::packed;
 use crate::report::viewer::Viewer;
 
 /// The scripts, in the order in which each uses those before it.
@@ -84,14 +80,6 @@ impl Page<'_> {
 /// A script element that holds packed bytes.
 fn script(id: &str, packed: &str) -> String {
     format!("<script type=\"text/plain\" id=\"{id}\">{packed}</script>\n")
-}
-
-/// Bytes as gzip in base64.
-pub(super) fn packed(bytes: &[u8]) -> String {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    // Writing to memory does not fail.
-    let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
-    STANDARD.encode(written.unwrap_or_default())
 }
 
 /// Text as HTML, also in attributes.

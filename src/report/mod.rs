@@ -8,10 +8,12 @@
 //! |---|---|
 //! | `contacts` | residues in contact in each pose, and where the best clusters gather |
 //! | `columns` | what the columns of `poses.csv` are called, and how many digits are shown |
+//! | `run`, `run_parts` | the report of a run, and what it is made from |
 //! | `run_data` | what the scripts of a run's report read |
-//! | `run_words` | the sections of a run's report that are words |
+//! | `run_words`, `run_cost` | its sections that are words |
 //! | `list`, `lists` | reports that are tables: of batches, ensembles and sweeps |
 //! | `html` | the page itself: sections, scripts, seal |
+//! | `packed` | bytes as the page holds them |
 //! | `viewer` | the library of the three-dimensional view, where there is one |
 //! | `page/` | style and scripts |
 
@@ -20,14 +22,17 @@ mod contacts;
 mod html;
 mod list;
 mod lists;
+mod packed;
 mod run;
+mod run_cost;
 mod run_data;
+mod run_parts;
 mod run_words;
 mod viewer;
 
 pub use contacts::RunContacts;
 pub use lists::{ListError, Listed};
-pub use run::{ReportBodies, RunReport};
+pub use run_parts::{ReportBodies, RunReport};
 pub use viewer::{Viewer, ViewerError};
 
 /// Rows that a report shows, the best ones; the table of the run has all.

@@ -1,37 +1,9 @@
 //! The report of one run.
 
-use knotdock_structures::molecule::Molecule;
-use serde_json::Value;
-
-use crate::options::DockOptions;
-use crate::output::files::assemblies::Surface;
-use crate::output::tables::poses::PoseTable;
-use crate::report::contacts::RunContacts;
 use crate::report::html::{Page, section};
+use crate::report::run_parts::{ReportBodies, RunReport};
 use crate::report::viewer::Viewer;
-use crate::report::{run_data, run_words};
-
-/// What a run put together.
-pub enum ReportBodies<'a> {
-    /// Molecules, and their contacts in the poses of the table.
-    Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
-    /// Meshes, or balls as surfaces.
-    Solids([Surface<'a>; 2]),
-}
-
-/// A finished run, as it is shown.
-pub struct RunReport<'a> {
-    /// Its run.json.
-    pub record: &'a Value,
-    /// The options in it.
-    pub options: &'a DockOptions,
-    /// Its poses.csv.
-    pub table: &'a PoseTable,
-    /// What was docked.
-    pub bodies: ReportBodies<'a>,
-    /// Its directory as commands would name it.
-    pub directory: &'a str,
-}
+use crate::report::{run_cost, run_data, run_words};
 
 impl RunReport<'_> {
     /// The page, whole. Without a viewer it says how to get the view.
@@ -54,15 +26,11 @@ impl RunReport<'_> {
                 consensus,
             ));
         }
-        sections.push(section(
-            "cost",
-            "What accuracy cost",
-            &run_words::cost(self),
-        ));
+        sections.push(section("cost", "What accuracy cost", &run_cost::cost(self)));
         sections.push(section(
             "options",
             "Options, and how to repeat the run",
-            &run_words::options(self),
+            &run_cost::options(self),
         ));
         Page {
             title: run_words::title(self),

@@ -22,7 +22,7 @@ use crate::output::files::assemblies::Surface;
 use crate::pose_space::arrangement::Arrangement;
 use crate::report::MAX_ROWS;
 use crate::report::columns::{ShownColumn, is_term, shown};
-use crate::report::run::{ReportBodies, RunReport};
+use crate::report::run_parts::{ReportBodies, RunReport};
 
 /// Most triangles of a surface that is shown.
 const MAX_TRIANGLES: usize = 100_000;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::bounded_read::read_bounded;
-use crate::report::html::packed;
+use crate::report::packed::packed;
 
 /// Most bytes of a file of the library.
 const MAX_BYTES: u64 = 4 << 20;

@@ -2,6 +2,8 @@ const RECEPTOR = "#bfbfbf";
 const LIGANDS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442"];
 const KNOWN = "#cc79a7";
 const BLOCKED = "#000000";
+// Corners that a mesh of flat triangles may have.
+const MOST_FLAT = 60000;
 
 /** A shade from white to blue for a share from 0 to 1. */
 function shade(share) {
@@ -59,14 +61,18 @@ function makeScene(root, data) {
     return points;
   }
 
-  function surface(vertexArr, triangles, color, opacity) {
+  function surface(points, corners, color, opacity) {
+    // Small meshes are made of flat triangles, each with corners of its own; large ones look smooth.
+    const isFlat = corners.length <= MOST_FLAT;
+    const vertexArr = isFlat ? corners.map((corner) => points[corner]) : points;
+    const triangles = isFlat ? corners.map((_, place) => place) : corners;
     const normalArr = vertexArr.map(() => ({ x: 0, y: 0, z: 0 }));
     for (let at = 0; at < triangles.length; at += 3) {
-      const corners = triangles.slice(at, at + 3);
-      const [a, b, c] = corners.map((corner) => vertexArr[corner]);
+      const three = triangles.slice(at, at + 3);
+      const [a, b, c] = three.map((corner) => vertexArr[corner]);
       const [u, v] = [b, c].map((end) => [end.x - a.x, end.y - a.y, end.z - a.z]);
       const normal = { x: u[1] * v[2] - u[2] * v[1], y: u[2] * v[0] - u[0] * v[2], z: u[0] * v[1] - u[1] * v[0] };
-      for (const corner of corners) for (const axis of ["x", "y", "z"]) normalArr[corner][axis] += normal[axis];
+      for (const corner of three) for (const axis of ["x", "y", "z"]) normalArr[corner][axis] += normal[axis];
     }
     return viewer.addCustom({ vertexArr, normalArr, faceArr: triangles, color, opacity });
   }
