@@ -160,3 +160,48 @@ fn names_are_no_markup() {
     assert!(!text.contains("<img src=x"));
     assert!(text.contains("&lt;img src=x"));
 }
+
+/// A report of collisions has the rows of the table, and takes no file's place by mistake.
+#[test]
+fn collisions_are_shown() {
+    let folder = place();
+    let poses = "qw,qx,qy,qz,tx,ty,tz\n1,0,0,0,0,0,0\n1,0,0,0,100,0,0\n";
+    fs::write(folder.path().join("poses.csv"), poses).unwrap();
+    let collide = "collide receptor.pdb ligand.pdb --poses poses.csv";
+    run(
+        folder.path(),
+        &format!("{collide} -o table.csv --report hits.html --quiet"),
+    );
+    let data = data(&folder.path().join("hits.html"));
+    let mut table = csv::Reader::from_path(folder.path().join("table.csv")).unwrap();
+    let verdict = data["columns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .position(|one| one["name"] == "verdict");
+    for (row, shown) in table.deserialize().zip(data["rows"].as_array().unwrap()) {
+        let row: BTreeMap<String, String> = row.unwrap();
+        assert_eq!(shown[verdict.unwrap()].as_str().unwrap(), row["verdict"]);
+    }
+    assert_eq!(data["placed"][1][0][4], 100.0);
+    assert!(data["bodies"][0]["triangle_count"].as_u64().unwrap() > 100);
+    for words in [
+        "--report hits.html",
+        "--report new.html -o new.html",
+        "--report receptor.pdb --force",
+    ] {
+        refused(
+            folder.path(),
+            format!("{collide} {words}").split_whitespace(),
+        );
+    }
+    run(
+        folder.path(),
+        "morph sum receptor.pdb ligand.pdb --report sum.html --quiet",
+    );
+    assert!(
+        fs::read_to_string(folder.path().join("sum.html"))
+            .unwrap()
+            .contains("which hold it")
+    );
+}

@@ -10,14 +10,19 @@ use knotdock::geometry::collide::{
 };
 use knotdock::options::Threads;
 use knotdock::options::values::{count, duration, not_negative};
+use knotdock::output::files::whole_file::write_whole;
 use knotdock::output::tables::collisions;
+use knotdock::output::tables::report::counted;
+use knotdock::report::{SolidsReport, Viewer};
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use serde_json::{Value, json};
 
 use crate::cli::arguments::memory;
-use crate::cli::arguments::output_file::check_output;
+use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::arguments::solid_output::shown_surface;
+use crate::cli::arguments::viewer::ViewerArguments;
 use crate::cli::inputs::poses::{PoseArguments, pose_file};
 use crate::cli::inputs::solids::{SolidArguments, SolidInput};
 use crate::cli::messages::console::Console;
@@ -59,7 +64,12 @@ pub struct Collide {
     /// The table to write, a row a pose.
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-    /// Replace a file that is there.
+    /// The report to write: the poses as a table and in three dimensions, in a page that opens in any browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    viewer: ViewerArguments,
+    /// Replace files that are there.
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -120,6 +130,7 @@ impl Collide {
             Some(path) => pose_file(path)?,
             None => self.poses.read()?,
         };
+        let viewer = self.viewer.read()?;
         let solids = self.read()?;
         self.check_output(&solids)?;
         for (side, solid) in ["A", "B"].iter().zip(&solids) {
@@ -139,8 +150,15 @@ impl Collide {
         let answers = questions.answers(&poses);
         let seconds = start.elapsed().as_secs_f64();
         let impact = self.path.is_some().then(|| impact(&questions, &poses));
-        if let Some(file) = &self.output {
-            collisions::write(file, &poses, &answers)?.place()?;
+        let staged = self.output.as_deref();
+        let staged = staged.map(|file| collisions::write(file, &poses, &answers));
+        let staged = staged.transpose()?;
+        if let Some(file) = &self.report {
+            let text = self.page(&solids, &questions, (&poses, &answers), viewer.as_ref())?;
+            write_whole(file, |file| file.write_all(text.as_bytes()))?;
+        }
+        if let Some(staged) = staged {
+            staged.place()?;
         }
         console.say(match &answers[..] {
             [answer] => format!("\n{}", one_pose(answer)),
@@ -171,16 +189,72 @@ impl Collide {
     }
 
     fn check_output(&self, solids: &[SolidInput; 2]) -> Result<(), Failure> {
-        let Some(file) = &self.output else {
-            return Ok(());
-        };
         let read: Vec<&Path> = solids
             .iter()
             .map(SolidInput::path)
             .chain(self.poses.file())
             .chain(self.path.as_deref())
             .collect();
-        check_output(file, read, self.force)
+        if let (Some(one), Some(other)) = (&self.output, &self.report)
+            && is_same(one, other)
+        {
+            return Err(Failure::input("the same file is named twice")
+                .at(one)
+                .remedy("give each file to write a name of its own"));
+        }
+        for file in [&self.output, &self.report].into_iter().flatten() {
+            check_output(file, read.iter().copied(), self.force)?;
+        }
+        Ok(())
+    }
+
+    /// The report.
+    fn page(
+        &self,
+        solids: &[SolidInput; 2],
+        questions: &Questions,
+        (poses, answers): (&[Pose], &[Answer]),
+        viewer: Option<&Viewer>,
+    ) -> Result<String, Failure> {
+        let [a, b] = solids.each_ref().map(|input| {
+            let path = input.path().file_name().unwrap_or_default();
+            path.to_string_lossy().into_owned()
+        });
+        let shown = solids
+            .each_ref()
+            .map(|input| shown_surface(&input.solid.outer(), input.solid.origin()));
+        let [first, second] = shown;
+        let (first, second) = (first?, second?);
+        let (header, records) = collisions::table(poses, answers);
+        let report = SolidsReport {
+            title: format!("Collisions of {a} with {b}"),
+            sentences: vec![
+                format!("{a} (A) stands and {b} (B) moves."),
+                format!(
+                    "Of {}: hit {}, free {}, undecided {} (gaps below {}).",
+                    counted(answers.len(), "pose"),
+                    number_of(answers, Verdict::Hit),
+                    number_of(answers, Verdict::Free),
+                    number_of(answers, Verdict::Undecided),
+                    Figure(questions.scene().band()),
+                ),
+            ],
+            names: ["A", "B"],
+            surfaces: [(&first).into(), (&second).into()],
+            caption: "Poses of B. Choose a row to see it.",
+            header,
+            records,
+            main: &[
+                "pose",
+                "verdict",
+                "distance_low",
+                "distance_high",
+                "volume",
+                "energy",
+            ],
+            poses,
+        };
+        Ok(report.text(viewer))
     }
 
     fn quantities(&self) -> Quantities {

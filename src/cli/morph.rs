@@ -206,7 +206,9 @@ impl Morph {
             .map_err(|error| refused(&error))?;
         let volumes = Volumes::of(&found);
         volumes.describe(operation.name(), &found, console);
-        let files = common.output.write(&found, None)?;
+        let files = common
+            .output
+            .write((operation.name(), &volumes), &found, None)?;
         if !files.is_empty() {
             console.say(format!("Wrote {}", files.join(", ")));
         }

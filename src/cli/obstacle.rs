@@ -49,7 +49,7 @@ pub struct Obstacle {
     )]
     rotation: Option<String>,
     /// Many rotations, spread evenly: -o is then a table of volumes and free regions, a row a rotation.
-    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with_all = ["surface", "volume_grid", "picture", "set", "reduce"])]
+    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
     rotations: Option<usize>,
     /// Length added to each radius, another slice of the lifted obstacle: a clearance, or, below zero, an overlap that
     /// is allowed.
@@ -136,7 +136,9 @@ impl Obstacle {
             }
             _ => None,
         };
-        let files = self.output.write(&found.solid, table)?;
+        let files = self
+            .output
+            .write(("Obstacle", &found.volumes), &found.solid, table)?;
         found.volumes.describe("Obstacle", &found.solid, console);
         let [inner, outer] = found.regions;
         console.say(format!(

@@ -13,6 +13,7 @@ use knotdock::report::{Listed, RunReport, Viewer};
 use knotdock::threads;
 use serde_json::{Value, json};
 
+use crate::cli::arguments::viewer::ViewerArguments;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -27,9 +28,8 @@ pub struct Report {
     /// Directories that `dock`, `batch` or `tradeoff` wrote.
     #[arg(value_name = "DIR", required = true)]
     runs: Vec<PathBuf>,
-    /// Folder of npm's package 3dmol, for the three-dimensional view [default: what the program was built with].
-    #[arg(long, value_name = "DIR")]
-    viewer: Option<PathBuf>,
+    #[command(flatten)]
+    viewer: ViewerArguments,
     /// Replace reports that someone has changed.
     #[arg(long)]
     force: bool,
@@ -44,8 +44,7 @@ impl Report {
     }
 
     fn write(self, console: Console) -> Result<(), Failure> {
-        let read = self.viewer.as_deref().map(Viewer::read).transpose()?;
-        let viewer = read.as_ref().or(Viewer::embedded());
+        let viewer = self.viewer.read()?;
         let mut written: Vec<String> = Vec::new();
         for run in &self.runs {
             finish_before_reading(run, console)?;
@@ -57,7 +56,7 @@ impl Report {
                         .remedy("keep it under another name, or pass --force to replace it"),
                 );
             }
-            let text = page(run, viewer)?;
+            let text = page(run, viewer.as_ref())?;
             write_whole(&path, |file| file.write_all(text.as_bytes()))?;
             console.say(path.display().to_string());
             written.push(path.display().to_string());

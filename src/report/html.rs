@@ -10,7 +10,7 @@ use crate::report::packed::packed;
 use crate::report::viewer::Viewer;
 
 /// The scripts, in the order in which each uses those before it.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("page/packed.js"),
     include_str!("page/table.js"),
     include_str!("page/charts.js"),
@@ -19,6 +19,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("page/panels.js"),
     include_str!("page/run.js"),
     include_str!("page/list.js"),
+    include_str!("page/solids.js"),
     include_str!("page/main.js"),
 ];
 

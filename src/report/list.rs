@@ -5,8 +5,9 @@ use base64::engine::general_purpose::STANDARD;
 use csv::StringRecord;
 use serde_json::{Value, json};
 
-use crate::report::columns::{ShownColumn, of_table};
+use crate::report::columns::of_table;
 use crate::report::html::{Page, escaped, section};
+use crate::report::shown::cell;
 
 /// Most rows that a list shows.
 const MAX_LISTED: usize = 10_000;
@@ -81,14 +82,5 @@ impl ListReport {
             viewer: None,
         }
         .text()
-    }
-}
-
-/// A field as its column shows it.
-fn cell((column, field): (&ShownColumn, &str)) -> Value {
-    match (field, column.digits, field.parse::<f64>()) {
-        ("", _, _) => Value::Null,
-        (_, Some(_), Ok(value)) if value.is_finite() => json!(value),
-        (text, _, _) => json!(text),
     }
 }

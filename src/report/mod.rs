@@ -12,6 +12,8 @@
 //! | `run_data` | what the scripts of a run's report read |
 //! | `run_words`, `run_cost` | its sections that are words |
 //! | `list`, `lists` | reports that are tables: of batches, ensembles and sweeps |
+//! | `solids` | reports of collisions and of results of solids |
+//! | `shown` | fields, placements and surfaces, as scripts read them |
 //! | `html` | the page itself: sections, scripts, seal |
 //! | `packed` | bytes as the page holds them |
 //! | `viewer` | the library of the three-dimensional view, where there is one |
@@ -28,12 +30,15 @@ mod run_cost;
 mod run_data;
 mod run_parts;
 mod run_words;
+mod shown;
+mod solids;
 mod viewer;
 
 pub use contacts::RunContacts;
 pub use lists::{ListError, Listed};
 pub use run_parts::{ReportBodies, RunReport};
+pub use solids::SolidsReport;
 pub use viewer::{Viewer, ViewerError};
 
-/// Rows that a report shows, the best ones; the table of the run has all.
+/// Most rows that a report shows, the best ones; the table of the run has all.
 pub const MAX_ROWS: usize = 2000;

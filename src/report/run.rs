@@ -1,21 +1,36 @@
 //! The report of one run.
 
+use crate::report::MAX_ROWS;
 use crate::report::html::{Page, section};
 use crate::report::run_parts::{ReportBodies, RunReport};
+use crate::report::shown::LACKING;
 use crate::report::viewer::Viewer;
 use crate::report::{run_cost, run_data, run_words};
 
 impl RunReport<'_> {
-    /// The page, whole. Without a viewer it says how to get the view.
+    /// The page, whole: of large molecules with fewer rows, so that it stays below [`MAX_BYTES`]. Without a viewer it says
+    /// how to get the view.
     pub fn text(&self, viewer: Option<&Viewer>) -> String {
-        let data = run_data::data(self);
+        let mut rows = self.table.rows().len().min(MAX_ROWS);
+        loop {
+            let text = self.page(rows, viewer);
+            if text.len() <= MAX_BYTES || rows <= MIN_ROWS {
+                return text;
+            }
+            rows = (rows / 2).max(MIN_ROWS);
+        }
+    }
+
+    /// The page with so many rows.
+    fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
+        let data = run_data::data(self, rows);
         let explorer = include_str!("page/explorer.html");
         let lacking = match viewer {
             Some(_) => "",
             None => LACKING,
         };
         let mut sections = vec![
-            section("summary", "Summary", &run_words::summary(self)),
+            section("summary", "Summary", &run_words::summary(self, rows)),
             section("poses", "Poses", &explorer.replace("{{lacking}}", lacking)),
         ];
         if matches!(self.bodies, ReportBodies::Molecules(..)) {
@@ -42,7 +57,7 @@ impl RunReport<'_> {
     }
 }
 
-/// What stands in the place of the view, where there is none.
-const LACKING: &str = "<p>This report has no three-dimensional view: the program was built without it. To add one, run \
-                       <code>npm install 3dmol</code> and then <code>knotdock report DIR --viewer \
-                       node_modules/3dmol</code>.</p>";
+/// Most bytes of a page, while rows can be left out.
+const MAX_BYTES: usize = 5_500_000;
+/// Rows that are shown of molecules of any size.
+const MIN_ROWS: usize = 100;

@@ -13,23 +13,18 @@
 
 use std::collections::HashMap;
 
-use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, write_renamed};
 use serde_json::{Value, json};
 
 use crate::interface::{Contact, ResidueName, heavy_residues};
-use crate::output::files::assemblies::Surface;
 use crate::pose_space::arrangement::Arrangement;
-use crate::report::MAX_ROWS;
 use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::run_parts::{ReportBodies, RunReport};
+use crate::report::shown::{placement, rounded, solid};
 
-/// Most triangles of a surface that is shown.
-const MAX_TRIANGLES: usize = 100_000;
-
-pub(super) fn data(report: &RunReport) -> Value {
+/// The data, with the first `count` rows.
+pub(super) fn data(report: &RunReport, count: usize) -> Value {
     let table = report.table;
-    let count = table.rows().len().min(MAX_ROWS);
     let columns: Vec<ShownColumn> = table.header.iter().map(shown).collect();
     let rows: Vec<Vec<Value>> = (0..count)
         .map(|row| {
@@ -66,7 +61,7 @@ pub(super) fn data(report: &RunReport) -> Value {
             data["bodies"] = (0..2)
                 .map(|side| molecule(report, side, molecules[side], sides[side]))
                 .collect();
-            let rows = contacts.rows().iter().map(|row| flat(row));
+            let rows = contacts.rows().iter().take(count).map(|row| flat(row));
             data["contacts"] = rows.collect();
             let shares = contacts.shares();
             data["shares"] = shares
@@ -80,7 +75,7 @@ pub(super) fn data(report: &RunReport) -> Value {
     data
 }
 
-/// A field, with the digits that are shown and four more.
+/// A field of the table, with the digits that are shown and four more.
 fn cell(report: &RunReport, row: usize, column: &ShownColumn) -> Value {
     let field = report.table.field(row, &column.name).unwrap_or_default();
     match (field, column.digits) {
@@ -91,17 +86,6 @@ fn cell(report: &RunReport, row: usize, column: &ShownColumn) -> Value {
             _ => json!(text),
         },
     }
-}
-
-fn rounded(value: f64, digits: i32) -> f64 {
-    let scale = 10_f64.powi(digits);
-    (value * scale).round() / scale
-}
-
-fn placement(pose: &Pose) -> Vec<f64> {
-    let rotation = pose.quaternion().map(|part| rounded(part, 7));
-    let translation = [0, 1, 2].map(|axis| rounded(pose.translation[axis], 4));
-    rotation.into_iter().chain(translation).collect()
 }
 
 fn flat(contacts: &[Contact]) -> Value {
@@ -193,26 +177,4 @@ fn chosen(molecule: &Molecule, selections: &[ResidueSelection]) -> Vec<usize> {
         .filter(|(_, atoms)| is_chosen(atoms))
         .map(|(residue, _)| residue)
         .collect()
-}
-
-/// A surface, flat; without triangles where it has too many to be shown.
-fn solid(surface: &Surface) -> Value {
-    let count = surface.triangles.len();
-    if count > MAX_TRIANGLES {
-        return json!({ "format": "mesh", "triangle_count": count });
-    }
-    let parts = || surface.positions.iter().flatten().copied();
-    let size = parts().fold(f64::MIN, f64::max) - parts().fold(f64::MAX, f64::min);
-    // A millionth of its size is less than a pixel.
-    let digits = match size > 0.0 {
-        true => (6 - size.log10().floor() as i32).clamp(0, 15),
-        false => 6,
-    };
-    let positions: Vec<f64> = parts().map(|part| rounded(part, digits)).collect();
-    json!({
-        "format": "mesh",
-        "triangle_count": count,
-        "positions": positions,
-        "triangles": surface.triangles.as_flattened(),
-    })
 }

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use crate::output::tables::report::counted;
-use crate::report::MAX_ROWS;
 use crate::report::html::escaped;
 use crate::report::run_data::active;
 use crate::report::run_parts::RunReport;
@@ -25,8 +24,8 @@ pub(super) fn title(report: &RunReport) -> String {
     }
 }
 
-/// What was docked and what came of it.
-pub(super) fn summary(report: &RunReport) -> String {
+/// What was docked and what came of it, where so many rows are shown.
+pub(super) fn summary(report: &RunReport, shown: usize) -> String {
     let mut sentences = Vec::new();
     let record = report.record;
     let side = |side: &str| {
@@ -73,7 +72,6 @@ pub(super) fn summary(report: &RunReport) -> String {
         counted(poses, "pose"),
         counted(clusters, "cluster"),
     ));
-    let shown = report.table.rows().len().min(MAX_ROWS);
     if shown < rows {
         sentences.push(format!(
             "This report shows the first {shown} of {rows} rows; poses.csv has all."

@@ -14,6 +14,7 @@ const knotdock = (command, ...words) => execFileSync(program, [command, "--quiet
 const file = (name) => path.join(examples, name);
 const pair = ["receptor", "ligand"].map((side) => file(`1ppe_${side}_unbound.pdb`));
 const native = ["receptor", "ligand"].flatMap((side) => [`--native-${side}`, file(`1ppe_${side}_bound.pdb`)]);
+const library = path.join(root, "viewer/node_modules/3dmol");
 const few = ["--rotations", "300", "--sharp", "off"];
 
 knotdock("dock", ...pair, ...native, "--rotations", "600", "--sharp", "off", "-o", "run");
@@ -24,6 +25,10 @@ const tetrahedron = (size) => [[0, 0, 0], [size, 0, 0], [0, size, 0], [0, 0, siz
 writeFileSync(path.join(folder, "large.obj"), tetrahedron(10));
 writeFileSync(path.join(folder, "small.obj"), tetrahedron(6));
 knotdock("dock", "large.obj", "small.obj", "--rotations", "60", "--sample-grid", "2^12", "-o", "solids");
+knotdock("obstacle", "large.obj", "small.obj", "--grid", "2^9", "--cells", "24", "--report", "obstacle.html", "--viewer", library);
+const poses = [0, 5, 9, 20].map((x) => `1,0,0,0,${x},0,0\n`).join("");
+writeFileSync(path.join(folder, "places.csv"), `qw,qx,qy,qz,tx,ty,tz\n${poses}`);
+knotdock("collide", "large.obj", "small.obj", "--grid", "2^9", "--poses", "places.csv", "--report", "collide.html", "--viewer", library);
 // The same ligand twice, as two models.
 const atoms = readFileSync(pair[1], "utf8").split("\n").filter((line) => /^(ATOM|TER)/.test(line)).join("\n");
 writeFileSync(path.join(folder, "models.pdb"), `MODEL        1\n${atoms}\nENDMDL\nMODEL        2\n${atoms}\nENDMDL\nEND\n`);
@@ -36,5 +41,4 @@ try {
   if (error.status !== 2) throw error;
 }
 knotdock("tradeoff", ...pair, "--rotations", "60", "--parameters", "tolerance", "-o", "tradeoff");
-const library = path.join(root, "viewer/node_modules/3dmol");
 knotdock("report", "run", "ring", "solids", "ensemble", "batch", "tradeoff", path.join("batch", "first"), "--viewer", library);

@@ -8,5 +8,6 @@ if (!folder) throw new Error("set REPORTS to the folder that test/make.mjs wrote
 /** The report of each kind. */
 export function reports() {
   const of = (directory) => path.resolve(folder, directory, "report.html");
-  return { run: of("run"), bare: of("bare"), ring: of("ring"), solids: of("solids"), ensemble: of("ensemble"), batch: of("batch"), tradeoff: of("tradeoff") };
+  const page = (name) => path.resolve(folder, `${name}.html`);
+  return { collide: page("collide"), obstacle: page("obstacle"), run: of("run"), bare: of("bare"), ring: of("ring"), solids: of("solids"), ensemble: of("ensemble"), batch: of("batch"), tradeoff: of("tradeoff") };
 }

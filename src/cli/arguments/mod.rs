@@ -9,3 +9,4 @@ pub mod output_file;
 pub mod program;
 pub mod ranks;
 pub mod solid_output;
+pub mod viewer;

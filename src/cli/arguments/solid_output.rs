@@ -3,21 +3,27 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use csv::StringRecord;
+use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
 use knotdock::geometry::bracket::{shifted, volume};
-use knotdock::geometry::{Bracket, surface::surface};
+use knotdock::geometry::surface::{Surface, surface};
 use knotdock::options::values::at_least_one;
 use knotdock::output::files::balls::write_table;
 use knotdock::output::files::sample_picture::write_ball_picture;
 use knotdock::output::files::surfaces::{SurfaceFormat, write_surface};
 use knotdock::output::files::volume_grids::{VolumeFormat, VolumeGrid, write_volume};
 use knotdock::output::files::whole_file::{StagedFile, is_stream};
+use knotdock::output::tables::fields::number;
+use knotdock::report::{SolidsReport, Viewer};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampling::ball_tree::BallTree;
 use knotdock_structures::{Ball, Knots};
 use serde_json::{Value, json};
 
 use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::arguments::viewer::ViewerArguments;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -37,6 +43,11 @@ pub struct SolidOutput {
     /// The picture to write: a slice of inner and outer balls, and the outer balls from outside.
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
+    /// The report to write: the result in three dimensions and its volumes, in a page that opens in any browser.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub viewer: ViewerArguments,
     /// Which balls are written: outer balls hold the solid, inner balls lie in it.
     #[arg(long, value_enum, default_value_t = Side::Outer)]
     pub set: Side,
@@ -75,6 +86,7 @@ impl SolidOutput {
             &self.surface,
             &self.volume_grid,
             &self.picture,
+            &self.report,
         ]
         .into_iter()
         .flatten()
@@ -134,8 +146,15 @@ impl SolidOutput {
         }
     }
 
-    /// Writes all that was requested and returns the names; the table holds `table` if that is given.
-    pub fn write(&self, solid: &Bracket, table: Option<Knots>) -> Result<Vec<String>, Failure> {
+    /// Writes all that was requested of a result of a name and returns the names of the files; the table holds `table` if
+    /// that is given.
+    pub fn write(
+        &self,
+        (name, volumes): (&str, &Volumes),
+        solid: &Bracket,
+        table: Option<Knots>,
+    ) -> Result<Vec<String>, Failure> {
+        let viewer = self.viewer.read()?;
         let balls = self.chosen(solid);
         let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
         let wants_any =
@@ -175,6 +194,11 @@ impl SolidOutput {
         if let Some(path) = &self.picture {
             staged.push((write_ball_picture(&solid.inner, &solid.outer, path)?, path));
         }
+        if let Some(path) = &self.report {
+            let text = page((name, volumes), solid, viewer.as_ref())?;
+            let written = StagedFile::write(path, |file| file.write_all(text.as_bytes()))?;
+            staged.push((written, path));
+        }
         // None takes its place before all of them are on the device.
         let mut names = Vec::new();
         for (file, path) in staged {
@@ -190,6 +214,63 @@ impl SolidOutput {
 
     fn volume_format(&self) -> Option<VolumeFormat> {
         self.volume_grid.as_deref().and_then(VolumeFormat::of)
+    }
+}
+
+/// The report of a result.
+fn page(
+    (name, volumes): (&str, &Volumes),
+    solid: &Bracket,
+    viewer: Option<&Viewer>,
+) -> Result<String, Failure> {
+    let sets = [
+        ("outer balls", &solid.outer, volumes.outer),
+        ("inner balls", &solid.inner, volumes.inner),
+    ];
+    let surfaces = sets.map(|(_, balls, _)| shown_surface(balls, solid.origin));
+    let [outer, inner] = surfaces;
+    let (outer, inner) = (outer?, inner?);
+    let record = |(set, balls, (volume, error)): (&str, &Vec<Ball>, (f64, f64))| {
+        let fields = [
+            set.to_owned(),
+            balls.len().to_string(),
+            number(volume),
+            number(error),
+        ];
+        StringRecord::from(fields.to_vec())
+    };
+    let columns = ["set", "balls", "volume", "error of the volume"];
+    let report = SolidsReport {
+        title: name.to_owned(),
+        sentences: vec![
+            "The result lies between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
+            match solid.epsilon.is_finite() {
+                true => format!("Either set is within {} of it.", Figure(solid.epsilon)),
+                false => "How far either set is from it is not known.".to_owned(),
+            },
+        ],
+        names: ["outer balls", "inner balls"],
+        surfaces: [(&outer).into(), (&inner).into()],
+        caption: "Both sets of balls",
+        header: columns.into_iter().collect(),
+        records: sets.map(record).to_vec(),
+        main: &columns,
+        poses: &[Pose::identity(); 2],
+    };
+    Ok(report.text(viewer))
+}
+
+/// Cells along the longest edge of a surface that is looked at.
+const SHOWN_CELLS: usize = 64;
+
+/// The surface of balls, to look at; without balls it is empty.
+pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Failure> {
+    match balls.is_empty() {
+        true => Ok(Surface {
+            positions: Vec::new(),
+            triangles: Vec::new(),
+        }),
+        false => Ok(surface(&field(balls, SHOWN_CELLS)?, origin)),
     }
 }
 

@@ -10,6 +10,7 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
+use crate::geometry::surface::Surface as ComputedSurface;
 use crate::output::files::complexes::file_name;
 use crate::output::files::disk;
 use crate::output::files::whole_file::{FileError, write_new};
@@ -31,6 +32,15 @@ impl<'a> From<&'a Mesh> for Surface<'a> {
         Self {
             positions: mesh.positions(),
             triangles: mesh.triangles(),
+        }
+    }
+}
+
+impl<'a> From<&'a ComputedSurface> for Surface<'a> {
+    fn from(surface: &'a ComputedSurface) -> Self {
+        Self {
+            positions: &surface.positions,
+            triangles: &surface.triangles,
         }
     }
 }

@@ -5,6 +5,7 @@
 
 use std::io;
 
+use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 use serde_json::{Map, Value, json};
 
@@ -130,16 +131,31 @@ pub fn write(path: &Path, poses: &[Pose], answers: &[Answer]) -> Result<StagedFi
     StagedFile::write(path, |file| write_to(file, poses, answers))
 }
 
+/// The header and the rows, as they are written.
+pub fn table(poses: &[Pose], answers: &[Answer]) -> (StringRecord, Vec<StringRecord>) {
+    let header = COLUMNS.iter().map(|(name, _)| *name).collect();
+    (
+        header,
+        rows(poses, answers).map(|row| record(&row)).collect(),
+    )
+}
+
+/// A row as it is written.
+fn record(row: &Row) -> StringRecord {
+    let field = |(_, cell): &Column| match cell(row) {
+        Cell::Number(value) => number(value),
+        Cell::Count(count) => count.to_string(),
+        Cell::Word(word) => word.to_owned(),
+        Cell::Nothing => String::new(),
+    };
+    COLUMNS.iter().map(field).collect()
+}
+
 fn write_to(file: &mut dyn io::Write, poses: &[Pose], answers: &[Answer]) -> io::Result<()> {
     let mut table = TableWriter::new(file);
     table.row(COLUMNS.map(|(name, _)| name))?;
     for row in rows(poses, answers) {
-        table.row(COLUMNS.map(|(_, cell)| match cell(&row) {
-            Cell::Number(value) => number(value),
-            Cell::Count(count) => count.to_string(),
-            Cell::Word(word) => word.to_owned(),
-            Cell::Nothing => String::new(),
-        }))?;
+        table.row(&record(&row))?;
     }
     table.flush()
 }

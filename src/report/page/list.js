@@ -2,6 +2,12 @@
 function showList(data) {
   const link = (row) => data.links[row] ?? null;
   const table = makeTable(byId("list-table"), { caption: data.caption, columns: data.columns, rows: data.rows, link, empty: "No results" });
+  filterByText(table, data);
+  window.knotdock = {};
+}
+
+/** Connects the filter by text and the choice of columns with a table. */
+function filterByText(table, data) {
   const filter = () => {
     const wanted = byId("filter-text").value.trim().toLowerCase();
     table.filter((row) => wanted === "" || data.rows[row].some((field) => field !== null && String(field).toLowerCase().includes(wanted)));
@@ -11,5 +17,4 @@ function showList(data) {
   filters.addEventListener("submit", (event) => event.preventDefault());
   filters.addEventListener("reset", () => setTimeout(() => { filter(); table.showAll(false); }));
   byId("all-columns").addEventListener("change", (event) => table.showAll(event.target.checked));
-  window.knotdock = {};
 }

@@ -1,4 +1,4 @@
-const PAGES = { run: showRun, list: showList };
+const PAGES = { run: showRun, list: showList, solids: showSolids };
 
 unpacked("data").then((text) => {
   const data = JSON.parse(text);

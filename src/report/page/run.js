@@ -97,12 +97,7 @@ function wire(scene, data, isMesh) {
   on("colour-by", "change", (event) => { scene.style({ colour: event.target.value }); drawLegend(data, isMesh, event.target.value); });
   on("zoom-interface", "click", () => scene.toInterface());
   on("zoom-all", "click", () => scene.whole());
-  on("scene", "keydown", (event) => {
-    const turn = { ArrowLeft: [-10, "y"], ArrowRight: [10, "y"], ArrowUp: [-10, "x"], ArrowDown: [10, "x"] }[event.key];
-    if (!turn) return;
-    scene.turn(...turn);
-    event.preventDefault();
-  });
+  turnByKeys(byId("scene"), scene);
   drawLegend(data, isMesh, "partner");
 }
 

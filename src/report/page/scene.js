@@ -28,14 +28,14 @@ function makeScene(root, data) {
   let shapes = [];
 
   // Meshes may be of any size: the view is made for some 50 units, about the origin.
-  const frame = isMesh ? frameOf(data.bodies[0].positions ?? []) : null;
+  const frame = isMesh ? frameOf(data.bodies.map((body) => body.positions ?? []).find((positions) => positions.length > 0) ?? [0, 0, 0]) : null;
   const bounds = isMesh ? viewer.addModel() : null;
 
   function place() {
     const placements = data.placed[row] ?? [];
     if (isMesh) {
       shapes.forEach((shape) => viewer.removeShape(shape));
-      const bodies = [null, ...placements].map((placement, index) => [data.bodies[index === 0 ? 0 : 1], placement, index]).filter(([body]) => body.positions);
+      const bodies = [null, ...placements].map((placement, index) => [data.bodies[index === 0 ? 0 : 1], placement, index]).filter(([body]) => body.positions?.length > 0);
       shapes = bodies.map(([body, placement, index]) => surface(vertices(body, placement), body.triangles, index === 0 ? RECEPTOR : LIGANDS[0], index === 0 ? 0.75 : 1));
       // What is zoomed to are atoms; these are not drawn.
       bounds.removeAtoms(bounds.selectedAtoms({}));
@@ -131,6 +131,16 @@ function makeScene(root, data) {
     picture: () => viewer.pngURI(),
     turn(angle, axis) { viewer.rotate(angle, axis); },
   };
+}
+
+/** Lets the arrow keys turn the view. */
+function turnByKeys(element, scene) {
+  element.addEventListener("keydown", (event) => {
+    const turn = { ArrowLeft: [-10, "y"], ArrowRight: [10, "y"], ArrowUp: [-10, "x"], ArrowDown: [10, "x"] }[event.key];
+    if (!turn) return;
+    scene.turn(...turn);
+    event.preventDefault();
+  });
 }
 
 /** Middle of some points, and the factor that brings them to the size of a protein. */
