@@ -182,7 +182,13 @@ fn a_stopped_ensemble_goes_on() {
     run(folder.path(), &format!("{command} --threads 2"));
     let directory = folder.path().join("run");
     let whole = comparable(&directory);
-    for file in ["ensemble.json", "poses.csv", "view.pml", "view.cxc"] {
+    for file in [
+        "ensemble.json",
+        "poses.csv",
+        "view.pml",
+        "view.cxc",
+        "report.html",
+    ] {
         fs::remove_file(directory.join(file)).unwrap();
     }
     fs::remove_dir_all(directory.join("top")).unwrap();

@@ -249,8 +249,8 @@ impl Collide {
                 "verdict",
                 "distance_low",
                 "distance_high",
-                "volume",
-                "energy",
+                "overlap_volume",
+                "overlap_energy",
             ],
             poses,
         };
