@@ -47,7 +47,7 @@ fn dock_says_where_the_run_is_and_what_is_best() {
     let object = object(&output);
     assert_eq!(
         keys(&object),
-        ["best", "complexes", "directory", "poses", "run"]
+        ["best", "complexes", "directory", "poses", "report", "run"]
     );
     assert!(
         String::from_utf8_lossy(&output.stderr).contains("receptor.pdb"),

@@ -3,27 +3,18 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Read;
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use crate::dock_run::run::{place, rows, run};
+use crate::dock_run::run::{place, report_data, rows, run};
 use crate::program::refused;
 
 const SMALL: &str = "--rotations 36 --poses 60 --write-top 2 --quiet";
 
 /// What the scripts of a report read.
 fn data(report: &Path) -> Value {
-    let text = fs::read_to_string(report).unwrap();
-    let (_, rest) = text.split_once("id=\"data\">").unwrap();
-    let packed = STANDARD.decode(rest.split_once('<').unwrap().0).unwrap();
-    let mut json = String::new();
-    let mut reader = flate2::read::GzDecoder::new(packed.as_slice());
-    reader.read_to_string(&mut json).unwrap();
-    serde_json::from_str(&json).unwrap()
+    report_data(&fs::read(report).unwrap())
 }
 
 /// The rows are those of poses.csv, the placements its poses, and the shares those that the contacts give.

@@ -135,8 +135,10 @@ fn an_older_run_goes_only_when_forced_and_when_the_new_one_is_done() {
     assert_eq!(
         after.keys().map(String::as_str).collect::<Vec<_>>(),
         [
+            "interface.csv",
             "notes.txt",
             "poses.csv",
+            "report.html",
             "run.json",
             "top/rank_0001.pdb",
             "view.cxc",

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
 use crate::program::succeed;
@@ -43,7 +45,23 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// The files of a run with the parts of run.json taken out that may differ.
+/// What the scripts of a report read.
+pub fn report_data(report: &[u8]) -> Value {
+    let text = std::str::from_utf8(report).unwrap();
+    let (_, rest) = text.split_once("id=\"data\">").unwrap();
+    let packed = STANDARD.decode(rest.split_once('<').unwrap().0).unwrap();
+    let reader = flate2::read::GzDecoder::new(packed.as_slice());
+    serde_json::from_reader(reader).unwrap()
+}
+
+/// The part of a report that does not differ from run to run: its words say how long the run took, and where it lies.
+pub fn comparable_report(report: &[u8]) -> Vec<u8> {
+    let mut data = report_data(report);
+    data.as_object_mut().unwrap().remove("directory");
+    data.to_string().into_bytes()
+}
+
+/// The files of a run with the parts of run.json and of the report taken out that may differ.
 pub fn comparable(run: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = files(run);
     let mut record: Value = serde_json::from_slice(&found["run.json"]).unwrap();
@@ -51,6 +69,9 @@ pub fn comparable(run: &Path) -> BTreeMap<String, Vec<u8>> {
         assert!(record.as_object_mut().unwrap().remove(part).is_some());
     }
     found.insert("run.json".to_owned(), record.to_string().into_bytes());
+    if let Some(report) = found.get_mut("report.html") {
+        *report = comparable_report(report);
+    }
     found
 }
 
