@@ -309,6 +309,10 @@ impl Docking {
             counted(outcome.poses.len(), "row"),
             self.directory.join("poses.csv").display()
         ));
+        if !self.request.options.output.no_report {
+            let report = self.directory.join(REPORT);
+            console.say(format!("To look at them: {}", report.display()));
+        }
     }
 }
 
