@@ -58,12 +58,8 @@ fn a_report_holds_what_the_tables_hold() {
         if seen.len() == 50 || !seen.insert(row["cluster"].clone()) {
             continue;
         }
-        let numbers: Vec<u64> = contacts
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|n| n.as_u64().unwrap())
-            .collect();
+        let words = contacts.as_str().unwrap().split_whitespace();
+        let numbers: Vec<u64> = words.map(|word| word.parse().unwrap()).collect();
         for (side, counts) in counts.iter_mut().enumerate() {
             let touched: std::collections::BTreeSet<u64> =
                 numbers.chunks(5).map(|pair| pair[side]).collect();

@@ -25,7 +25,7 @@ use knotdock::output::tables::quality;
 use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
 use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
-use knotdock::report::{RunReport, Viewer};
+use knotdock::report::{MAX_ROWS, RunReport, Viewer};
 use knotdock::search::deadline::Deadline;
 use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use knotdock::tradeoff::cost_model::{CostModel, Workload};
@@ -226,7 +226,7 @@ impl Docking {
                 .collect();
             write_scripts(staging, &viewed)?;
         }
-        let shown = table.table();
+        let shown = table.first(MAX_ROWS);
         let contacts = request.bodies.contacts(&shown, &request.options);
         if let Some(contacts) = &contacts {
             let [receptor, ligand] = contacts.shares();

@@ -7,11 +7,12 @@
 //! | `terms` | columns that add up to the pose score |
 //! | `placed` | of each row, what moves each placed body: qw, qx, qy, qz, tx, ty, tz |
 //! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
-//! | `contacts` | of each row, five numbers a pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
+//! | `contacts` | of each row a text, five numbers a pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
 //! | `shares` | of each side, clusters that touch each residue; `counted` of them were looked at |
 //! | `chains` | names of chains in complexes |
 
 use std::collections::HashMap;
+use std::fmt::Write as _;
 
 use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, write_renamed};
 use serde_json::{Value, json};
@@ -88,14 +89,18 @@ fn cell(report: &RunReport, row: usize, column: &ShownColumn) -> Value {
     }
 }
 
-fn flat(contacts: &[Contact]) -> Value {
-    let numbers = |contact: &Contact| {
+/// Contacts as text: as values of JSON they would take ten times the memory.
+fn flat(contacts: &[Contact]) -> String {
+    let mut text = String::new();
+    for contact in contacts {
         let [first, second] = contact.residues;
-        let distance = (100.0 * contact.distance).round() as usize;
-        let bridge = usize::from(contact.salt_bridge);
-        [first, second, distance, contact.hydrogen_bonds, bridge]
-    };
-    contacts.iter().flat_map(numbers).collect()
+        let distance = (100.0 * contact.distance).round();
+        let (bonds, bridge) = (contact.hydrogen_bonds, u8::from(contact.salt_bridge));
+        let space = if text.is_empty() { "" } else { " " };
+        // Writing to memory does not fail.
+        let _ = write!(text, "{space}{first} {second} {distance} {bonds} {bridge}");
+    }
+    text
 }
 
 fn molecule(

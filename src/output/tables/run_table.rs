@@ -52,15 +52,16 @@ impl<'a> RunTable<'a> {
         record
     }
 
-    /// The table as it would be read from its file.
-    pub fn table(&self) -> PoseTable {
-        let poses = self.poses.iter().enumerate();
+    /// The first `count` rows as they would be read from the file.
+    pub fn first(&self, count: usize) -> PoseTable {
+        let poses = self.poses.get(..count).unwrap_or(self.poses);
+        let indexed = poses.iter().enumerate();
         PoseTable {
             header: self.header(),
-            records: poses
+            records: indexed
                 .map(|(index, pose)| self.record(index, pose))
                 .collect(),
-            rows: pose_rows(self.poses),
+            rows: pose_rows(poses),
         }
     }
 

@@ -153,7 +153,7 @@ function frameOf(positions) {
 
 /** Pairs of residues in contact in a row: [receptor, ligand, distance in Å, hydrogen bonds, salt bridge]. */
 function pairsOf(data, row) {
-  const flat = data.contacts?.[row] ?? [];
+  const flat = (data.contacts?.[row] || "").split(" ").filter(Boolean).map(Number);
   const pairs = [];
   for (let at = 0; at < flat.length; at += 5) pairs.push([flat[at], flat[at + 1], flat[at + 2] / 100, flat[at + 3], flat[at + 4]]);
   return pairs;
