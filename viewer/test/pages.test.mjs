@@ -51,3 +51,20 @@ test("a report without the library says what it lacks, and shows the rest", asyn
     await close();
   }
 });
+
+for (const kind of ["ring", "solids", "collide"]) {
+  test(`${kind}: another row is another picture, and the first is the same again`, async () => {
+    const { page, close } = await open(reports()[kind]);
+    try {
+      const rows = page.locator("tbody tr.choice");
+      const picture = () => page.evaluate(() => window.knotdock.picture());
+      const first = await picture();
+      await rows.nth(1).click();
+      assert.notEqual(await picture(), first);
+      await rows.nth(0).click();
+      assert.equal(await picture(), first);
+    } finally {
+      await close();
+    }
+  });
+}
