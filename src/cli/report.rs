@@ -6,6 +6,7 @@ use clap::Args;
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
 use knotdock::options::Threads;
 use knotdock::output::files::seal::{REPORT, is_sealed};
+use knotdock::output::files::staging::Staging;
 use knotdock::output::files::whole_file::write_whole;
 use knotdock::output::records::recorded_run::{RecordedRun, RecordedRunError};
 use knotdock::output::tables::poses::PoseTable;
@@ -65,7 +66,14 @@ impl Report {
     }
 }
 
-/// Writes the report of a directory that holds no single run. One that someone has changed stays.
+/// Writes the report of an ensemble or a sweep beside its other files, which are staged for a directory.
+pub fn stage_listed(listed: Listed, directory: &Path, staging: &Staging) -> Result<(), Failure> {
+    let name = directory.display().to_string();
+    let text = listed.report(directory, staging.folder(), &name)?;
+    Ok(staging.write(REPORT, |file| file.write_all(text.as_bytes()))?)
+}
+
+/// Writes the report of a batch into its directory. One that someone has changed stays.
 pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
     let path = directory.join(REPORT);
     if path.symlink_metadata().is_ok() && !is_sealed(&path) {
@@ -84,7 +92,7 @@ pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
 fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Failure> {
     let name = directory.display().to_string();
     if let Some(listed) = Listed::in_directory(directory) {
-        return Ok(listed.report(directory, &name)?);
+        return Ok(listed.report(directory, directory, &name)?);
     }
     let record_path = directory.join("run.json");
     let run = RecordedRun::read(&record_path)?;

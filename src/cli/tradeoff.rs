@@ -11,6 +11,7 @@ use knotdock::output::files::staging::Staging;
 use knotdock::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use knotdock::output::tables::report::align;
 use knotdock::progress::Progress;
+use knotdock::report::Listed;
 use knotdock::threads;
 use knotdock::tradeoff::advice::advice;
 use knotdock::tradeoff::plot::plot;
@@ -24,7 +25,7 @@ use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
-use crate::cli::report::write_listed;
+use crate::cli::report::stage_listed;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
 /// and with combinations.
@@ -126,8 +127,8 @@ impl TradeoffCommand {
         })
         .map_err(Failure::other)?;
         staging.write("tradeoff.json", |file| record.write_to(file))?;
+        stage_listed(Listed::Tradeoff, &directory, &staging)?;
         warn_set_aside(&staging.commit()?, console);
-        write_listed(&directory, console)?;
 
         console.say(format!("\n{}", table(&tradeoff)));
         if let Some(advice) = &advice {

@@ -67,15 +67,16 @@ impl Listed {
         found.map(|(_, kind)| kind)
     }
 
-    /// The page of a directory, which its files make; `name` is what it is called.
+    /// The page of a directory, made of files in a folder, which may be where they are staged; `name` is what the directory
+    /// is called.
     ///
     /// # Errors
     /// [`ListError`] where a file cannot be read.
-    pub fn report(self, directory: &Path, name: &str) -> Result<String, ListError> {
+    pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, ListError> {
         let report = match self {
             Self::Batch => batch(directory, name)?,
-            Self::Ensemble => ensemble(directory, name)?,
-            Self::Tradeoff => tradeoff(directory, name)?,
+            Self::Ensemble => ensemble(directory, files, name)?,
+            Self::Tradeoff => tradeoff(files, name)?,
         };
         Ok(report.text())
     }
@@ -185,9 +186,9 @@ fn batch(directory: &Path, name: &str) -> Result<ListReport, ListError> {
     })
 }
 
-fn ensemble(directory: &Path, name: &str) -> Result<ListReport, ListError> {
-    let record = record(&directory.join(RECORD))?;
-    let table = table(&directory.join("poses.csv"))?;
+fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, ListError> {
+    let record = record(&files.join(RECORD))?;
+    let table = table(&files.join("poses.csv"))?;
     let size = |side: &str| record[side].as_array().map_or(0, Vec::len);
     let members = record["members"].as_array().map_or(0, Vec::len);
     let sentences = vec![
@@ -234,10 +235,10 @@ fn ensemble(directory: &Path, name: &str) -> Result<ListReport, ListError> {
     })
 }
 
-fn tradeoff(directory: &Path, name: &str) -> Result<ListReport, ListError> {
-    let record = record(&directory.join("tradeoff.json"))?;
-    let table = table(&directory.join("tradeoff.csv"))?;
-    let path = directory.join("tradeoff.svg");
+fn tradeoff(files: &Path, name: &str) -> Result<ListReport, ListError> {
+    let record = record(&files.join("tradeoff.json"))?;
+    let table = table(&files.join("tradeoff.csv"))?;
+    let path = files.join("tradeoff.svg");
     let picture = fs::read(&path).map_err(|error| ListError::at(&path, error))?;
     let mut sentences = vec![format!(
         "{} were measured.",

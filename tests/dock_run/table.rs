@@ -220,7 +220,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         &format!("{dock} --threads 5 --memory 1G -o five"),
     );
     let one = comparable(&folder.path().join("one"));
-    assert_eq!(one.len(), 7, "{:?}", one.keys());
+    assert_eq!(one.len(), 9, "{:?}", one.keys());
     assert_eq!(one, comparable(&folder.path().join("two")));
     assert_eq!(one, comparable(&folder.path().join("five")));
 }

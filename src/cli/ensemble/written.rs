@@ -13,6 +13,7 @@ use knotdock::output::records::program::Program;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::output::tables::report::{BEST, best_rows, counted};
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::report::Listed;
 use serde_json::{Value, json};
 
 use crate::cli::docking::write_scripts;
@@ -22,7 +23,7 @@ use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
-use crate::cli::report::write_listed;
+use crate::cli::report::stage_listed;
 
 impl Ensemble {
     /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
@@ -45,10 +46,10 @@ impl Ensemble {
         let record = self.record(docked, results, &staging, kept)?;
         let record = serde_json::to_value(&record).map_err(Failure::other)?;
         staging.write(RECORD, |file| to_json(file, &record))?;
-        warn_set_aside(&staging.commit()?, notices);
         if !self.given.options.output.no_report {
-            write_listed(&self.directory, notices)?;
+            stage_listed(Listed::Ensemble, &self.directory, &staging)?;
         }
+        warn_set_aside(&staging.commit()?, notices);
         self.report(joint, console);
         let top = self.directory.join("top");
         let complexes = viewed
