@@ -8,7 +8,7 @@ use crate::report::viewer::Viewer;
 use crate::report::{run_cost, run_data, run_words};
 
 impl RunReport<'_> {
-    /// The page, whole: of large molecules with fewer rows, so that it stays below [`MAX_BYTES`]. Without a viewer it says
+    /// The page, whole: of large molecules with fewer rows, so that it stays below 6 MB. Without a viewer it says
     /// how to get the view.
     pub fn text(&self, viewer: Option<&Viewer>) -> String {
         let mut rows = self.table.rows().len().min(MAX_ROWS);
