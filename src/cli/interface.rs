@@ -10,12 +10,11 @@ use knotdock::output::tables::interface::{InterfaceRow, objects, write_pairs, wr
 use knotdock::output::tables::report::{align, counted};
 use knotdock::threads;
 use knotdock_structures::molecule::Molecule;
-use rayon::prelude::*;
 use serde_json::json;
 
 use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains};
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_file};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::library_errors::refused;
@@ -58,21 +57,8 @@ impl InterfaceCommand {
         for file in [&self.output, &self.contacts].into_iter().flatten() {
             check_output(file, read.iter().map(PathBuf::as_path), self.force)?;
         }
-        let described: Vec<Result<InterfaceRow, Failure>> = files
-            .par_iter()
-            .map(|file| row(file, sides.as_ref(), options))
-            .collect();
-        let (mut rows, mut code) = (Vec::new(), 0);
-        for described in described {
-            match described {
-                Ok(row) => rows.push(row),
-                Err(failure) if files.len() == 1 => return Err(failure),
-                Err(failure) => {
-                    console.error(failure.text());
-                    code = code.max(failure.exit_code());
-                }
-            }
-        }
+        let (rows, code) =
+            for_each_file(files, console, |file| row(file, sides.as_ref(), options))?;
         if let Some(path) = &self.output {
             write_whole(path, |file| write_rows(file, &rows))?;
         }

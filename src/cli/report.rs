@@ -20,7 +20,7 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
 
-/// Write report.html of finished runs, batches, ensembles and sweeps: a page that shows the ranked poses as a table, in three dimensions and in charts.
+/// Write report.html of runs, batches, ensembles and sweeps: results as a table, in three dimensions and in charts.
 ///
 /// It opens in any browser, offline. `knotdock dock` writes it by itself; this writes it again, as after `knotdock
 /// evaluate`, or with the view where the program was built without it.

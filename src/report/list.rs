@@ -3,11 +3,11 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use csv::StringRecord;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::report::columns::of_table;
 use crate::report::html::{Page, escaped, section};
-use crate::report::shown::cell;
+use crate::report::shown::rows;
 
 /// Most rows that a list shows.
 const MAX_LISTED: usize = 10_000;
@@ -24,7 +24,7 @@ pub(super) struct ListReport {
     pub header: StringRecord,
     /// Its rows.
     pub records: Vec<StringRecord>,
-    /// Columns that are shown at first; none for all.
+    /// Columns that are shown at first.
     pub main: &'static [&'static str],
     /// The page of each row, from the directory of the report.
     pub links: Vec<Option<String>>,
@@ -43,11 +43,7 @@ impl ListReport {
             self.records.truncate(MAX_LISTED);
         }
         let columns = of_table(&self.header, &self.records, self.main);
-        let rows: Vec<Vec<Value>> = self
-            .records
-            .iter()
-            .map(|record| columns.iter().zip(record).map(cell).collect())
-            .collect();
+        let rows = rows(&columns, &self.records);
         let data = json!({
             "kind": "list",
             "caption": self.caption,

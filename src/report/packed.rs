@@ -13,7 +13,9 @@ const LEVEL: u32 = 4;
 /// Bytes as gzip in base64.
 pub(super) fn packed(bytes: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::new(LEVEL));
-    // Writing to memory does not fail.
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
-    STANDARD.encode(written.unwrap_or_default())
+    match written {
+        Ok(bytes) => STANDARD.encode(bytes),
+        Err(error) => unreachable!("writing to memory fails: {error}"),
+    }
 }

@@ -52,9 +52,7 @@ pub(super) fn data(report: &RunReport, count: usize) -> Value {
         "columns": columns,
         "rows": rows,
         "placed": placed.collect::<Vec<_>>(),
-        "unit": report.record["plan"]["unit"],
         "chains": report.record["chains"],
-        "directory": report.directory,
     });
     match &report.bodies {
         ReportBodies::Molecules(molecules, contacts) => {
@@ -116,7 +114,7 @@ fn molecule(
     let mut text = Vec::new();
     // Writing to memory does not fail, and the format fits.
     let written = write_renamed(&mut text, format, molecule, &[]);
-    debug_assert!(written.is_ok());
+    assert!(written.is_ok(), "{written:?}");
     let names: Vec<_> = residues
         .iter()
         .map(|residue| [&residue.chain, &residue.number, &residue.name])

@@ -1,5 +1,6 @@
 //! Fields, placements and surfaces as the scripts of a report read them.
 
+use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 use serde_json::{Value, json};
 
@@ -15,8 +16,14 @@ pub(super) const LACKING: &str = "<p>This report has no three-dimensional view: 
 /// Most triangles of a surface that is shown.
 const MAX_TRIANGLES: usize = 100_000;
 
+/// The rows of a table as its columns show them.
+pub(super) fn rows(columns: &[ShownColumn], records: &[StringRecord]) -> Vec<Vec<Value>> {
+    let row = |record: &StringRecord| columns.iter().zip(record).map(cell).collect();
+    records.iter().map(row).collect()
+}
+
 /// A field as its column shows it.
-pub(super) fn cell((column, field): (&ShownColumn, &str)) -> Value {
+fn cell((column, field): (&ShownColumn, &str)) -> Value {
     match (field, column.digits, field.parse::<f64>()) {
         ("", _, _) => Value::Null,
         (_, Some(_), Ok(value)) if value.is_finite() => json!(value),

@@ -8,7 +8,7 @@ use crate::output::files::assemblies::Surface;
 use crate::report::MAX_ROWS;
 use crate::report::columns::of_table;
 use crate::report::html::{Page, escaped, section};
-use crate::report::shown::{LACKING, cell, placement, solid};
+use crate::report::shown::{LACKING, placement, rows, solid};
 use crate::report::viewer::Viewer;
 
 /// Two solids to look at.
@@ -45,11 +45,7 @@ impl SolidsReport<'_> {
             self.records.truncate(MAX_ROWS);
         }
         let columns = of_table(&self.header, &self.records, self.main);
-        let rows: Vec<Vec<Value>> = self
-            .records
-            .iter()
-            .map(|record| columns.iter().zip(record).map(cell).collect())
-            .collect();
+        let rows = rows(&columns, &self.records);
         let placed = self.poses.iter().take(MAX_ROWS);
         let data = json!({
             "kind": "solids",

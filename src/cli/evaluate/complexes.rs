@@ -9,13 +9,12 @@ use knotdock::output::tables::complexes::{EvaluatedComplex, write_complexes};
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::output::tables::report::align;
 use knotdock_scoring::se3::Pose;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::Evaluate;
 use crate::cli::arguments::native::{NativeFiles, measure};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains};
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_file};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -39,21 +38,9 @@ impl Evaluate {
             let read = complexes.iter().map(PathBuf::as_path).chain(natives);
             check_output(path, read, self.force)?;
         }
-        let evaluated: Vec<Result<EvaluatedComplex, Failure>> = files
-            .par_iter()
-            .map(|file| evaluated(file, chains.as_ref(), &native, &self.input))
-            .collect();
-        let (mut rows, mut code) = (Vec::new(), 0);
-        for row in evaluated {
-            match row {
-                Ok(row) => rows.push(row),
-                Err(failure) if files.len() == 1 => return Err(failure),
-                Err(failure) => {
-                    console.error(failure.text());
-                    code = code.max(failure.exit_code());
-                }
-            }
-        }
+        let (rows, code) = for_each_file(files, console, |file| {
+            evaluated(file, chains.as_ref(), &native, &self.input)
+        })?;
         if let Some(path) = &self.output {
             write_whole(path, |file| write_complexes(&rows, file))?;
         }

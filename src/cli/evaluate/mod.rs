@@ -5,14 +5,14 @@ mod complexes;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use knotdock::evaluate::{Capri, Criterion, Evaluator, PoseQuality};
+use knotdock::evaluate::{Capri, Evaluator, PoseQuality};
 use knotdock::options::{InputOptions, Threads, definitions};
 use knotdock::output::records::ensemble_record::is_ensemble;
 use knotdock::output::records::recorded_run::RecordedRun;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::{quality, report};
 use knotdock::threads;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};
 use crate::cli::arguments::output_file::check_output;
@@ -130,16 +130,9 @@ impl Evaluate {
             }
         }
         let poses = table.rows().iter().zip(&qualities).map(|(row, quality)| {
-            json!({
-                "rank": row.rank,
-                "irmsd": quality.irmsd,
-                "lrmsd": quality.lrmsd,
-                "fnat": quality.fnat,
-                "dockq": quality.dockq,
-                "capri": quality.capri.name(),
-                "acceptable": Criterion::Acceptable.is_met(quality),
-                "near_native": Criterion::NearNative.is_met(quality),
-            })
+            let mut object = Map::from_iter([("rank".to_owned(), json!(row.rank))]);
+            object.extend(quality::object(quality));
+            Value::Object(object)
         });
         let matched = match matches.len() {
             1 => matches.remove(0),

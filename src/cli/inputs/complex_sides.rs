@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, file_bytes, read_bytes};
 
+use rayon::prelude::*;
+
+use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
 /// A complex as two molecules where they stand.
@@ -83,6 +86,31 @@ pub fn files_and_chains<'a>(
             .remedy("name a file, whose name has a point or a folder in it, as in ./complex"));
     }
     Ok((files, chains))
+}
+
+/// What is made of each file, in their order, and the exit code. A file of which nothing can be made is reported and costs
+/// no other.
+///
+/// # Errors
+/// The [`Failure`] of a file that is the only one.
+pub fn for_each_file<T: Send>(
+    files: &[String],
+    console: Console,
+    make: impl Fn(&str) -> Result<T, Failure> + Sync,
+) -> Result<(Vec<T>, u8), Failure> {
+    let made: Vec<Result<T, Failure>> = files.par_iter().map(|file| make(file)).collect();
+    let (mut rows, mut code) = (Vec::new(), 0);
+    for one in made {
+        match one {
+            Ok(row) => rows.push(row),
+            Err(failure) if files.len() == 1 => return Err(failure),
+            Err(failure) => {
+                console.error(failure.text());
+                code = code.max(failure.exit_code());
+            }
+        }
+    }
+    Ok((rows, code))
 }
 
 /// Whether a word names chains and no file: it has neither a point nor a folder.

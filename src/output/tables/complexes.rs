@@ -2,11 +2,12 @@
 
 use std::io;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use crate::evaluate::{Criterion, PoseQuality};
+use crate::evaluate::PoseQuality;
 use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
+use crate::output::tables::quality;
 
 /// A complex, and how near it is to the known one.
 #[derive(Clone, Debug)]
@@ -24,20 +25,13 @@ pub struct EvaluatedComplex {
 impl EvaluatedComplex {
     /// Its row as a JSON object.
     pub fn object(&self) -> Value {
-        let quality = &self.quality;
-        json!({
-            "file": self.file,
-            "chains_1": self.chains[0],
-            "chains_2": self.chains[1],
-            "irmsd": quality.irmsd,
-            "lrmsd": quality.lrmsd,
-            "fnat": quality.fnat,
-            "dockq": quality.dockq,
-            "capri": quality.capri.name(),
-            "acceptable": Criterion::Acceptable.is_met(quality),
-            "near_native": Criterion::NearNative.is_met(quality),
-            "interface_share": self.matched,
-        })
+        let mut object = Map::new();
+        object.insert("file".to_owned(), json!(self.file));
+        object.insert("chains_1".to_owned(), json!(self.chains[0]));
+        object.insert("chains_2".to_owned(), json!(self.chains[1]));
+        object.extend(quality::object(&self.quality));
+        object.insert("interface_share".to_owned(), json!(self.matched));
+        Value::Object(object)
     }
 }
 

@@ -1,6 +1,8 @@
 //! The columns that a known complex adds to `poses.csv`.
 
-use crate::evaluate::PoseQuality;
+use serde_json::{Map, Value, json};
+
+use crate::evaluate::{Criterion, PoseQuality};
 
 use crate::output::tables::fields::{Column, number};
 
@@ -17,4 +19,21 @@ pub fn columns(qualities: &[PoseQuality]) -> Vec<Column> {
         column("dockq", &|quality| number(quality.dockq)),
         column("capri", &|quality| quality.capri.name().to_owned()),
     ]
+}
+
+/// The same of one pose as JSON, with whether it is acceptable and near-native.
+pub fn object(quality: &PoseQuality) -> Map<String, Value> {
+    let entries = [
+        ("irmsd", json!(quality.irmsd)),
+        ("lrmsd", json!(quality.lrmsd)),
+        ("fnat", json!(quality.fnat)),
+        ("dockq", json!(quality.dockq)),
+        ("capri", json!(quality.capri.name())),
+        ("acceptable", json!(Criterion::Acceptable.is_met(quality))),
+        ("near_native", json!(Criterion::NearNative.is_met(quality))),
+    ];
+    let entries = entries.into_iter();
+    entries
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }

@@ -48,7 +48,7 @@ function axes({ left, right, top, bottom }, x, y, [xs, ys], [xName, yName]) {
   return lines;
 }
 
-/** Points that can be chosen. `points`: x, y, row. */
+/** Points that can be chosen. `points`: x, y, row, rank. */
 function scatter(root, points, [xName, yName], chosen, choose) {
   const box = { left: 58, right: 510, top: 10, bottom: 270 };
   const [xLow, xHigh] = span([0, ...points.map((point) => point.x)]);
@@ -60,7 +60,7 @@ function scatter(root, points, [xName, yName], chosen, choose) {
     cx: x(point.x).toFixed(1), cy: y(point.y).toFixed(1), r: point.row === chosen ? 6 : 3, class: "choice", "data-row": point.row,
     fill: point.row === chosen ? MARK : COLOURS[0], "fill-opacity": point.row === chosen ? 1 : 0.45, stroke: point.row === chosen ? "#000" : "none",
     click: () => choose(point.row),
-  }, svg("title", {}, `rank ${point.row + 1}: ${xName} ${shownNumber(point.x, 2)}, score ${shownNumber(point.y, 1)}`)));
+  }, svg("title", {}, `rank ${point.rank}: ${xName} ${shownNumber(point.x, 2)}, score ${shownNumber(point.y, 1)}`)));
   const of = points.find((point) => point.row === chosen);
   const label = `${points.length} poses, ${yName} against ${xName}.` + (of ? ` The selected one: ${shownNumber(of.x, 2)}, ${shownNumber(of.y, 1)}.` : "");
   drawChart(root, [520, 310], label, [...axes(box, x, y, [ticks(xLow, xHigh), ticks(yLow, yHigh)], [xName, yName]), ...circles]);

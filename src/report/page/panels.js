@@ -44,7 +44,7 @@ function drawFunnel(data, column, row, axis, name, points, choose) {
   const distance = axis === "selected"
     ? (place) => data.placed[place][0] && data.placed[row][0] ? distanceOf(points, data.placed[place][0], data.placed[row][0]) : null
     : (place) => data.rows[place][column(axis)];
-  const drawn = data.rows.map((fields, place) => ({ x: distance(place), y: fields[column("score")], row: place }));
+  const drawn = data.rows.map((fields, place) => ({ x: distance(place), y: fields[column("score")], row: place, rank: fields[column("rank")] }));
   scatter(byId("funnel"), drawn.filter(({ x, y }) => typeof x === "number" && typeof y === "number"), [name, "score"], row, choose);
 }
 
