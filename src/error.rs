@@ -2,6 +2,7 @@
 
 use crate::dock::memory::size::as_size;
 use crate::predictions::PredictionError;
+use crate::progress::Ended;
 use crate::restraints::{Needed, RestraintFileError};
 use crate::threads::ThreadsError;
 use knotdock_scoring::engine::PlanError;
@@ -112,6 +113,9 @@ pub enum SearchError {
     /// The graphics processor cannot be used.
     #[error("--engine gpu: {0}")]
     Graphics(String),
+    /// The run was ended before its end.
+    #[error(transparent)]
+    Ended(#[from] Ended),
     /// No rotation has a finite score.
     #[error("no pose has a finite score")]
     NoPose,
@@ -206,6 +210,10 @@ impl SearchError {
             }
             Self::AllInMembrane => {
                 "check that the molecule that has the membrane reaches out of it".to_owned()
+            }
+            Self::Ended(Ended::Interrupted) => "start it again".to_owned(),
+            Self::Ended(Ended::TimeLimit(_)) => {
+                "allow more with --time-limit, or search fewer --rotations".to_owned()
             }
             Self::NoPose => "check lambda and the offset".to_owned(),
         }

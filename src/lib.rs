@@ -7,6 +7,7 @@
 )]
 
 pub mod bounded_read;
+pub mod cli;
 pub mod dock;
 pub mod ensemble;
 pub mod error;
@@ -30,6 +31,7 @@ pub mod restraints;
 pub mod score;
 pub mod search;
 pub mod side_chains;
+pub mod system_limits;
 #[cfg(test)]
 mod test_molecules;
 pub mod threads;

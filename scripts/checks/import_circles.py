@@ -3,7 +3,7 @@
 
 usage: import_circles.py [--graph]      from anywhere in the repository
 
-An import leads to the file that defines the name: a module's `pub use` is followed, and is no import of its own.
+Nothing outside of `cli` imports the command line either. An import leads to the file that defines the name: a module's `pub use` is followed, and is no import of its own.
 Test modules are left out. A circle is allowed where all its files are one module and its own submodules (a type
 and its split-out implementation). --graph prints the imports between folders of the main crate instead.
 """
@@ -59,12 +59,10 @@ class Crate:
             parts = path.relative_to(ROOT / folder).with_suffix("").parts
             if parts[-1] in ("mod", "lib"):
                 parts = parts[:-1]
-            if parts == ("main",) or parts[:1] == ("cli",) and name == "knotdock":
+            if parts == ("main",):
                 continue
             self.files[parts] = path
             self.texts[parts] = without_tests(path.read_text())
-        if name == "knotdock":
-            self.add_program(folder)
         for module, text in self.texts.items():
             for visible, tree in USE.findall(text):
                 if visible:
@@ -72,13 +70,6 @@ class Crate:
                         target = self.absolute(module, leaf)
                         if target:
                             self.reexports[module + (target[-1],)] = target
-
-    def add_program(self, folder):
-        """The command line is a crate of its own, whose modules are below `cli`."""
-        for path in sorted((ROOT / folder / "cli").rglob("*.rs")):
-            parts = path.relative_to(ROOT / folder).with_suffix("").parts
-            self.files[parts[:-1] if parts[-1] == "mod" else parts] = path
-            self.texts[parts[:-1] if parts[-1] == "mod" else parts] = without_tests(path.read_text())
 
     def absolute(self, module, leaf):
         """A path from the crate's root, or nothing for another crate's."""
@@ -173,6 +164,10 @@ def main():
                         folders.setdefault((module[0], target[0]), []).append("::".join(module))
             for (source, target), modules in sorted(folders.items()):
                 print(f"{name}: {source} -> {target} ({len(modules)}: {', '.join(sorted(modules)[:4])})")
+        for module, targets in graph.items():
+            if module[:1] != ("cli",) and any(target[:1] == ("cli",) for target in targets):
+                failed = True
+                print(f"{name}: {'::'.join(module)} imports the command line, which nothing below it may")
         for part in circles(graph):
             if not of_one_type(part):
                 failed = True

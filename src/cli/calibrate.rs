@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use crate::options::Threads;
+use crate::output::records::cost_model_file::{default_path, is_ours, read, write};
+use crate::output::tables::report::align;
+use crate::threads::on;
+use crate::tradeoff::calibrate::calibrate;
+use crate::tradeoff::cost_model::CostModel;
 use clap::Args;
-use knotdock::options::Threads;
-use knotdock::output::records::cost_model_file::{default_path, is_ours, read, write};
-use knotdock::output::tables::report::align;
-use knotdock::threads::on;
-use knotdock::tradeoff::calibrate::calibrate;
-use knotdock::tradeoff::cost_model::CostModel;
 use serde_json::json;
 
 use crate::cli::messages::console::Console;

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use clap::{Args, ValueEnum};
-use knotdock::geometry::collide::impact::{Impact, first_impact};
-use knotdock::geometry::collide::{
+use crate::geometry::collide::impact::{Impact, first_impact};
+use crate::geometry::collide::{
     Answer, CollisionScene, Method, Quantities, Questions, Verdict, Ways, Workspace,
 };
-use knotdock::options::Threads;
-use knotdock::options::values::{count, duration, not_negative};
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::tables::collisions;
-use knotdock::output::tables::report::counted;
-use knotdock::report::{SolidsReport, Viewer};
-use knotdock::threads;
+use crate::options::Threads;
+use crate::options::values::{count, duration, not_negative};
+use crate::output::files::whole_file::write_whole;
+use crate::output::tables::collisions;
+use crate::output::tables::report::counted;
+use crate::report::{SolidsReport, Viewer};
+use crate::threads;
+use clap::{Args, ValueEnum};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use serde_json::{Value, json};

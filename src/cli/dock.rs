@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::dock::memory::process;
+use crate::options::values::{above_zero, duration};
+use crate::options::{DockOptions, EngineChoice, option_named};
+use crate::threads;
+use crate::tradeoff::choice::Wanted;
 use clap::{Arg, Args, Command, Id};
-use knotdock::dock::memory::process;
-use knotdock::options::values::{above_zero, duration};
-use knotdock::options::{DockOptions, EngineChoice, option_named};
-use knotdock::threads;
-use knotdock::tradeoff::choice::Wanted;
 use serde_json::Value;
 
 use crate::cli::arguments::conformations::ConformationArguments;
@@ -28,7 +28,7 @@ use crate::cli::messages::failure::Failure;
 /// Writes report.html to look at, poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of
 /// the run. The same input
 /// and options give the same bytes for any number of threads, except with --budget.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Dock {
     /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
     /// FILE:H:1-120,L residues too) or a mesh (.stl, .obj, .ply or .off).
@@ -280,7 +280,7 @@ fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock::options::definitions;
+    use crate::options::definitions;
 
     /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the
     /// machine are not.

@@ -3,58 +3,42 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use knotdock::dock::memory::process;
-use knotdock::dock::outcome::DockOutcome;
-use knotdock::dock::pair::{PreparedPair, Preparer};
-use knotdock::dock::run::dock_until;
-use knotdock::error::SearchError;
-use knotdock::evaluate::Evaluator;
-use knotdock::options::{Precision, SharpChoice};
-use knotdock::output::files::seal::REPORT;
-use knotdock::output::files::staging::Staging;
-use knotdock::output::files::viewers::{
-    CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol,
-};
-use knotdock::output::records::manifest::{
-    EffectTime, Machine, Manifest, ManifestParts, Results, Timing,
-};
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::fields::Column;
-use knotdock::output::tables::interface_shares::{INTERFACE, write_shares};
-use knotdock::output::tables::quality;
-use knotdock::output::tables::report::{BEST, best_clusters, counted, firsts};
-use knotdock::output::tables::restraints;
-use knotdock::output::tables::run_table::{RunTable, pose_rows};
-use knotdock::report::{MAX_ROWS, RunReport, Viewer};
-use knotdock::search::deadline::Deadline;
-use knotdock::tradeoff::choice::{Chosen, Wanted, choose, deadline};
-use knotdock::tradeoff::cost_model::{CostModel, Workload};
-use serde_json::{Value, json};
+use crate::dock::memory::process;
+use crate::dock::outcome::DockOutcome;
+use crate::dock::pair::{PreparedPair, Preparer};
+use crate::dock::run::dock_until;
+use crate::error::SearchError;
+use crate::evaluate::Evaluator;
+use crate::options::{Precision, SharpChoice};
+use crate::output::files::staging::Staging;
+use crate::output::records::manifest::{EffectTime, Timing};
+use crate::output::records::recorded_run::RecordedRun;
+use crate::search::deadline::Deadline;
+use crate::tradeoff::choice::{Chosen, Wanted, choose, deadline};
+use crate::tradeoff::cost_model::{CostModel, Workload};
+use serde_json::Value;
 
-use crate::cli::arguments::machine::machine;
-use crate::cli::arguments::native::{NativeFiles, announce, measure};
+use crate::cli::arguments::native::{NativeFiles, announce};
 use crate::cli::calibrate::cost_model;
+use crate::cli::docked::Docked;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{
-    assumed, error_warning, few_rotations_warning, known_text, outcome_text, regions_text,
-};
+use crate::cli::messages::dock::{assumed, known_text, regions_text};
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::{finish_before_reading, warn_set_aside};
-use crate::cli::messages::timings::timings_text;
+use crate::cli::messages::set_aside::finish_before_reading;
 
 /// A run that is ready to go.
 pub struct Docking {
-    request: Request,
-    directory: PathBuf,
+    pub(super) request: Request,
+    pub(super) directory: PathBuf,
     /// Whether another run there is replaced.
     force: bool,
-    evaluator: Option<Evaluator>,
-    prepared: PreparedPair,
-    chosen: Option<Chosen>,
+    pub(super) evaluator: Option<Evaluator>,
+    pub(super) prepared: PreparedPair,
+    pub(super) chosen: Option<Chosen>,
     /// Where the run has a budget.
-    deadline: Option<Deadline>,
-    clock: Clock,
+    pub(super) deadline: Option<Deadline>,
+    pub(super) clock: Clock,
 }
 
 impl Docking {
@@ -161,8 +145,13 @@ impl Docking {
 
     /// Docks, and writes the run; its JSON object. What became of files of the user's is said on `notices`, for a batch
     /// says that and nothing else of its pairs.
-    pub fn run(mut self, console: Console, notices: Console) -> Result<Value, Failure> {
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
         let staging = Staging::open(&self.directory, self.force)?;
+        self.dock(console)?.save(staging, console, notices)
+    }
+
+    /// Docks, and writes nothing.
+    pub fn dock(mut self, console: Console) -> Result<Docked, Failure> {
         let progress = console.progress();
         let PreparedPair { plan, points, .. } = &self.prepared;
         let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
@@ -170,149 +159,13 @@ impl Docking {
                 SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
                     Failure::input(&error).remedy(error.remedy())
                 }
+                SearchError::Ended(_) => Failure::of_program(&error).remedy(error.remedy()),
                 error => Failure::other(&error).remedy(error.remedy()),
             },
         )?;
-        drop(progress);
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
-        let written = self.write(&outcome, &staging)?;
-        warn_set_aside(&staging.commit()?, notices);
-        self.report(&outcome, &written.quality, console);
-        let Self { directory, .. } = &self;
-        let top = directory.join("top");
-        let complexes = written.complexes.iter().map(|name| top.join(name));
-        Ok(json!({
-            "directory": directory.display().to_string(),
-            "poses": directory.join("poses.csv").display().to_string(),
-            "report": written.report.then(|| directory.join(REPORT).display().to_string()),
-            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "best": written.best,
-            "run": written.manifest,
-        }))
-    }
-
-    /// Writes the table, the complexes and the record of a run into its staging folder.
-    fn write(&self, outcome: &DockOutcome, staging: &Staging) -> Result<Written, Failure> {
-        let Self {
-            request, evaluator, ..
-        } = self;
-        let output = &request.options.output;
-        let rows = pose_rows(&outcome.poses);
-        let plan = &self.prepared.plan;
-        let mut quality: Vec<Column> = restraints::met(plan, &outcome.poses).into_iter().collect();
-        if let Some(evaluator) = evaluator {
-            quality.extend(quality::columns(&measure(evaluator, &rows)));
-        }
-        if !plan.restraints.is_empty() {
-            staging.write("restraints.csv", |file| {
-                restraints::write_to(plan, &outcome.poses, file)
-            })?;
-        }
-        let columns = (self.prepared.plan.sharp(), output.diagnostics);
-        let table = RunTable::new(&outcome.poses, columns, &quality);
-        staging.write("poses.csv", |file| table.write_to(file))?;
-        let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
-        let top = rows.get(..output.write_top).unwrap_or(&rows);
-        let written = request.bodies.write(
-            top,
-            request.arrangement(),
-            (&staging.folder().join("top"), None),
-        )?;
-        if let Some(chains) = &written.chains {
-            let names = written.names.iter().zip(top);
-            let viewed: Vec<ViewedComplex> = names
-                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
-                .collect();
-            write_scripts(staging, &viewed)?;
-        }
-        let shown = table.first(MAX_ROWS);
-        let contacts = request.bodies.contacts(&shown, &request.options);
-        if let Some(contacts) = &contacts {
-            let [receptor, ligand] = contacts.shares();
-            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
-            staging.write(INTERFACE, |file| write_shares(sides, file))?;
-        }
-        let inputs = request.inputs(self.prepared.sampling.as_deref())?;
-        let manifest = Manifest::new(ManifestParts {
-            inputs: &inputs,
-            options: &request.options,
-            plan: &self.prepared.plan,
-            outcome,
-            results: Results {
-                poses: outcome.poses_kept,
-                clusters: outcome.clusters,
-                rows: outcome.poses.len(),
-                rotations: outcome.searched,
-            },
-            files: staging.checksums()?,
-            chains: written.chains.as_ref(),
-            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
-            timing: self.clock.timing(outcome),
-            machine: Machine {
-                chosen: self.chosen.clone(),
-                adapter: outcome.adapter.clone(),
-                ..machine(&self.prepared.plan)
-            },
-        })
-        .map_err(Failure::other)?;
-        staging.write("run.json", |file| manifest.write_to(file))?;
-        let record = serde_json::to_value(&manifest).map_err(Failure::other)?;
-        if !output.no_report {
-            let report = RunReport {
-                record: &record,
-                options: &request.options,
-                table: &shown,
-                bodies: request.bodies.shown(contacts.as_ref()),
-                directory: &self.directory.display().to_string(),
-            };
-            let text = report.text(Viewer::embedded());
-            staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
-        }
-        Ok(Written {
-            manifest: record,
-            report: !output.no_report,
-            complexes: written.names,
-            best,
-            quality,
-        })
-    }
-
-    /// Reports the run: effects, errors, times and the best clusters.
-    fn report(&self, outcome: &DockOutcome, quality: &[Column], console: Console) {
-        let plan = &self.prepared.plan;
-        console.say(format!("\n{}", outcome_text(plan, outcome)));
-        console.detail(format!("\n{}", timings_text(outcome)));
-        if let Some(warning) = error_warning(plan, outcome) {
-            console.warn(warning);
-        }
-        if let Some(warning) = few_rotations_warning(outcome, self.deadline.is_some()) {
-            console.warn(warning);
-        }
-        if let Some(chosen) = &self.chosen {
-            let stages = outcome.timing.iter();
-            console.say(format!(
-                "The search was expected to take {:.1} s, and took {:.1} s",
-                chosen.predicted_seconds,
-                stages.map(|stage| stage.wall_seconds).sum::<f64>()
-            ));
-            if let Some(budget) = chosen.budget_seconds {
-                console.say(format!(
-                    "The whole run took {:.1} s of {budget} s",
-                    self.clock.seconds()
-                ));
-            }
-        }
-        console.say(format!("\n{}", best_clusters(&outcome.poses, quality)));
-        console.say(format!(
-            "\n{} in {}",
-            counted(outcome.poses.len(), "row"),
-            self.directory.join("poses.csv").display()
-        ));
-        if !self.request.options.output.no_report {
-            let report = self.directory.join(REPORT);
-            console.say(format!("To look at them: {}", report.display()));
-        }
+        Ok(Docked::new(self, outcome))
     }
 }
 
@@ -323,29 +176,6 @@ pub fn held_by_another(directory: &Path, force: &str) -> Failure {
     )
     .at(directory)
     .remedy(format!("pass {force} to replace it, or choose another directory with -o"))
-}
-
-/// Writes the scripts that show complexes in other programs, if there are any.
-pub fn write_scripts(staging: &Staging, complexes: &[ViewedComplex]) -> Result<(), Failure> {
-    if !complexes.is_empty() {
-        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
-        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
-    }
-    Ok(())
-}
-
-/// What a run wrote.
-struct Written {
-    /// Rows of the best clusters, as JSON.
-    best: Vec<Value>,
-    /// Columns of the table that a known complex added.
-    quality: Vec<Column>,
-    /// Whether there is a report.
-    report: bool,
-    /// Names of the complexes in `top/`.
-    complexes: Vec<String>,
-    /// run.json.
-    manifest: Value,
 }
 
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
@@ -410,7 +240,7 @@ impl Clock {
         self.monotonic.elapsed().as_secs_f64()
     }
 
-    fn timing(&self, outcome: &DockOutcome) -> Timing {
+    pub(super) fn timing(&self, outcome: &DockOutcome) -> Timing {
         Timing {
             // A clock set before 1970 says nothing.
             started_unix_seconds: self

@@ -3,17 +3,17 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use crate::dock::pair::Pair;
+use crate::options::Threads;
+use crate::output::files::complexes::file_names;
+use crate::output::files::exported::ExportFolder;
+use crate::output::files::model_file::{PosedPair, model_file_name, write_model_file};
+use crate::output::records::ensemble_record::is_ensemble;
+use crate::output::records::recorded_run::RecordedRun;
+use crate::output::tables::poses::{PoseRow, PoseTable};
+use crate::pose_space::arrangement::Arrangement;
+use crate::threads;
 use clap::{Args, ValueEnum};
-use knotdock::dock::pair::Pair;
-use knotdock::options::Threads;
-use knotdock::output::files::complexes::file_names;
-use knotdock::output::files::exported::ExportFolder;
-use knotdock::output::files::model_file::{PosedPair, model_file_name, write_model_file};
-use knotdock::output::records::ensemble_record::is_ensemble;
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::threads;
 use knotdock_structures::molecule::{ChainMap, Format};
 use serde_json::json;
 

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::output::files::molecule_file;
+use crate::output::tables::atom_table;
+use crate::output::tables::report::counted;
+use crate::priors::{Findings, PRIORS};
+use crate::rank::term_counts;
 use clap::{ArgGroup, Args};
-use knotdock::output::files::molecule_file;
-use knotdock::output::tables::atom_table;
-use knotdock::output::tables::report::counted;
-use knotdock::priors::{Findings, PRIORS};
-use knotdock::rank::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{

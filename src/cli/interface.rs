@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use crate::interface::{Interface, PlacedScore, score_in_place};
+use crate::options::DockOptions;
+use crate::output::files::whole_file::write_whole;
+use crate::output::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
+use crate::output::tables::report::{align, counted};
+use crate::threads;
 use clap::Args;
-use knotdock::interface::{Interface, PlacedScore, score_in_place};
-use knotdock::options::DockOptions;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
-use knotdock::output::tables::report::{align, counted};
-use knotdock::threads;
 use knotdock_structures::molecule::Molecule;
 use serde_json::json;
 

@@ -1,11 +1,13 @@
 //! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
-//! [`knotdock::output`] and the [`messages::console`].
+//! [`crate::output`] and the [`messages::console`].
 
 mod arguments;
 mod batch;
 mod calibrate;
+mod calls;
 mod collide;
 mod dock;
+mod docked;
 mod docking;
 mod ensemble;
 mod evaluate;
@@ -13,6 +15,7 @@ mod export;
 mod inputs;
 mod inspect;
 mod interface;
+mod merge;
 mod messages;
 mod morph;
 mod obstacle;
@@ -27,16 +30,17 @@ mod tradeoff;
 use std::borrow::Cow;
 use std::error::Error;
 use std::ffi::OsString;
-use std::process::ExitCode;
 
+use crate::options::PotentialFileError;
+use crate::options::text::first_paragraph;
+use crate::threads;
 use arguments::program::{ProgramArguments, with_negative_numbers};
+pub use calls::{call, read_molecule};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use knotdock::options::PotentialFileError;
-use knotdock::options::text::first_paragraph;
-use knotdock::threads;
 use messages::console::Console;
-use messages::failure::Failure;
+pub use messages::failure::Failure;
+pub use messages::listener::Listener;
 use messages::shown::shown;
 use messages::suggestions;
 
@@ -60,6 +64,7 @@ struct Cli {
 enum Command {
     Dock(Box<dock::Dock>),
     Batch(batch::Batch),
+    Merge(merge::Merge),
     Export(export::Export),
     Refine(refine::Refine),
     Evaluate(evaluate::Evaluate),
@@ -77,13 +82,12 @@ enum Command {
 }
 
 fn version() -> &'static str {
-    use knotdock::output::records::program::VERSION_WITH_COMMIT;
+    use crate::output::records::program::VERSION_WITH_COMMIT;
     VERSION_WITH_COMMIT
 }
 
-/// Runs the program on the process's arguments.
-pub fn main() -> ExitCode {
-    let arguments: Vec<OsString> = std::env::args_os().collect();
+/// Runs the program on arguments, of which the first is the name it was called by; its exit code.
+pub fn main(arguments: Vec<OsString>) -> u8 {
     let json = wants_json(&arguments);
     if json {
         report_as_json();
@@ -95,28 +99,28 @@ pub fn main() -> ExitCode {
     let console = Console::from(cli.program);
     if let Err(error) = threads::stay_on_main() {
         console.fail(&error.into());
-        return ExitCode::FAILURE;
+        return 1;
     }
-    let done = match cli.command {
+    match run(cli.command, console).and_then(|code| Console::all_said().map(|()| code)) {
+        Ok(code) => code,
+        Err(failure) => {
+            console.fail(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+/// Runs a command; its exit code.
+fn run(command: Command, console: Console) -> Result<u8, Failure> {
+    let done = match command {
         Command::Dock(command) => command.run(console),
-        Command::Batch(command) => match command.run(console) {
-            Ok(0) => Ok(()),
-            Ok(code) => return ExitCode::from(code),
-            Err(failure) => Err(failure),
-        },
+        Command::Batch(command) => return command.run(console),
+        Command::Merge(command) => command.run(console),
         Command::Export(command) => command.run(console),
         Command::Refine(command) => command.run(console),
-        Command::Evaluate(command) => match command.run(console) {
-            Ok(0) => Ok(()),
-            Ok(code) => return ExitCode::from(code),
-            Err(failure) => Err(failure),
-        },
+        Command::Evaluate(command) => return command.run(console),
         Command::Score(command) => command.run(console),
-        Command::Interface(command) => match command.run(console) {
-            Ok(0) => Ok(()),
-            Ok(code) => return ExitCode::from(code),
-            Err(failure) => Err(failure),
-        },
+        Command::Interface(command) => return command.run(console),
         Command::Report(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
         Command::Obstacle(command) => command.run(console),
@@ -127,13 +131,7 @@ pub fn main() -> ExitCode {
         Command::Tradeoff(command) => command.run(console),
         Command::Calibrate(command) => command.run(console),
     };
-    match done.and_then(|()| Console::all_said()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            console.fail(&failure);
-            ExitCode::from(failure.exit_code())
-        }
-    }
+    done.map(|()| 0)
 }
 
 /// Whether a JSON object is wanted, as far as can be said of a command line that may be wrong.
@@ -183,7 +181,7 @@ fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
 }
 
 /// Answers a command line that is not one to run: asks for help or the version, or is wrong.
-fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> ExitCode {
+fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> u8 {
     let for_information = matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
@@ -192,24 +190,31 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> ExitCode {
         json,
         ..Console::default()
     };
-    let source = error.source();
-    let of_file = source.and_then(|source| source.downcast_ref::<PotentialFileError>());
-    if let Some(error) = of_file {
-        console.fail(&error.clone().into());
-    } else if json && !for_information {
-        let remedy = suggestions::suggested(error)
-            .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
-        let failure = Failure::input(first_paragraph(error)).remedy(remedy);
-        console.fail(&failure);
+    if potential_file(error).is_some() || (json && !for_information) {
+        console.fail(&unparsed(error));
     } else if are_plain(arguments) {
         // A terminal that is gone needs no message.
         let _ = error.print();
     } else {
         console.error(error.render());
     }
-    if for_information {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
+    if for_information { 0 } else { 2 }
+}
+
+/// The error of a table of energies that an option names: it is read as the option is.
+fn potential_file(error: &clap::Error) -> Option<&PotentialFileError> {
+    error.source()?.downcast_ref()
+}
+
+/// A command line that is wrong, as a failure.
+fn unparsed(error: &clap::Error) -> Failure {
+    match potential_file(error) {
+        Some(error) => error.clone().into(),
+        None => {
+            let remedy = suggestions::suggested(error).unwrap_or_else(|| {
+                "see `knotdock --help` and `knotdock COMMAND --help`".to_owned()
+            });
+            Failure::input(first_paragraph(error)).remedy(remedy)
+        }
     }
 }

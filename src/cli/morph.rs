@@ -2,17 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
-use knotdock::geometry::Bracket;
-use knotdock::geometry::morphology::difference::difference;
-use knotdock::geometry::morphology::products::{product, quotient};
-use knotdock::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
-use knotdock::geometry::morphology::{
+use crate::geometry::Bracket;
+use crate::geometry::morphology::difference::difference;
+use crate::geometry::morphology::products::{product, quotient};
+use crate::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
+use crate::geometry::morphology::{
     MorphologyError, MorphologyOptions, closed, dilated, offset, opened,
 };
-use knotdock::options::values::{above_zero, not_negative};
-use knotdock::options::{MachineOptions, SampleGrid};
-use knotdock::threads;
+use crate::options::values::{above_zero, not_negative};
+use crate::options::{MachineOptions, SampleGrid};
+use crate::threads;
+use clap::{Args, Subcommand};
 use knotdock_structures::mesh::Figure;
 use serde_json::json;
 
@@ -266,7 +266,7 @@ fn result(
 
 fn refused(error: &MorphologyError) -> Failure {
     let MorphologyError::Memory { needed, .. } = error;
-    let least = knotdock::dock::memory::size::as_size(knotdock::dock::memory::size::named(*needed));
+    let least = crate::dock::memory::size::as_size(crate::dock::memory::size::named(*needed));
     Failure::input(error).remedy(format!(
         "use a coarser --grid or --complement-grid, or fewer poses, or allow at least --memory {least}"
     ))

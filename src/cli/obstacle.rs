@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
+use crate::geometry::Bracket;
+use crate::geometry::ball_field::{BallField, FieldGrid};
+use crate::geometry::gap::{GapWay, gap_ways};
+use crate::geometry::obstacle::pairs::PairSums;
+use crate::geometry::obstacle::regions::free_regions;
+use crate::geometry::obstacle::{mirrored, sum};
+use crate::options::MachineOptions;
+use crate::options::values::at_least_one;
+use crate::output::files::whole_file::StagedFile;
+use crate::threads;
 use clap::Args;
-use knotdock::geometry::Bracket;
-use knotdock::geometry::ball_field::{BallField, FieldGrid};
-use knotdock::geometry::gap::{GapWay, gap_ways};
-use knotdock::geometry::obstacle::pairs::PairSums;
-use knotdock::geometry::obstacle::regions::free_regions;
-use knotdock::geometry::obstacle::{mirrored, sum};
-use knotdock::options::MachineOptions;
-use knotdock::options::values::at_least_one;
-use knotdock::output::files::whole_file::StagedFile;
-use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{rotation_set, set_name};
 use knotdock_structures::Ball;

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::options::Threads;
+use crate::options::values::not_negative;
+use crate::output::files::complexes::file_names;
+use crate::output::files::exported::ExportFolder;
+use crate::output::files::whole_file::write_whole;
+use crate::output::records::recorded_run::RecordedRun;
+use crate::output::tables::refined;
+use crate::output::tables::report::counted;
+use crate::pose_space::arrangement::Arrangement;
+use crate::refine::RefineOptions;
+use crate::threads;
 use clap::Args;
-use knotdock::options::Threads;
-use knotdock::options::values::not_negative;
-use knotdock::output::files::complexes::file_names;
-use knotdock::output::files::exported::ExportFolder;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::refined;
-use knotdock::output::tables::report::counted;
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::refine::RefineOptions;
-use knotdock::threads;
 use serde_json::json;
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce};

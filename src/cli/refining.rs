@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
+use crate::error::SearchError;
+use crate::evaluate::{Evaluator, PoseQuality};
+use crate::output::files::complexes::write_complexes;
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::refined::RefinedRow;
+use crate::output::tables::report::align;
+use crate::pose_space::arrangement::Arrangement;
+use crate::progress::Progress;
+use crate::refine::{RefineOptions, Refined, Refiner};
 use cpu_time::ProcessTime;
-use knotdock::error::SearchError;
-use knotdock::evaluate::{Evaluator, PoseQuality};
-use knotdock::output::files::complexes::write_complexes;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::refined::RefinedRow;
-use knotdock::output::tables::report::align;
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::progress::Progress;
-use knotdock::refine::{RefineOptions, Refined, Refiner};
 use knotdock_scoring::sharp::PairList;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{ChainMap, Molecule};

@@ -2,16 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
+use crate::options::Threads;
+use crate::output::files::seal::{REPORT, is_sealed};
+use crate::output::files::staging::Staging;
+use crate::output::files::whole_file::write_whole;
+use crate::output::records::recorded_run::{RecordedRun, RecordedRunError};
+use crate::output::tables::poses::PoseTable;
+use crate::report::{Listed, RunReport, Viewer};
+use crate::threads;
 use clap::Args;
-use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
-use knotdock::options::Threads;
-use knotdock::output::files::seal::{REPORT, is_sealed};
-use knotdock::output::files::staging::Staging;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::records::recorded_run::{RecordedRun, RecordedRunError};
-use knotdock::output::tables::poses::PoseTable;
-use knotdock::report::{Listed, RunReport, Viewer};
-use knotdock::threads;
 use serde_json::{Value, json};
 
 use crate::cli::arguments::viewer::ViewerArguments;

@@ -1,14 +1,14 @@
 //! `knotdock score`: one pose, exactly and from ever more modes.
 
+use crate::dock::scene::Scene;
+use crate::options::DockOptions;
+use crate::options::values::at_least_one;
+use crate::output::tables::report;
+use crate::pose_geometry::PoseGeometry;
+use crate::pose_space::arrangement::Arrangement;
+use crate::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
+use crate::threads;
 use clap::{Args, ValueEnum};
-use knotdock::dock::scene::Scene;
-use knotdock::options::DockOptions;
-use knotdock::options::values::at_least_one;
-use knotdock::output::tables::report;
-use knotdock::pose_geometry::PoseGeometry;
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
-use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;

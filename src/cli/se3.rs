@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::geometry::motion::geodesic::{angle, distance, path};
+use crate::geometry::motion::tolerance::geodesic_ball;
+use crate::options::values::{at_least_one, not_negative};
+use crate::output::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
-use knotdock::geometry::motion::geodesic::{angle, distance, path};
-use knotdock::geometry::motion::tolerance::geodesic_ball;
-use knotdock::options::values::{at_least_one, not_negative};
-use knotdock::output::tables::pose_list::write_list;
 use knotdock_scoring::se3::Pose;
 use serde_json::json;
 

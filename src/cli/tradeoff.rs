@@ -2,20 +2,20 @@
 
 use std::path::PathBuf;
 
+use crate::dock::pair::PairError;
+use crate::options::EngineChoice;
+use crate::options::definition::Scope;
+use crate::output::files::product::TRADEOFF;
+use crate::output::files::staging::Staging;
+use crate::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
+use crate::output::tables::report::align;
+use crate::progress::{Ended, Progress};
+use crate::report::Listed;
+use crate::threads;
+use crate::tradeoff::advice::advice;
+use crate::tradeoff::plot::plot;
+use crate::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use clap::Args;
-use knotdock::dock::pair::PairError;
-use knotdock::options::EngineChoice;
-use knotdock::options::definition::Scope;
-use knotdock::output::files::product::TRADEOFF;
-use knotdock::output::files::staging::Staging;
-use knotdock::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
-use knotdock::output::tables::report::align;
-use knotdock::progress::Progress;
-use knotdock::report::Listed;
-use knotdock::threads;
-use knotdock::tradeoff::advice::advice;
-use knotdock::tradeoff::plot::plot;
-use knotdock::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use serde_json::json;
 
 use crate::cli::arguments::machine::{machine, settled};
@@ -168,7 +168,7 @@ fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
 
 /// A failure of the default or the reference: of the request where it could not be planned.
 fn failure(error: &PairError) -> Failure {
-    use knotdock::error::SearchError;
+    use crate::error::SearchError;
     let failure = match error {
         PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
         _ => Failure::input(error),
@@ -227,12 +227,12 @@ fn table(tradeoff: &Tradeoff) -> String {
 }
 
 /// Lines on how far the sweep is, and the bar of the search that runs.
-struct SweepConsole {
-    line: ProgressLine,
-    console: Console,
+struct SweepConsole<'a> {
+    line: ProgressLine<'a>,
+    console: Console<'a>,
 }
 
-impl Progress for SweepConsole {
+impl Progress for SweepConsole<'_> {
     fn stage(&self, name: &str, total: u64) {
         self.line.stage(name, total);
     }
@@ -240,9 +240,13 @@ impl Progress for SweepConsole {
     fn advance(&self, by: u64) {
         self.line.advance(by);
     }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        self.line.go_on()
+    }
 }
 
-impl SweepProgress for SweepConsole {
+impl SweepProgress for SweepConsole<'_> {
     fn begins(&self, settings: usize, seconds: f64) {
         self.line.clear();
         self.console.say(format!(

@@ -106,6 +106,7 @@ fn dock_in<T: Real>(
 
     grid_poses.truncate(ERROR_POSES);
     grid_poses.shrink_to_fit();
+    progress.go_on()?;
     let check = Check::new(&scorer, &grid_poses);
     clock.lap("check");
 
@@ -115,6 +116,7 @@ fn dock_in<T: Real>(
     let stopped = found.stopped(plan, kept);
     let poses = (&found.peaks[..kept], &refined[..kept]);
     let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
+    progress.go_on()?;
     drop(refined);
     found.peaks.truncate(ERROR_POSES);
     found.peaks.shrink_to_fit();
@@ -129,6 +131,7 @@ fn dock_in<T: Real>(
     if sharp.is_some() {
         clock.lap("sharp");
     }
+    progress.go_on()?;
     merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
     let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
     // Poses closer than neighbouring samples of the search are one place to it.
@@ -299,7 +302,8 @@ fn refine<T: Real>(
     };
     let refined = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
         let grid = (pose, peak.score);
-        let Some(field) = field.as_ref().filter(|_| index < count) else {
+        let is_wanted = index < count && progress.go_on().is_ok();
+        let Some(field) = field.as_ref().filter(|_| is_wanted) else {
             return RefinedPose::best_of((printed(pose), peak.score), None);
         };
         let center = engine.ligand_center();

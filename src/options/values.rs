@@ -154,6 +154,24 @@ pub fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
+/// A number of things, or all of them (`None`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AllOr(pub Option<usize>);
+
+/// A whole number above zero, or `all`.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn all_or_at_least_one(text: &str) -> Result<AllOr, String> {
+    if text == "all" {
+        return Ok(AllOr(None));
+    }
+    match at_least_one(text) {
+        Ok(count) => Ok(AllOr(Some(count))),
+        Err(error) => Err(format!("{error}, or `all`")),
+    }
+}
+
 /// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
 ///
 /// # Errors

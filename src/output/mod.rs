@@ -8,7 +8,8 @@
 //! | `se3` | a list of poses |
 //! | `refine` | `refined.csv`, and complexes as `dock` writes them |
 //! | `tradeoff` | `tradeoff.csv`, `tradeoff.json` and a picture |
-//! | `batch` | `results.csv`, and the tables of pairs that it reads |
+//! | `batch` | `results.csv`, `poses.csv.gz`, shards of both, and the tables of pairs that it reads |
+//! | `merge` | `results.csv` and `poses.csv.gz` of all shards |
 //!
 //! # Conventions
 //!
@@ -25,4 +26,5 @@
 
 pub mod files;
 pub mod records;
+pub mod shards;
 pub mod tables;

@@ -30,7 +30,7 @@ pub(crate) struct Scanned {
 /// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
 ///
 /// # Errors
-/// [`SearchError::Graphics`] where the graphics processor fails.
+/// [`SearchError::Graphics`] where the graphics processor fails, [`SearchError::Ended`] where `progress` ends the run.
 pub(crate) fn scan<T: Real>(
     plan: &SearchPlan,
     engine: &ScanEngine<T>,
@@ -61,6 +61,7 @@ pub(crate) fn scan<T: Real>(
     };
     #[cfg(not(feature = "gpu"))]
     let mut scanned = on_cores();
+    progress.go_on()?;
     let peaks = &mut scanned.peaks;
     peaks.retain(|peak| peak.score.is_finite());
     peaks.sort_unstable_by(Peak::order);
@@ -83,6 +84,7 @@ fn scan_on_card(
     let part = (TOGETHER / (plan.rotations.images * plan.per_rotation)).max(1);
     let mut peaks: Vec<Peak> = Vec::new();
     for groups in groups.chunks(part) {
+        progress.go_on()?;
         let turn = |group: &RotationGroup| Turn {
             rotation: plan.rotations.rotation(group.first).0,
             wanted: group.wanted,
@@ -123,6 +125,9 @@ fn scan_on_cores<T: Real>(
         let done = searched.load(Ordering::Relaxed);
         let is_late = |deadline: &Deadline| deadline.is_reached(started, done);
         if next.load(Ordering::Relaxed) > 0 && deadline.is_some_and(is_late) {
+            return None;
+        }
+        if progress.go_on().is_err() {
             return None;
         }
         groups.get(next.fetch_add(1, Ordering::Relaxed))

@@ -1,5 +1,6 @@
 //! Many pairs in one call: what each leaves, what a failure costs, and what a second call does again.
 
+mod shards;
 mod together;
 
 use knotdock::output::files::folder_lock::FolderLock;

@@ -1,8 +1,8 @@
 //! The machine that a run is carried out on.
 
-use knotdock::dock::plan::DockPlan;
-use knotdock::options::{MachineOptions, Threads};
-use knotdock::output::records::manifest::Machine;
+use crate::dock::plan::DockPlan;
+use crate::options::{MachineOptions, Threads};
+use crate::output::records::manifest::Machine;
 
 use super::memory;
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use knotdock::dock::memory::process;
+use crate::dock::memory::process;
 
 /// Share of the free memory that a run may take when the user names no size.
 const DEFAULT_SHARE: f64 = 0.8;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use crate::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
+use crate::output::records::input_record::NativeRecord;
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::report::counted;
 use clap::{Args, ValueHint};
-use knotdock::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
-use knotdock::output::records::input_record::NativeRecord;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::report::counted;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
 /// Options that name the known complex.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct NativeArguments {
     /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the
     /// largest interface is taken, and FILE:A,B picks chains.

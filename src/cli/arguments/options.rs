@@ -4,10 +4,10 @@ use std::ffi::OsString;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
+use crate::options::definition::Definition;
+use crate::options::{DockOptions, definitions, file, text};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
-use knotdock::options::definition::Definition;
-use knotdock::options::{DockOptions, definitions, file, text};
 
 use crate::cli::messages::failure::Failure;
 
@@ -18,7 +18,7 @@ pub trait Selection {
 }
 
 /// All options: of `knotdock dock`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OfDock;
 
 impl Selection for OfDock {
@@ -28,7 +28,7 @@ impl Selection for OfDock {
 }
 
 /// The options that say how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OfScore;
 
 impl Selection for OfScore {
@@ -39,7 +39,7 @@ impl Selection for OfScore {
 }
 
 /// The options of a sweep, which docks no rings and writes no run: of `knotdock tradeoff`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OfTradeoff;
 
 impl Selection for OfTradeoff {
@@ -49,7 +49,7 @@ impl Selection for OfTradeoff {
 }
 
 /// The options that say what is read of a structure, and what is assumed of it: of `knotdock inspect`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct OfInspect;
 
 impl Selection for OfInspect {

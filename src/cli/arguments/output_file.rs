@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::files::whole_file::is_stream;
+use crate::output::files::whole_file::is_stream;
 
 use crate::cli::messages::failure::Failure;
 

@@ -18,12 +18,13 @@ pub struct ProgramArguments {
     verbose: bool,
 }
 
-impl From<ProgramArguments> for Console {
+impl From<ProgramArguments> for Console<'_> {
     fn from(arguments: ProgramArguments) -> Self {
         Self {
             json: arguments.json,
             quiet: arguments.quiet,
             verbose: arguments.verbose,
+            listener: None,
         }
     }
 }

@@ -2,20 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::geometry::Bracket;
+use crate::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
+use crate::geometry::bracket::{shifted, volume};
+use crate::geometry::surface::{Surface, surface};
+use crate::options::values::at_least_one;
+use crate::output::files::balls::write_table;
+use crate::output::files::sample_picture::write_ball_picture;
+use crate::output::files::surfaces::{SurfaceFormat, write_surface};
+use crate::output::files::volume_grids::{VolumeFormat, VolumeGrid, write_volume};
+use crate::output::files::whole_file::{StagedFile, is_stream};
+use crate::output::tables::fields::number;
+use crate::report::{SolidsReport, Viewer};
 use clap::{Args, ValueEnum};
 use csv::StringRecord;
-use knotdock::geometry::Bracket;
-use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
-use knotdock::geometry::bracket::{shifted, volume};
-use knotdock::geometry::surface::{Surface, surface};
-use knotdock::options::values::at_least_one;
-use knotdock::output::files::balls::write_table;
-use knotdock::output::files::sample_picture::write_ball_picture;
-use knotdock::output::files::surfaces::{SurfaceFormat, write_surface};
-use knotdock::output::files::volume_grids::{VolumeFormat, VolumeGrid, write_volume};
-use knotdock::output::files::whole_file::{StagedFile, is_stream};
-use knotdock::output::tables::fields::number;
-use knotdock::report::{SolidsReport, Viewer};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampling::ball_tree::BallTree;

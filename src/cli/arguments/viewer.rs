@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::report::{Viewer, ViewerError};
 use clap::Args;
-use knotdock::report::{Viewer, ViewerError};
 
 /// Where the library is.
 #[derive(Args, Clone, Debug)]

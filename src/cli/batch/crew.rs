@@ -1,48 +1,38 @@
 //! The pairs of a batch docked in their turns, several at a time.
 
-use std::path::PathBuf;
 use std::sync::mpsc::channel;
 use std::thread::{Builder, scope};
 
-use knotdock::dock::shared_process::share_process;
+use crate::dock::shared_process::share_process;
 
-use crate::cli::batch::row::{DockedRow, dock_row};
 use crate::cli::batch::schedule::Turn;
-use crate::cli::dock::Dock;
-use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
 /// A pair that waits for its turn.
-pub struct Job {
+pub struct Job<J> {
     /// Its place in the table, and its threads.
     pub turn: Turn,
-    /// Its command line.
-    pub dock: Dock,
-    /// Its name.
-    pub name: String,
-    /// The directory of its run.
-    pub run: PathBuf,
-    /// How its line of the report begins.
-    pub head: String,
+    /// What is done.
+    pub work: J,
 }
 
-impl Job {
-    fn dock(self, console: Console) -> DockedRow {
-        let dock = (self.dock, self.turn.threads);
-        dock_row(dock, (&self.name, &self.head), &self.run, console)
-    }
+/// Hears which pairs are begun and what came of them, on one thread.
+pub trait Watch<T> {
+    /// A pair at a place is about to be docked.
+    fn begin(&mut self, place: usize) -> Result<(), Failure>;
+    /// What came of it.
+    fn done(&mut self, place: usize, row: T) -> Result<(), Failure>;
 }
 
-/// Docks pairs in their order, as many at once as `threads` suffice for, and hands what came of each to `done` with its
-/// place.
+/// Docks pairs in their order by `dock`, as many at once as `threads` suffice for, before the eyes of `watch`.
 ///
 /// # Errors
-/// The first of `done`, after which no pair is begun, and [`Failure`] where a thread cannot be started.
-pub fn dock_all(
-    jobs: Vec<Job>,
+/// The first of `watch`, after which no pair is begun, and [`Failure`] where a thread cannot be started.
+pub fn dock_all<J: Send, T: Send>(
+    jobs: Vec<Job<J>>,
     threads: usize,
-    console: Console,
-    mut done: impl FnMut(usize, DockedRow) -> Result<(), Failure>,
+    dock: impl Fn(J, usize) -> T + Sync,
+    watch: &mut dyn Watch<T>,
 ) -> Result<(), Failure> {
     let (sender, receiver) = channel();
     let mut waiting = jobs.into_iter().peekable();
@@ -50,21 +40,25 @@ pub fn dock_all(
     scope(|scope| {
         let mut failed = None;
         loop {
-            let fits = |job: &Job| {
+            let fits = |job: &Job<J>| {
                 failed.is_none()
                     && (running == 0 || (!job.turn.is_alone && job.turn.threads <= free))
             };
-            if let Some(job) = waiting.next_if(fits) {
-                let turn = job.turn;
+            if let Some(Job { turn, work }) = waiting.next_if(fits) {
+                failed = watch.begin(turn.pair).err();
+                if failed.is_some() {
+                    continue;
+                }
                 if turn.is_alone {
-                    failed = done(turn.pair, job.dock(console)).err();
+                    failed = watch.done(turn.pair, dock(work, turn.threads)).err();
                     continue;
                 }
                 share_process();
                 let sender = sender.clone();
+                let dock = &dock;
                 let work = move || {
                     // Where nobody listens any more, the run stands all the same.
-                    let _ = sender.send((turn, job.dock(console)));
+                    let _ = sender.send((turn, dock(work, turn.threads)));
                 };
                 if let Err(error) = Builder::new().spawn_scoped(scope, work) {
                     let message = format!("the system did not start a thread: {error}");
@@ -78,7 +72,7 @@ pub fn dock_all(
                 if let Ok((turn, row)) = receiver.recv() {
                     free += turn.threads;
                     running -= 1;
-                    let next = done(turn.pair, row).err();
+                    let next = watch.done(turn.pair, row).err();
                     failed = failed.or(next);
                 }
             } else {

@@ -1,37 +1,38 @@
 //! `knotdock batch`: many pairs in one call, and one table of what came of them.
 
 mod crew;
-mod row;
+mod limits;
+mod pair;
+mod plan;
 mod schedule;
+mod sharded;
+mod whole;
 
 use std::path::{Path, PathBuf};
 
+use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::options::values::{AllOr, all_or_at_least_one, at_least_one};
+use crate::output::files::checksum::sha256;
+use crate::output::files::folder_lock::FolderLock;
+use crate::output::files::whole_file::FileError;
+use crate::output::shards::Shard;
+use crate::output::shards::record::{Keep, ShardRecord};
+use crate::output::tables::report::counted;
 use clap::Args;
-use knotdock::options::Threads;
-use knotdock::options::values::at_least_one;
-use knotdock::output::files::folder_lock::FolderLock;
-use knotdock::output::files::whole_file::FileError;
-use knotdock::output::tables::batch_results::{
-    PairResult, RESULTS, is_ours, rows_of_others, write_results,
-};
-use knotdock::output::tables::report::counted;
-use serde_json::{Value, json};
 
 use crate::cli::arguments::program::is_of_program;
-use crate::cli::batch::crew::{Job, dock_all};
-use crate::cli::batch::row::DockedRow;
-use crate::cli::batch::schedule::{Own, turns};
-use crate::cli::dock::Dock;
-use crate::cli::inputs::batch_pairs::{Pair, pairs};
+use crate::cli::batch::limits::Limits;
+use crate::cli::batch::sharded::Sharding;
+use crate::cli::inputs::batch_pairs::pairs;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::report::write_listed;
 
-/// Dock many pairs of a table, each into a directory of its own, and sum up what came of them.
+/// Dock many pairs of a table, and sum up what came of them.
 ///
-/// A pair whose directory holds its run already, of the same inputs and options, is not docked again, so that a batch
-/// which was stopped goes on where it was. A pair that fails is reported, and the others go on. DIR/results.csv has a
-/// row a pair and is written anew after each.
+/// By default each pair has a directory of its run, and DIR/results.csv a row a pair. A pair that is done is not docked
+/// again, so that a batch which was stopped goes on where it was. A pair that fails is reported, and the others go on.
+/// For many thousands of pairs, --keep table writes one table of results and one file of poses, and --shard docks a part
+/// of the table on each of several machines.
 #[derive(Args, Debug)]
 pub struct Batch {
     /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further
@@ -39,13 +40,34 @@ pub struct Batch {
     /// are looked for from the table's folder.
     #[arg(value_name = "PAIRS.CSV")]
     pairs: PathBuf,
-    /// Directory of the batch, in which each pair's run has a directory of its name [default: knotdock_PAIRS].
+    /// Directory of the batch [default: knotdock_PAIRS].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Threads of the whole batch. Small pairs are docked at the same time on one thread each, large ones by themselves
     /// on all. A pair whose own options name a number of threads has that [default: all hardware threads].
     #[arg(short = 'j', long, value_name = "N", value_parser = at_least_one)]
     threads: Option<usize>,
+    /// What is kept of each pair.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Keep::All)]
+    keep: Keep,
+    /// Rows of each pair that go to poses.csv.gz, best first, or `all`.
+    #[arg(long, value_name = "COUNT", value_parser = all_or_at_least_one, default_value = "200")]
+    rows: AllOr,
+    /// Dock one of N parts of the table, such as 3/100: every hundredth pair, from the third on. Its files are in
+    /// DIR/shards; `knotdock merge DIR` puts all parts together.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Folder on a disk of this machine in which the shard's files are until it is done.
+    #[arg(long, value_name = "FOLDER")]
+    scratch: Option<PathBuf>,
+    #[command(flatten)]
+    limits: Limits,
+    /// Dock pairs again that failed in an earlier call; with --keep all that is always done.
+    #[arg(long)]
+    retry_failed: bool,
+    /// Exit code 0 where pairs failed, as long as every pair was tried: the table has their errors.
+    #[arg(long)]
+    failures_ok: bool,
     /// Options of `knotdock dock` for all pairs, after `--`; with --force runs of other inputs or options are replaced.
     #[arg(last = true, value_name = "DOCK OPTIONS")]
     options: Vec<String>,
@@ -65,38 +87,20 @@ impl Batch {
                 ),
             );
         }
-        let pairs = pairs(&self.pairs, &directory, &self.options)?;
-        let results = directory.join(RESULTS);
+        let is_plain = self.shard.is_none() && self.keep == Keep::All;
+        if is_plain && (self.scratch.is_some() || self.retry_failed) {
+            return Err(
+                Failure::input("--scratch and --retry-failed are of shards, and every pair has its own directory here")
+                    .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
+            );
+        }
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        let (pairs, total) = pairs(&self.pairs, shard, &directory, &self.options)?;
         let unwritable = |source| FileError::Unwritable {
             path: directory.clone(),
             source,
         };
         std::fs::create_dir_all(&directory).map_err(unwritable)?;
-        // Two batches would each write the table without the other's rows.
-        let lock = FolderLock::take(&directory).map_err(unwritable)?;
-        let Some(_lock) = lock else {
-            return Err(
-                Failure::input("another batch is being written to the directory")
-                    .at(&directory)
-                    .remedy("wait for it to end, or choose another directory with -o"),
-            );
-        };
-        self.run_locked(pairs, &directory, &results, console)
-    }
-
-    /// Docks the pairs into a directory that no other batch writes to.
-    fn run_locked(
-        &self,
-        pairs: Vec<Pair>,
-        directory: &Path,
-        results: &Path,
-        console: Console,
-    ) -> Result<u8, Failure> {
-        if !is_ours(results) {
-            return Err(Failure::input("this is no table of a batch's results")
-                .at(results)
-                .remedy("choose another directory with -o"));
-        }
         let count = pairs.len();
         console.say(format!(
             "{} of {} {} to {}",
@@ -105,94 +109,67 @@ impl Batch {
             if count == 1 { "goes" } else { "go" },
             directory.display()
         ));
-        // A file of options that cannot be read is a failure of its pair alone.
-        let own = pairs.iter().map(|pair| pair.dock.own_threads());
-        let own: Vec<(Option<usize>, bool)> = own.map(Result::unwrap_or_default).collect();
-        let threads = self.threads(&own);
-        // Threads that all pairs agree on are those of the batch.
-        let own: Vec<Own> = own
-            .into_iter()
-            .map(|(own, is_alone)| Own {
-                threads: own.filter(|&own| own != threads),
-                is_alone,
-            })
-            .collect();
-        let costs: Vec<f64> = pairs.iter().map(|pair| pair.cost).collect();
-        let turns = turns(&costs, &own, threads);
-        let (mut waiting, mut table): (Vec<Option<Dock>>, Vec<PairResult>) =
-            (Vec::new(), Vec::new());
-        for pair in pairs {
-            waiting.push(Some(pair.dock));
-            table.push(PairResult {
-                name: pair.name,
-                receptor: pair.row.receptor,
-                ligand: pair.row.ligand,
-                outcome: None,
-            });
-        }
-        let others = rows_of_others(results, &table).map_err(|error| {
-            Failure::input(format!("the table of earlier results cannot be read: {error}"))
-                .at(results)
-                .remedy("move the file away: pairs that are done are not docked again, and get their rows anew")
-        })?;
-        let jobs = turns.into_iter().filter_map(|turn| {
-            let name = table[turn.pair].name.clone();
-            Some(Job {
-                turn,
-                dock: waiting[turn.pair].take()?,
-                run: directory.join(&name),
-                head: format!("[{}/{count}] {name}", turn.pair + 1),
-                name,
-            })
-        });
-        let jobs: Vec<Job> = jobs.collect();
-        let (mut code, mut entries) = (0, vec![Value::Null; count]);
-        dock_all(
-            jobs,
-            threads,
-            console,
-            |pair, DockedRow { entry, outcome }| {
-                if let Err(failure) = &outcome {
-                    code = match (code, failure.exit_code()) {
-                        (0 | 2, 2) => 2,
-                        _ => 1,
-                    };
-                }
-                table[pair].outcome = Some(outcome.map_err(|failure| failure.line_of_table()));
-                entries[pair] = entry;
-                Ok(write_results(results, &table, &others)?)
-            },
-        )?;
-        write_listed(directory, console)?;
-        let done = table
-            .iter()
-            .filter(|pair| matches!(pair.outcome, Some(Ok(_))));
-        console.say(format!(
-            "{} of {count} done, results in {}{}",
-            done.count(),
-            results.display(),
-            match others.len() {
-                0 => String::new(),
-                earlier => format!(", with {} of earlier batches", counted(earlier, "row")),
-            }
-        ));
-        console.result(&json!({
-            "directory": directory.display().to_string(),
-            "results": results.display().to_string(),
-            "pairs": entries,
-        }))?;
-        Ok(code)
+        let failures_ok = self.failures_ok;
+        let code = if is_plain {
+            whole::dock_into(&directory, pairs, (self.threads, self.limits), console)?
+        } else {
+            let sharding = self.sharding(directory, shard, total)?;
+            sharding.dock(pairs, console)?
+        };
+        Ok(if failures_ok { 0 } else { code.0 })
     }
 
-    /// Threads of the batch: those given, or else those that all pairs' own options agree on.
-    fn threads(&self, own: &[(Option<usize>, bool)]) -> usize {
-        let agreed = match own {
-            [(Some(first), _), rest @ ..] if rest.iter().all(|(own, _)| *own == Some(*first)) => {
-                Some(*first)
-            }
-            _ => None,
-        };
-        let threads = self.threads.or(agreed);
-        threads.unwrap_or_else(|| Threads::default().count())
+    /// The shard that the options describe, of a table of so many pairs.
+    fn sharding(self, directory: PathBuf, shard: Shard, total: usize) -> Result<Sharding, Failure> {
+        let table = read_bounded(&self.pairs, MAX_TABLE).map_err(|error| {
+            Failure::input(format!("cannot read {}: {error}", self.pairs.display()))
+                .at(&self.pairs)
+                .remedy("give the table as a file")
+        })?;
+        let kept = (self.keep, self.rows.0);
+        Ok(Sharding {
+            record: ShardRecord::new(shard, (total, sha256(&table)), self.options, kept),
+            directory,
+            scratch: self.scratch,
+            threads: self.threads,
+            limits: self.limits,
+            retry_failed: self.retry_failed,
+            is_whole: self.shard.is_none(),
+        })
     }
+}
+
+/// The exit code of a batch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExitCode(u8);
+
+impl ExitCode {
+    /// Takes account of a pair that failed.
+    pub fn add(&mut self, failure: &Failure) {
+        self.0 = match (self.0, failure.exit_code()) {
+            (0 | 2, 2) => 2,
+            _ => 1,
+        };
+    }
+
+    /// The code where so many pairs of this call and earlier ones failed.
+    pub fn of_failed(self, count: usize) -> Self {
+        match (self.0, count) {
+            (0, 1..) => Self(2),
+            _ => self,
+        }
+    }
+}
+
+/// Holds a folder that batches write to: two would each write a table without the other's rows.
+fn lock(folder: &Path) -> Result<FolderLock, Failure> {
+    let lock = FolderLock::take(folder).map_err(|source| FileError::Unwritable {
+        path: folder.to_owned(),
+        source,
+    })?;
+    lock.ok_or_else(|| {
+        Failure::input("another batch is being written to the directory")
+            .at(folder)
+            .remedy("wait for it to end, or choose another directory with -o")
+    })
 }

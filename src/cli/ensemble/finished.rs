@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::ensemble::table::MEMBER;
-use knotdock::output::records::ensemble_record::{MEMBERS, is_ensemble};
-use knotdock::output::tables::poses::PoseTable;
+use crate::ensemble::table::MEMBER;
+use crate::output::records::ensemble_record::{MEMBERS, is_ensemble};
+use crate::output::tables::poses::PoseTable;
 
 use crate::cli::messages::failure::Failure;
 

@@ -1,10 +1,10 @@
 //! Conformations as read: each laid on the first of its side.
 
-use knotdock::dock::run::molecule_points;
-use knotdock::evaluate::{Superposed, superpose};
-use knotdock::options::DockOptions;
-use knotdock::output::records::ensemble_record::ConformationRecord;
-use knotdock::output::records::input_record::InputRecord;
+use crate::dock::run::molecule_points;
+use crate::evaluate::{Superposed, superpose};
+use crate::options::DockOptions;
+use crate::output::records::ensemble_record::ConformationRecord;
+use crate::output::records::input_record::InputRecord;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, Molecule};
 

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use knotdock::ensemble::table::{DockedMember, joint};
-use knotdock::output::files::product::ENSEMBLE;
-use knotdock::output::files::staging::Staging;
-use knotdock::output::records::ensemble_record::{MEMBERS, RECORD};
-use knotdock::output::tables::batch_results::RunSummary;
-use knotdock::output::tables::poses::PoseTable;
-use knotdock::output::tables::report::counted;
-use knotdock::rank::cluster::RigidBody;
-use knotdock::tradeoff::choice::Wanted;
+use crate::ensemble::table::{DockedMember, joint};
+use crate::output::files::product::ENSEMBLE;
+use crate::output::files::staging::Staging;
+use crate::output::records::ensemble_record::{MEMBERS, RECORD};
+use crate::output::tables::batch_results::RunSummary;
+use crate::output::tables::poses::PoseTable;
+use crate::output::tables::report::counted;
+use crate::rank::cluster::RigidBody;
+use crate::tradeoff::choice::Wanted;
 use serde_json::Value;
 
 use crate::cli::arguments::native::NativeFiles;
@@ -41,12 +41,6 @@ pub struct Ensemble {
 /// A member: which conformation of each side.
 #[derive(Clone, Copy)]
 pub(super) struct Member([usize; 2]);
-
-const SILENT: Console = Console {
-    quiet: true,
-    json: false,
-    verbose: false,
-};
 
 impl Ensemble {
     /// Reads all conformations, plans the largest pair and says what all will cost.
@@ -129,7 +123,7 @@ impl Ensemble {
             [0, 0] => first.memory_bytes(),
             _ => first
                 .memory_bytes()
-                .max(self.docking(largest, SILENT)?.memory_bytes()),
+                .max(self.docking(largest, console.silent())?.memory_bytes()),
         };
         let (model, _) = cost_model(console);
         let count = self.members().len();
@@ -157,7 +151,7 @@ impl Ensemble {
     /// Whether the directory holds this very ensemble already.
     pub fn is_done(&self, console: Console) -> bool {
         let is_done = |member: Member| {
-            let docking = self.docking(member, SILENT);
+            let docking = self.docking(member, console.silent());
             docking.is_ok_and(|docking| docking.is_done(console))
         };
         let recorded = recorded_members(&self.directory.join(RECORD));
@@ -178,7 +172,7 @@ impl Ensemble {
         let (mut docked, mut kept, mut poses) = (Vec::new(), 0, 0);
         for (&member, number) in members.iter().zip(1..) {
             let clock = Instant::now();
-            let anew = self.dock(member, notices)?;
+            let anew = self.dock(member, (console.silent(), notices))?;
             kept += usize::from(!anew);
             let folder = self.folder(member);
             let summary = RunSummary::of(&folder)?;
@@ -205,15 +199,15 @@ impl Ensemble {
     }
 
     /// Docks a member, unless its run is there; whether it had to be done.
-    fn dock(&self, member: Member, notices: Console) -> Result<bool, Failure> {
-        let docking = self.docking(member, SILENT)?;
+    fn dock(&self, member: Member, (silent, notices): (Console, Console)) -> Result<bool, Failure> {
+        let docking = self.docking(member, silent)?;
         if docking.is_done(notices) {
             return Ok(false);
         }
         if let Some(directory) = docking.in_the_way() {
             return Err(held_by_another(directory, "--force"));
         }
-        docking.run(SILENT, notices)?;
+        docking.run(silent, notices)?;
         Ok(true)
     }
 }

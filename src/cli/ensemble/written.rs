@@ -2,21 +2,21 @@
 
 use std::path::Path;
 
-use knotdock::ensemble::table::{DockedMember, JointTable};
-use knotdock::output::files::staging::Staging;
-use knotdock::output::files::viewers::ViewedComplex;
-use knotdock::output::files::whole_file::to_json;
-use knotdock::output::records::ensemble_record::{
+use crate::ensemble::table::{DockedMember, JointTable};
+use crate::output::files::staging::Staging;
+use crate::output::files::viewers::ViewedComplex;
+use crate::output::files::whole_file::to_json;
+use crate::output::records::ensemble_record::{
     EnsembleRecord, EnsembleResults, EnsembleTiming, MEMBERS, MemberRecord, RECORD, SCHEMA,
 };
-use knotdock::output::records::program::Program;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::report::{BEST, best_rows, counted};
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::report::Listed;
+use crate::output::records::program::Program;
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::report::{BEST, best_rows, counted};
+use crate::pose_space::arrangement::Arrangement;
+use crate::report::Listed;
 use serde_json::{Value, json};
 
-use crate::cli::docking::write_scripts;
+use crate::cli::docked::write_scripts;
 use crate::cli::ensemble::laid::Laid;
 use crate::cli::ensemble::run::Ensemble;
 use crate::cli::inputs::bodies::Bodies;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use knotdock::evaluate::PoseQuality;
-use knotdock::options::InputOptions;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::tables::complexes::{EvaluatedComplex, write_complexes};
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::report::align;
+use crate::evaluate::PoseQuality;
+use crate::options::InputOptions;
+use crate::output::files::whole_file::write_whole;
+use crate::output::tables::complexes::{EvaluatedComplex, write_complexes};
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::report::align;
 use knotdock_scoring::se3::Pose;
 use serde_json::json;
 

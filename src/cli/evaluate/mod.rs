@@ -4,14 +4,14 @@ mod complexes;
 
 use std::path::{Path, PathBuf};
 
+use crate::evaluate::{Capri, Evaluator, PoseQuality};
+use crate::options::{InputOptions, Threads, definitions};
+use crate::output::records::ensemble_record::is_ensemble;
+use crate::output::records::recorded_run::RecordedRun;
+use crate::output::tables::poses::{PoseRow, PoseTable};
+use crate::output::tables::{quality, report};
+use crate::threads;
 use clap::Args;
-use knotdock::evaluate::{Capri, Evaluator, PoseQuality};
-use knotdock::options::{InputOptions, Threads, definitions};
-use knotdock::output::records::ensemble_record::is_ensemble;
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
-use knotdock::output::tables::{quality, report};
-use knotdock::threads;
 use serde_json::{Map, Value, json};
 
 use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce, measure};

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use knotdock::bounded_read::{MAX_TABLE, read_bounded};
-use knotdock::output::records::input_record::InputRecord;
+use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::output::records::input_record::InputRecord;
 use knotdock_structures::ball_file::{self, BallFile};
 use knotdock_structures::molecule::InputSpec;
 

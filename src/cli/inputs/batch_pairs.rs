@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::options::definition::names_file;
+use crate::options::text::first_paragraph;
+use crate::output::shards::Shard;
+use crate::output::tables::batch_results::RESULTS;
+use crate::output::tables::pair_table::{PairRow, read_pairs};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
-use knotdock::options::definition::names_file;
-use knotdock::options::text::first_paragraph;
-use knotdock::output::tables::batch_results::RESULTS;
-use knotdock::output::tables::pair_table::{PairRow, read_pairs};
 use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::arguments::program::with_negative_numbers;
@@ -28,6 +29,8 @@ struct PairCommand {
 
 /// A pair that is to be docked.
 pub struct Pair {
+    /// Its row in the table, from 1.
+    pub index: usize,
     /// Its name, and that of the directory of its run.
     pub name: String,
     /// Its row of the table.
@@ -38,14 +41,21 @@ pub struct Pair {
     pub cost: f64,
 }
 
-/// The pairs of the table with their command lines, each checked as far as words go.
-pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<Pair>, Failure> {
+/// The pairs of the table that a shard has, with their command lines, each checked as far as words go; and how many
+/// pairs there are in all.
+pub fn pairs(
+    table: &Path,
+    shard: Shard,
+    directory: &Path,
+    options: &[String],
+) -> Result<(Vec<Pair>, usize), Failure> {
     let folder = table.parent().unwrap_or(Path::new(""));
     let mut names: HashMap<String, u64> = HashMap::new();
     check_options(options)?;
     let symmetry = symmetry(options);
     let rows = read_pairs(table, symmetry.is_some())?;
-    let pairs = rows.into_iter().map(|row| {
+    let count = rows.len();
+    let pairs = (1..).zip(rows).map(|(index, row)| {
             let wrong = |message: String, remedy: &str| {
                 Failure::input(message)
                     .at(table)
@@ -69,6 +79,9 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                     "give each pair a name of its own in a column `name`",
                 ));
             }
+            if !shard.has(index) {
+                return Ok(None);
+            }
             let dock = command(&row, &directory.join(&name), folder, options);
             let dock = dock.map_err(|(message, suggested)| {
                 const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
@@ -79,14 +92,16 @@ pub fn pairs(table: &Path, directory: &Path, options: &[String]) -> Result<Vec<P
                 }
             })?;
             let cost = cost(&row, folder);
-            Ok(Pair {
+            Ok(Some(Pair {
+                index,
                 name,
                 row,
                 dock,
                 cost,
-            })
+            }))
         });
-    pairs.collect()
+    let pairs: Result<Vec<Pair>, Failure> = pairs.filter_map(Result::transpose).collect();
+    Ok((pairs?, count))
 }
 
 /// Stand for a row's files where only the options are looked at.

@@ -3,17 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use knotdock::dock::pair::{Pair, PreparedPair, Sampling};
-use knotdock::error::SearchError;
-use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError};
-use knotdock::options::DockOptions;
-use knotdock::output::files::assemblies::write_assemblies;
-use knotdock::output::files::complexes::write_complexes;
-use knotdock::output::records::input_record::InputRecord;
-use knotdock::output::records::manifest::InputEntry;
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
-use knotdock::pose_space::arrangement::Arrangement;
-use knotdock::report::{ReportBodies, RunContacts};
+use crate::dock::pair::{Pair, PreparedPair, Sampling};
+use crate::error::SearchError;
+use crate::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError};
+use crate::options::DockOptions;
+use crate::output::files::assemblies::write_assemblies;
+use crate::output::files::complexes::write_complexes;
+use crate::output::records::input_record::InputRecord;
+use crate::output::records::manifest::InputEntry;
+use crate::output::tables::poses::{PoseRow, PoseTable};
+use crate::pose_space::arrangement::Arrangement;
+use crate::report::{ReportBodies, RunContacts};
 use knotdock_structures::molecule::{ChainMap, Format, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 

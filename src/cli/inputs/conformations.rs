@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use knotdock::output::files::whole_file::is_stream;
+use crate::output::files::whole_file::is_stream;
 use knotdock_structures::molecule::{InputSpec, file_bytes, model_count};
 
 use crate::cli::arguments::conformations::ModelList;

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use knotdock::mesh::SampledPart;
-use knotdock::output::records::input_record::InputRecord;
-use knotdock::output::records::manifest::InputEntry;
+use crate::mesh::SampledPart;
+use crate::output::records::input_record::InputRecord;
+use crate::output::records::manifest::InputEntry;
 use knotdock_structures::mesh::{self, Mesh, MeshReport, Solid};
 use knotdock_structures::molecule::InputSpec;
 

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use knotdock::output::records::ensemble_record::MEMBERS;
-use knotdock::output::records::input_record::InputRecord;
-use knotdock::output::records::manifest::InputEntry;
+use crate::output::records::ensemble_record::MEMBERS;
+use crate::output::records::input_record::InputRecord;
+use crate::output::records::manifest::InputEntry;
 use knotdock_structures::molecule::{
     AtomFate, DropKind, InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
     read_bytes_with_fates,

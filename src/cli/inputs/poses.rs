@@ -3,10 +3,10 @@
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+use crate::bounded_read::{MAX_POSES, read_bounded};
+use crate::output::tables::pose_list::read_list;
+use crate::output::tables::poses_reader::PoseTableError;
 use clap::Args;
-use knotdock::bounded_read::{MAX_POSES, read_bounded};
-use knotdock::output::tables::pose_list::read_list;
-use knotdock::output::tables::poses_reader::PoseTableError;
 use knotdock_scoring::se3::Pose;
 
 use crate::cli::messages::failure::Failure;

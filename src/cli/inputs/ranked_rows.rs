@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
+use crate::output::tables::poses::{PoseRow, PoseTable};
 
 use crate::cli::arguments::ranks::Ranks;
 use crate::cli::messages::failure::Failure;

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::dock::pair::{PreparedPair, Sampling};
-use knotdock::evaluate::Evaluator;
-use knotdock::mesh::GivenLengths;
-use knotdock::options::{DockOptions, MachineOptions};
-use knotdock::output::records::manifest::Inputs;
-use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::pose_space::arrangement::Arrangement;
+use crate::dock::pair::{PreparedPair, Sampling};
+use crate::evaluate::Evaluator;
+use crate::mesh::GivenLengths;
+use crate::options::{DockOptions, MachineOptions};
+use crate::output::records::manifest::Inputs;
+use crate::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
+use crate::output::records::recorded_run::RecordedRun;
+use crate::pose_space::arrangement::Arrangement;
 
 use crate::cli::arguments::native::NativeFiles;
 use crate::cli::arguments::options::GivenOptions;

@@ -5,8 +5,8 @@
 
 use std::fs;
 
-use knotdock::dock::memory::size::{as_size, named};
-use knotdock::geometry::obstacle::reduce::BYTES_REDUCED;
+use crate::dock::memory::size::{as_size, named};
+use crate::geometry::obstacle::reduce::BYTES_REDUCED;
 use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::messages::failure::Failure;

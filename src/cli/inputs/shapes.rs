@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use knotdock::mesh::SampledPart;
-use knotdock::mesh::shape::{BallPart, Shape};
-use knotdock::output::files::assemblies::Surface;
-use knotdock::output::files::balls::spheres;
-use knotdock::output::records::input_record::InputRecord;
-use knotdock::output::records::manifest::InputEntry;
+use crate::mesh::SampledPart;
+use crate::mesh::shape::{BallPart, Shape};
+use crate::output::files::assemblies::Surface;
+use crate::output::files::balls::spheres;
+use crate::output::records::input_record::InputRecord;
+use crate::output::records::manifest::InputEntry;
 use knotdock_structures::ball_file::is_ball_file;
 use knotdock_structures::molecule::InputSpec;
 use serde_json::json;

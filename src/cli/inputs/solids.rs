@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use crate::options::InputOptions;
+use crate::options::SampleGrid;
+use crate::output::records::input_record::InputRecord;
 use clap::Args;
-use knotdock::options::InputOptions;
-use knotdock::options::SampleGrid;
-use knotdock::output::records::input_record::InputRecord;
 use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::{BallSolid, MeshSampling};
 use knotdock_structures::knots::KnotsError;

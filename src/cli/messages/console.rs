@@ -12,31 +12,47 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
+use crate::progress::{Ended, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use knotdock::progress::Progress;
 
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::listener::Listener;
 use crate::cli::messages::shown::{shown, shown_json};
 
 /// Why a part of the report could not be written, the first time that happened.
 static LOST: OnceLock<io::Error> = OnceLock::new();
 
-/// The terminal as a command sees it.
+/// The terminal as a command sees it, or the program that listens in its place.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Console {
+pub struct Console<'a> {
     /// Results as one JSON object.
     pub json: bool,
     /// No words but errors.
     pub quiet: bool,
     /// More words.
     pub verbose: bool,
+    /// Hears everything in the terminal's place.
+    pub listener: Option<&'a dyn Listener>,
 }
 
-impl Console {
+impl<'a> Console<'a> {
+    /// The console of what is done within a command and has no words of its own but errors.
+    pub fn silent(self) -> Self {
+        Self {
+            quiet: true,
+            json: false,
+            verbose: false,
+            ..self
+        }
+    }
+
     /// Writes a paragraph of the report.
     pub fn say(&self, text: impl ToString) {
         if self.quiet {
             return;
+        }
+        if let Some(listener) = self.listener {
+            return listener.say(&text.to_string());
         }
         if self.json {
             write_line(&mut io::stderr(), &shown(&text.to_string()));
@@ -65,7 +81,12 @@ impl Console {
 
     /// Writes a warning on standard error.
     pub fn warn(&self, text: impl ToString) {
-        if !self.quiet {
+        if self.quiet {
+            return;
+        }
+        if let Some(listener) = self.listener {
+            listener.warn(&text.to_string());
+        } else {
             let text = format!("warning: {}", text.to_string());
             write_line(&mut io::stderr(), &shown(&text));
         }
@@ -73,12 +94,19 @@ impl Console {
 
     /// Writes on standard error what went wrong and does not end the command.
     pub fn error(&self, text: impl ToString) {
+        if let Some(listener) = self.listener {
+            return listener.error(&text.to_string());
+        }
         write_line(&mut io::stderr(), &shown(&text.to_string()));
     }
 
     /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
     /// object is all there is, unless its reader has gone.
     pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
+        if let Some(listener) = self.listener {
+            listener.result(object);
+            return Ok(());
+        }
         if !self.json {
             return Ok(());
         }
@@ -99,8 +127,14 @@ impl Console {
         write_line(&mut io::stderr(), &shown(&failure.text()));
     }
 
+    /// Fails where whoever listens ends the command.
+    pub fn go_on(&self) -> Result<(), Failure> {
+        let ended = self.listener.map_or(Ok(()), Listener::go_on);
+        ended.map_err(|why| Failure::of_program(why).remedy("start it again"))
+    }
+
     /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
-    pub fn progress(&self) -> ProgressLine {
+    pub fn progress(&self) -> ProgressLine<'a> {
         let bar = ProgressBar::hidden();
         // The templates are constant; should one not parse, indicatif's own style serves.
         if let Ok(style) = ProgressStyle::with_template(
@@ -108,11 +142,13 @@ impl Console {
         ) {
             bar.set_style(style.progress_chars("=> "));
         }
-        let shown = !self.quiet && io::stderr().is_terminal();
+        let shown = !self.quiet && self.listener.is_none() && io::stderr().is_terminal();
         ProgressLine {
             ticker: shown.then(|| Ticker::start(&bar)).flatten(),
             bar,
             shown,
+            is_heard: !self.quiet && self.listener.is_some(),
+            listener: self.listener,
         }
     }
 }
@@ -134,10 +170,13 @@ fn write_line(stream: &mut dyn Write, text: &str) {
 }
 
 /// The progress of a search on one line of the terminal, cleared when the search ends.
-pub struct ProgressLine {
+pub struct ProgressLine<'a> {
     bar: ProgressBar,
     shown: bool,
     ticker: Option<Ticker>,
+    /// Whether a listener hears of it, beside saying whether it goes on.
+    is_heard: bool,
+    listener: Option<&'a dyn Listener>,
 }
 
 /// Time between two drawings of a line whose bar stands still.
@@ -185,15 +224,21 @@ impl Drop for Ticker {
     }
 }
 
-impl ProgressLine {
+impl ProgressLine<'_> {
     /// Clears the line, so that a sentence can be written in its place.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-impl Progress for ProgressLine {
+impl Progress for ProgressLine<'_> {
     fn stage(&self, name: &str, total: u64) {
+        if self.is_heard {
+            if let Some(listener) = self.listener {
+                listener.stage(name, total);
+            }
+            return;
+        }
         self.bar.finish_and_clear();
         // Each of these would draw a line of its own that is half the old stage's and half the new one's.
         self.bar.set_draw_target(ProgressDrawTarget::hidden());
@@ -206,11 +251,18 @@ impl Progress for ProgressLine {
     }
 
     fn advance(&self, by: u64) {
-        self.bar.inc(by);
+        match self.listener {
+            Some(listener) if self.is_heard => listener.advance(by),
+            _ => self.bar.inc(by),
+        }
+    }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        self.listener.map_or(Ok(()), Listener::go_on)
     }
 }
 
-impl Drop for ProgressLine {
+impl Drop for ProgressLine<'_> {
     fn drop(&mut self) {
         self.ticker.take();
         self.bar.finish_and_clear();

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use knotdock::dock::flexible_regions::FlexibleRegions;
-use knotdock::dock::outcome::{DockOutcome, EffectCost};
-use knotdock::dock::plan::DockPlan;
-use knotdock::output::tables::report::counted;
-use knotdock::priors::active_residues::AssumedSite;
-use knotdock::priors::restrained::Restrained;
-use knotdock::rank::sharp::SharpFinding;
-use knotdock::rank::sharp::evidence::MARGIN;
-use knotdock::tradeoff::choice::MIN_ROTATIONS;
+use crate::dock::flexible_regions::FlexibleRegions;
+use crate::dock::outcome::{DockOutcome, EffectCost};
+use crate::dock::plan::DockPlan;
+use crate::output::tables::report::counted;
+use crate::priors::active_residues::AssumedSite;
+use crate::priors::restrained::Restrained;
+use crate::rank::sharp::SharpFinding;
+use crate::rank::sharp::evidence::MARGIN;
+use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Membrane;
 use knotdock_structures::molecule::LabelReport;

@@ -11,6 +11,8 @@ enum Kind {
     Input,
     /// Anything else: exit code 1.
     Other,
+    /// Anything else that would happen again: exit code 1.
+    Lasting,
 }
 
 /// A failure of a command.
@@ -43,6 +45,19 @@ impl Failure {
         }
     }
 
+    /// A fault that is not the input's and would happen again (exit code 1): of the program, or a limit that is met.
+    pub fn of_program(message: impl ToString) -> Self {
+        Self {
+            kind: Kind::Lasting,
+            ..Self::input(message)
+        }
+    }
+
+    /// Whether the same again may succeed.
+    pub fn may_pass(&self) -> bool {
+        self.kind == Kind::Other
+    }
+
     /// Names the file in question.
     pub fn at(self, file: &Path) -> Self {
         Self {
@@ -64,11 +79,31 @@ impl Failure {
         }
     }
 
+    /// What went wrong.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// The file in question.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// Its 1-based line in question.
+    pub fn line(&self) -> Option<u64> {
+        self.line
+    }
+
+    /// What the user can do.
+    pub fn advice(&self) -> Option<&str> {
+        self.remedy.as_deref()
+    }
+
     /// 2 for bad input, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             Kind::Input => 2,
-            Kind::Other => 1,
+            Kind::Other | Kind::Lasting => 1,
         }
     }
 

@@ -4,22 +4,23 @@ use std::error::Error;
 use std::fmt::Display;
 use std::path::Path;
 
-use knotdock::error::SearchError;
-use knotdock::options::PotentialFileError;
-use knotdock::options::file::ConfigError;
-use knotdock::options::text::first_paragraph;
-use knotdock::output::files::balls::PseudoAtomError;
-use knotdock::output::files::exported::ExportError;
-use knotdock::output::files::staging::StagingError;
-use knotdock::output::files::whole_file::FileError;
-use knotdock::output::records::input_record::InputRecordError;
-use knotdock::output::records::recorded_run::RecordedRunError;
-use knotdock::output::tables::pair_table::PairTableError;
-use knotdock::output::tables::poses_reader::PoseTableError;
-use knotdock::predictions::PredictionError;
-use knotdock::report::{ListError, ViewerError};
-use knotdock::restraints::RestraintFileError;
-use knotdock::threads::ThreadsError;
+use crate::error::SearchError;
+use crate::options::PotentialFileError;
+use crate::options::file::ConfigError;
+use crate::options::text::first_paragraph;
+use crate::output::files::balls::PseudoAtomError;
+use crate::output::files::exported::ExportError;
+use crate::output::files::staging::StagingError;
+use crate::output::files::whole_file::FileError;
+use crate::output::records::input_record::InputRecordError;
+use crate::output::records::recorded_run::RecordedRunError;
+use crate::output::shards::ShardError;
+use crate::output::tables::pair_table::PairTableError;
+use crate::output::tables::poses_reader::PoseTableError;
+use crate::predictions::PredictionError;
+use crate::report::{ListError, ViewerError};
+use crate::restraints::RestraintFileError;
+use crate::threads::ThreadsError;
 use knotdock_structures::ball_file::BallFileError;
 use knotdock_structures::mesh::MeshError;
 use knotdock_structures::molecule::ReadError;
@@ -58,6 +59,16 @@ pub fn refused(error: SearchError) -> Failure {
 impl From<ListError> for Failure {
     fn from(error: ListError) -> Self {
         Self::input(&error).at(&error.path).remedy(error.remedy())
+    }
+}
+
+impl From<ShardError> for Failure {
+    fn from(error: ShardError) -> Self {
+        let failure = match error.is_input() {
+            true => Self::input(&error),
+            false => Self::other(&error),
+        };
+        failure.at(error.path()).remedy(error.remedy())
     }
 }
 

@@ -4,6 +4,7 @@ pub mod console;
 pub mod dock;
 pub mod failure;
 pub mod library_errors;
+pub mod listener;
 pub mod run_summary;
 pub mod set_aside;
 pub mod shared_chains;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use knotdock::output::tables::batch_results::RunSummary;
+use crate::output::tables::batch_results::RunSummary;
 use serde_json::Value;
 
 /// What came of a run; `anew` says whether it was docked now, since `clock`.

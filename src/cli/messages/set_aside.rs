@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use knotdock::output::files::staging::{SetAside, finish_interrupted};
+use crate::output::files::staging::{SetAside, finish_interrupted};
 
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;

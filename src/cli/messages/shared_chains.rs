@@ -1,6 +1,6 @@
 //! The warning that one molecule to dock is in the file of the other.
 
-use knotdock::evaluate::{SharedChains, shared_chains};
+use crate::evaluate::{SharedChains, shared_chains};
 
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::molecules::Input;

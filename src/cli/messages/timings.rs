@@ -1,7 +1,7 @@
 //! Times of a run's stages and effects, which `--verbose` shows.
 
-use knotdock::dock::outcome::DockOutcome;
-use knotdock::output::tables::report::align;
+use crate::dock::outcome::DockOutcome;
+use crate::output::tables::report::align;
 
 /// A line a stage, with its time on the clock and of all processors, and a line an effect, with what it adds to a
 /// rotation on one thread.

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use knotdock::output::files::balls::{write_mesh, write_pseudo_atoms, write_table};
-use knotdock::output::files::sample_picture::write_picture;
-use knotdock::output::files::whole_file::{StagedFile, is_stream};
+use crate::output::files::balls::{write_mesh, write_pseudo_atoms, write_table};
+use crate::output::files::sample_picture::write_picture;
+use crate::output::files::whole_file::{StagedFile, is_stream};
 use knotdock_structures::Knots;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampling::Ball;

@@ -6,10 +6,10 @@ mod sample_report;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use crate::options::values::{above_zero, at_least_one, protrusion};
+use crate::options::{SampleGrid, Threads};
+use crate::threads;
 use clap::{Args, ValueEnum};
-use knotdock::options::values::{above_zero, at_least_one, protrusion};
-use knotdock::options::{SampleGrid, Threads};
-use knotdock::threads;
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::decomposition::DecompositionOptions;

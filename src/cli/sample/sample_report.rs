@@ -1,6 +1,6 @@
 //! Report of `knotdock sample` on a sampled solid.
 
-use knotdock::output::tables::report;
+use crate::output::tables::report;
 use knotdock_structures::mesh::{Figure, Solid};
 use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampling::weights::FittedWeights;

@@ -73,6 +73,12 @@ pub(super) fn create_dir_all(path: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(made)
 }
 
+/// Copies a file to a name that nothing has.
+pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
+    let mut copy = NewFile::create(to)?;
+    io::copy(&mut File::open(from)?, &mut copy).map(drop)
+}
+
 /// Moves a file or folder within a file system, in place of a file of the new name.
 pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     point("rename", to)?;

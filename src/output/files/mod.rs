@@ -1,5 +1,6 @@
 //! Files written whole: staged directories, complexes, balls and pictures.
 
+pub mod appended;
 pub mod assemblies;
 pub mod balls;
 pub mod checksum;
@@ -23,3 +24,4 @@ pub mod surfaces;
 pub mod viewers;
 pub mod volume_grids;
 pub mod whole_file;
+pub mod workplace;

@@ -63,24 +63,30 @@ impl RunSummary {
     pub fn of(directory: &Path) -> Result<Self, PoseTableError> {
         let table = PoseTable::read(&directory.join("poses.csv"))?;
         let rows = table.objects(0..table.rows().len());
-        let acceptable = |row: &&Value| {
-            row["capri"]
-                .as_str()
-                .is_some_and(|class| class != "incorrect")
-        };
         // An ensemble has a record of its own, with the same counts.
         let read = |name: &str| read_bounded_file(&directory.join(name), MAX_RECORD);
         let record = read("run.json").or_else(|_| read("ensemble.json"));
         let record = record.unwrap_or_default();
         let record: Value = serde_json::from_slice(&record).unwrap_or_default();
-        Ok(Self {
-            counts: ["poses", "clusters"].map(|name| record["results"][name].as_u64()),
+        let counts = ["poses", "clusters"].map(|name| record["results"][name].as_u64());
+        Ok(Self::of_rows(counts, rows))
+    }
+
+    /// Sums up the rows of a table of poses, by their columns.
+    pub fn of_rows(counts: [Option<u64>; 2], rows: Vec<Value>) -> Self {
+        let acceptable = |row: &&Value| {
+            row["capri"]
+                .as_str()
+                .is_some_and(|class| class != "incorrect")
+        };
+        Self {
+            counts,
             first_acceptable: rows
                 .iter()
                 .find(acceptable)
                 .and_then(|row| row["rank"].as_u64()),
             best: rows.into_iter().next().unwrap_or_default(),
-        })
+        }
     }
 
     /// A column of the first row as a field.
@@ -93,8 +99,11 @@ impl RunSummary {
     }
 }
 
+/// Status of a pair that was docked.
+pub const DONE: &str = "done";
+
 /// Names of the columns.
-fn header() -> Vec<&'static str> {
+pub fn header() -> Vec<&'static str> {
     let mut header = vec![
         "name", "receptor", "ligand", "status", "error", "poses", "clusters",
     ];
@@ -140,6 +149,28 @@ pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRec
     Ok(rows)
 }
 
+/// The fields of a pair, one a column.
+pub fn fields(result: &PairResult) -> Vec<String> {
+    let none = RunSummary::default();
+    let (status, error, run) = match &result.outcome {
+        None => ("pending", "", &none),
+        Some(Ok(run)) => (DONE, "", run),
+        Some(Err(error)) => ("failed", error.as_str(), &none),
+    };
+    let count = |count: Option<u64>| count.map_or(String::new(), |n| n.to_string());
+    let mut fields = vec![
+        result.name.clone(),
+        result.receptor.clone(),
+        result.ligand.clone(),
+        status.to_owned(),
+        error.to_owned(),
+    ];
+    fields.extend(run.counts.map(count));
+    fields.extend(BEST.map(|name| run.best(name)));
+    fields.push(count(run.first_acceptable));
+    fields
+}
+
 /// Writes the table whole, in the order of the pairs, then the rows of `others`.
 ///
 /// # Errors
@@ -153,24 +184,7 @@ pub fn write_results(
         let mut table = TableWriter::new(file);
         table.row(header())?;
         for result in results {
-            let none = RunSummary::default();
-            let (status, error, run) = match &result.outcome {
-                None => ("pending", "", &none),
-                Some(Ok(run)) => ("done", "", run),
-                Some(Err(error)) => ("failed", error.as_str(), &none),
-            };
-            let count = |count: Option<u64>| count.map_or(String::new(), |n| n.to_string());
-            let mut row = vec![
-                result.name.clone(),
-                result.receptor.clone(),
-                result.ligand.clone(),
-                status.to_owned(),
-                error.to_owned(),
-            ];
-            row.extend(run.counts.map(count));
-            row.extend(BEST.map(|name| run.best(name)));
-            row.push(count(run.first_acceptable));
-            table.row(row)?;
+            table.row(fields(result))?;
         }
         for row in others {
             table.row(row)?;

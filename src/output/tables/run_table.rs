@@ -32,8 +32,23 @@ impl<'a> RunTable<'a> {
         }
     }
 
+    /// The table with the columns that any run may have, so that tables of several runs can follow one another.
+    pub fn wide(poses: &'a [RankedPose], further: &'a [Column]) -> Self {
+        Self {
+            poses,
+            columns: columns((true, false), |_| true),
+            further,
+        }
+    }
+
+    /// Its rows without their names.
+    pub fn records(&self) -> impl Iterator<Item = StringRecord> + '_ {
+        let poses = self.poses.iter().enumerate();
+        poses.map(|(index, pose)| self.record(index, pose))
+    }
+
     /// Names of the columns.
-    fn header(&self) -> StringRecord {
+    pub fn header(&self) -> StringRecord {
         let own = self.columns.iter().map(|column| column.name);
         let further = self.further.iter().map(|column| column.name.as_str());
         std::iter::once("rank").chain(own).chain(further).collect()

@@ -1,0 +1,119 @@
+"""Commands of the program as functions: keywords are the options of the command line."""
+
+from __future__ import annotations
+
+import json
+import keyword
+import os
+import warnings
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from knotdock import _knotdock
+from knotdock.progress import ProgressBar
+
+__all__ = ["KnotdockWarning", "keyword_name", "run_command", "words_of"]
+
+
+class KnotdockWarning(UserWarning):
+    """A warning of knotdock about its input or its results."""
+
+
+class _Listener:
+    """Hears what a command says: warnings become Python's, failures of parts are collected."""
+
+    def __init__(self, progress: bool | None) -> None:
+        self._bar = ProgressBar(progress)
+        self.said: list[str] = []
+        self.failures: list[str] = []
+
+    def say(self, text: str) -> None:
+        self.said.append(text)
+
+    def warn(self, text: str) -> None:
+        warnings.warn(text, KnotdockWarning, stacklevel=5)
+
+    def error(self, text: str) -> None:
+        self.failures.append(text)
+
+    def stage(self, name: str, total: int) -> None:
+        self._bar.stage(name, total)
+
+    def advance(self, steps: int) -> None:
+        self._bar.advance(steps)
+
+    def close(self) -> None:
+        self._bar.close()
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, Iterable):
+        return ",".join(_text(part) for part in value)
+    return str(value)
+
+
+def keyword_name(option: str) -> str:
+    """The keyword of an option: its name, and `_` behind it where Python has a word of that name.
+
+    >>> keyword_name("lambda"), keyword_name("rotations")
+    ('lambda_', 'rotations')
+    """
+    return f"{option}_" if keyword.iskeyword(option) else option
+
+
+def words_of(options: dict[str, Any]) -> list[str]:
+    """Options as words of a command line.
+
+    `True` is a flag, `False` and `None` leave the option out, and a list is joined by commas. Names may end in `_`
+    where Python has a word of that name.
+
+    >>> words_of({"rotations": 600, "no_cluster": True, "effects": ["shape", "contact"], "native": None})
+    ['--rotations=600', '--no-cluster', '--effects=shape,contact']
+    """
+    words = []
+    for name, value in options.items():
+        option = "--" + name.rstrip("_").replace("_", "-")
+        if value is True:
+            words.append(option)
+        elif value is not None and value is not False:
+            words.append(f"{option}={_text(value)}")
+    return words
+
+
+def run_command(
+    command: str,
+    *arguments: Any,
+    progress: bool | None = None,
+    after: Sequence[str] = (),
+    **options: Any,
+) -> Any:
+    """Run a command of the program: `run_command("collide", "a.stl", "b.stl", pose=[1, 0, 0, 0, 5, 0, 0])`.
+
+    Args:
+        command: its name, as on the command line.
+        arguments: files and other arguments without a name.
+        progress: whether a progress bar is shown (tqdm); by default where a terminal or a notebook is there to see it.
+        after: words for behind a `--`, as `knotdock batch` takes them.
+        options: the command's options; see `words_of`.
+
+    Returns:
+        The command's JSON object (`knotdock COMMAND --json`) as Python's dicts, lists and numbers.
+
+    Raises:
+        InputError: the input or an option cannot be used.
+        KnotdockError: the command failed otherwise.
+    """
+    files = [_text(argument) for argument in arguments]
+    # A file whose name begins with a dash is no option.
+    dashes = ["--"] if any(file.startswith("-") for file in files) else []
+    words = [command, *files, *words_of(options)] if not dashes else [command, *words_of(options), *dashes, *files]
+    if after:
+        words += ["--", *after]
+    listener = _Listener(progress)
+    try:
+        result, _ = _knotdock.call(words, listener)
+    finally:
+        listener.close()
+    return None if result is None else json.loads(result)

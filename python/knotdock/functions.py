@@ -1,0 +1,152 @@
+"""The other commands as functions."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tempfile
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from knotdock.commands import run_command
+from knotdock.inputs import given
+from knotdock.tables import read_table
+
+__all__ = ["Balls", "batch", "collide", "evaluate", "inspect", "interface", "merge", "morph", "obstacle", "sample", "score"]
+
+
+def _with_files(command: str, *solids: Any, before: Sequence[str] = (), **options: Any) -> Any:
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        place = pathlib.Path(folder)
+        files = [given(solid, lambda: place, f"input_{number}") for number, solid in enumerate(solids, 1)]
+        return run_command(command, *before, *files, **options)
+
+
+def evaluate(models: Any, native: Any, **options: Any) -> list[dict[str, Any]]:
+    """How near complexes of any program are to a known one.
+
+    Args:
+        models: a complex or a list of them, as inputs of `dock`.
+        native: the known complex.
+        options: options of `knotdock evaluate`; `chains=("H,L", "A")` names the two sides.
+
+    Returns:
+        A dict for each model with irmsd, lrmsd, fnat, dockq and capri.
+    """
+    chains = options.pop("chains", ())
+    many = models if isinstance(models, list) else [models]
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        place = pathlib.Path(folder)
+        files = [given(model, lambda: place, f"model_{number}") for number, model in enumerate(many, 1)]
+        known = given(native, lambda: place, "native")
+        return run_command("evaluate", *files, *chains, native=known, **options)["complexes"]
+
+
+def score(receptor: Any, ligand: Any, pose: Sequence[float] | None = None, **options: Any) -> dict[str, Any]:
+    """The exact score of a pose with its parts, gradient and buried surface.
+
+    Args:
+        receptor: as of `dock`.
+        ligand: likewise.
+        pose: quaternion and translation (w, x, y, z, tx, ty, tz); by default the ligand where its file has it.
+        options: options of `knotdock score`.
+    """
+    pose = [1, 0, 0, 0, 0, 0, 0] if pose is None else [float(value) for value in pose]
+    return _with_files("score", receptor, ligand, pose=pose, **options)
+
+
+def inspect(structure: Any, **options: Any) -> dict[str, Any]:
+    """What is read of a structure: chains, residues and atoms kept, dropped and altered, and charges assumed."""
+    return _with_files("inspect", structure, **options)
+
+
+def interface(structure: Any, *chains: str, **options: Any) -> dict[str, Any]:
+    """Contacts, bonds, buried surface and shape complementarity of a complex; `chains` name its sides."""
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        path = given(structure, lambda: pathlib.Path(folder), "complex")
+        (found,) = run_command("interface", path, *chains, **options)["complexes"]
+        return found
+
+
+def collide(a: Any, b: Any, pose: Sequence[float] | None = None, **options: Any) -> dict[str, Any]:
+    """Whether two solids meet at a pose of the second: verdict, bounds of the distance, shared volume and force.
+
+    Solids are meshes, molecules or balls; options are those of `knotdock collide`, such as `poses="poses.csv"`.
+    """
+    if pose is not None:
+        options["pose"] = [float(value) for value in pose]
+    return _with_files("collide", a, b, **options)
+
+
+def obstacle(a: Any, b: Any, **options: Any) -> dict[str, Any]:
+    """The translations at which two solids meet; options are those of `knotdock obstacle`."""
+    return _with_files("obstacle", a, b, **options)
+
+
+def morph(operation: str, *solids: Any, **options: Any) -> dict[str, Any]:
+    """A morphological operation on solids (`sum`, `difference`, `offset`, `open`, `close`, `sweep` ...)."""
+    return _with_files("morph", *solids, before=(operation,), **options)
+
+
+class Balls:
+    """Balls that stand for a solid.
+
+    Attributes:
+        centers: centres in the solid's unit, (n, 3).
+        radii: radii, (n,).
+        weights: weights, (n,).
+        report: what `knotdock sample` says of them: errors on both sides, volumes, warnings.
+    """
+
+    def __init__(self, table: dict[str, np.ndarray], report: dict[str, Any]) -> None:
+        self.centers = np.stack([table[axis] for axis in "xyz"], axis=1)
+        self.radii, self.weights = table["r"], table["weight"]
+        self.report = report
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} balls>"
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.column_stack([self.centers, self.radii]).astype(dtype or float)
+
+
+def sample(mesh: Any, **options: Any) -> Balls:
+    """A mesh as balls; options are those of `knotdock sample`, such as `grid="2^15"`."""
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        place = pathlib.Path(folder)
+        table = place / "knots.csv"
+        path = given(mesh, lambda: place, "mesh")
+        report = run_command("sample", path, output=table, **options)
+        return Balls(read_table(table, "numpy"), report)
+
+
+def batch(
+    pairs: str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    *,
+    dock: dict[str, Any] | None = None,
+    **options: Any,
+) -> dict[str, Any]:
+    """Dock the pairs of a table; see `knotdock batch --help`.
+
+    Args:
+        pairs: the table, with columns `receptor` and `ligand`.
+        output: the directory of the batch.
+        dock: options of `knotdock.dock` for all pairs.
+        options: options of `knotdock batch`, such as `keep="table"` and `shard="3/100"`. A failure of pairs is no
+            error: the table of results has it.
+    """
+    from knotdock.commands import words_of
+
+    after = words_of(dock or {})
+    return run_command("batch", pairs, output=output, failures_ok=True, after=after, **options)
+
+
+def merge(*directories: str | os.PathLike[str], **options: Any) -> dict[str, Any]:
+    """Put the shards of a batch together; see `knotdock merge --help`."""
+    return run_command("merge", *directories, **options)

@@ -1,0 +1,123 @@
+"""A docking run and what came of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+from typing import Any, Literal
+
+import numpy as np
+
+from knotdock.commands import run_command
+from knotdock.errors import InputError
+from knotdock.inputs import given
+from knotdock.tables import Frame, read_table
+
+__all__ = ["Run"]
+
+
+class Run:
+    """A docking run: its table of poses, complexes and record.
+
+    `knotdock.dock` returns one; `Run("example")` opens the directory of a run that is there, by whichever program it
+    was started. A run without a directory of its own lives in a temporary one, which goes with the object: `save` keeps
+    it.
+    """
+
+    def __init__(
+        self,
+        directory: str | os.PathLike[str],
+        *,
+        _temporary: tempfile.TemporaryDirectory[str] | None = None,
+    ) -> None:
+        self.directory = pathlib.Path(directory)
+        self._temporary = _temporary
+        if not (self.directory / "poses.csv").is_file():
+            message = "this is no directory of a run: it has no poses.csv"
+            raise InputError(message, str(directory), None, "name the directory that `knotdock dock` wrote with -o")
+
+    def __repr__(self) -> str:
+        return f"<Run of {len(self.scores)} poses in {self.directory}>"
+
+    def table(self, frame: Frame = "pandas") -> Any:
+        """The table of poses, best first: a row a cluster, or a row a pose with `no_cluster`.
+
+        Args:
+            frame: `"pandas"`, `"polars"` or `"numpy"`, a dict of arrays by column.
+        """
+        return read_table(self.directory / "poses.csv", frame)
+
+    @property
+    def poses(self) -> Any:
+        """The table of poses as a pandas DataFrame; see docs/formats.md for the columns."""
+        return self.table("pandas")
+
+    def _columns(self, names: str) -> np.ndarray:
+        table = self.table("numpy")
+        return np.stack([np.asarray(table[name], dtype=float) for name in names.split()], axis=1)
+
+    @property
+    def scores(self) -> np.ndarray:
+        """Scores that order the poses, (n,)."""
+        return self._columns("score")[:, 0]
+
+    @property
+    def quaternions(self) -> np.ndarray:
+        """Rotations as unit quaternions w, x, y, z, (n, 4)."""
+        return self._columns("qw qx qy qz")
+
+    @property
+    def rotations(self) -> np.ndarray:
+        """Rotations as matrices, (n, 3, 3). A ligand atom at x in its own file goes to R x + t."""
+        w, x, y, z = self.quaternions.T
+        rows = [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+        return np.moveaxis(np.array(rows), 2, 0)
+
+    @property
+    def translations(self) -> np.ndarray:
+        """Translations in Å, (n, 3)."""
+        return self._columns("tx ty tz")
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """run.json: inputs, options, effects, errors and times. Of conformations ensemble.json."""
+        names = (self.directory / name for name in ("run.json", "ensemble.json"))
+        path = next((path for path in names if path.exists()), self.directory / "run.json")
+        return json.loads(path.read_text())
+
+    def complex(self, rank: int, format: Literal["pdb", "cif"] | None = None) -> str:
+        """The complex of a rank, from 1, as the text of a PDB or mmCIF file (of meshes as OBJ)."""
+        with tempfile.TemporaryDirectory() as folder:
+            run_command("export", self.directory, rank=rank, output=folder, format=format)
+            (file,) = pathlib.Path(folder).iterdir()
+            return file.read_text()
+
+    def evaluate(self, native: Any, frame: Frame = "pandas", **options: Any) -> Any:
+        """How near each pose is to a known complex: the table with irmsd, lrmsd, fnat, dockq and capri.
+
+        Args:
+            native: the complex, as inputs of `dock`.
+            frame: as of `table`.
+            options: further options of `knotdock evaluate`, such as `native_chains`.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            path = given(native, lambda: place, "native")
+            table = place / "evaluated.csv"
+            run_command("evaluate", self.directory, native=path, output=table, **options)
+            return read_table(table, frame)
+
+    def save(self, directory: str | os.PathLike[str]) -> Run:
+        """Copy the run to a directory that is not there yet; the run there."""
+        if os.path.exists(directory):
+            message = "there is something in the way"
+            raise InputError(message, os.fspath(directory), None, "name a directory that is not there yet")
+        shutil.copytree(self.directory, directory)
+        return Run(directory)

@@ -1,0 +1,181 @@
+//! Commands by their words. They run on a thread of their own while Python's waits, so that signals such as Ctrl-C are
+//! seen and other threads of Python run.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::Builder;
+use std::time::Duration;
+
+use knotdock::cli::{Failure, Listener};
+use knotdock::output::records::program::VERSION_WITH_COMMIT;
+use knotdock::progress::Ended;
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::failure::{exception, fault};
+
+/// Time between two looks at signals and at what the command has said.
+const LOOK: Duration = Duration::from_millis(50);
+/// Stack of a command's thread, in bytes: as much as a program's first thread commonly has.
+const STACK: usize = 8 << 20;
+
+/// What a command said, until Python hears it.
+enum Event {
+    Said(String),
+    Warned(String),
+    Failed(String),
+    Stage(String, u64),
+    Result(String),
+}
+
+/// Collects what a command says.
+#[derive(Default)]
+struct Events {
+    said: Mutex<Vec<Event>>,
+    /// Steps of the stage that were done and are not heard of yet.
+    steps: std::sync::atomic::AtomicU64,
+    is_stopped: AtomicBool,
+}
+
+impl fmt::Debug for Events {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Events")
+    }
+}
+
+impl Events {
+    fn add(&self, event: Event) {
+        if let Ok(mut said) = self.said.lock() {
+            said.push(event);
+        }
+    }
+
+    fn taken(&self) -> Vec<Event> {
+        self.said
+            .lock()
+            .map(|mut said| std::mem::take(&mut *said))
+            .unwrap_or_default()
+    }
+}
+
+impl Listener for Events {
+    fn say(&self, text: &str) {
+        self.add(Event::Said(text.to_owned()));
+    }
+
+    fn warn(&self, text: &str) {
+        self.add(Event::Warned(text.to_owned()));
+    }
+
+    fn error(&self, text: &str) {
+        self.add(Event::Failed(text.to_owned()));
+    }
+
+    fn result(&self, object: &serde_json::Value) {
+        self.add(Event::Result(object.to_string()));
+    }
+
+    fn stage(&self, name: &str, total: u64) {
+        self.add(Event::Stage(name.to_owned(), total));
+    }
+
+    fn advance(&self, by: u64) {
+        self.steps.fetch_add(by, Ordering::Relaxed);
+    }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        match self.is_stopped.load(Ordering::Relaxed) {
+            true => Err(Ended::Interrupted),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Runs a command by its words, such as `["dock", "a.pdb", "b.pdb"]`; its JSON object as text, or None, and its exit
+/// code. `listener` has methods `say(text)`, `warn(text)`, `error(text)`, `stage(name, total)` and `advance(steps)`.
+///
+/// A first Ctrl-C ends a docking at its next rotation, other commands when they are done; a second leaves the command to
+/// itself.
+#[pyfunction]
+pub fn call(
+    py: Python<'_>,
+    words: Vec<OsString>,
+    listener: &Bound<'_, PyAny>,
+) -> PyResult<(Option<String>, u8)> {
+    let events = Arc::new(Events::default());
+    let (sender, mut receiver) = channel();
+    let heard = Arc::clone(&events);
+    let work = move || {
+        let done = knotdock::cli::call(words, heard.as_ref());
+        // Nobody waits for a command that was left to itself.
+        let _ = sender.send(done);
+    };
+    let thread = Builder::new()
+        .name("knotdock".to_owned())
+        .stack_size(STACK)
+        .spawn(work)?;
+    let mut interrupted: Option<PyErr> = None;
+    let mut result = None;
+    let done: Option<Result<u8, Failure>> = loop {
+        let (waited, back) = py.detach(move || (receiver.recv_timeout(LOOK), receiver));
+        receiver = back;
+        // What a listener raises ends the command as Ctrl-C does.
+        let looked = tell(listener, &events, &mut result).and_then(|()| py.check_signals());
+        if let Err(error) = looked {
+            if interrupted.is_some() {
+                return Err(error);
+            }
+            events.is_stopped.store(true, Ordering::Relaxed);
+            interrupted = Some(error);
+        }
+        match waited {
+            Ok(done) => break Some(done),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break None,
+        }
+    };
+    let panicked = thread.join().is_err();
+    if let Some(error) = interrupted {
+        return Err(error);
+    }
+    match done {
+        Some(Ok(code)) if !panicked => Ok((result, code)),
+        Some(Err(failure)) => Err(exception(py, &failure)),
+        _ => Err(fault(py)),
+    }
+}
+
+/// Hands on what was said.
+fn tell(listener: &Bound<'_, PyAny>, events: &Events, result: &mut Option<String>) -> PyResult<()> {
+    for event in events.taken() {
+        match event {
+            Event::Said(text) => drop(listener.call_method1("say", (text,))?),
+            Event::Warned(text) => drop(listener.call_method1("warn", (text,))?),
+            Event::Failed(text) => drop(listener.call_method1("error", (text,))?),
+            Event::Stage(name, total) => drop(listener.call_method1("stage", (name, total))?),
+            Event::Result(object) => *result = Some(object),
+        }
+    }
+    match events.steps.swap(0, Ordering::Relaxed) {
+        0 => Ok(()),
+        steps => listener.call_method1("advance", (steps,)).map(drop),
+    }
+}
+
+/// Runs the program on a command line, of which the first word is its name; its exit code.
+#[pyfunction]
+pub fn main(py: Python<'_>, arguments: &Bound<'_, PyList>) -> PyResult<u8> {
+    let arguments: Vec<OsString> = arguments.extract()?;
+    knotdock::system_limits::fail_at_file_size();
+    Ok(py.detach(|| knotdock::cli::main(arguments)))
+}
+
+/// Version and commit.
+#[pyfunction]
+pub fn version() -> &'static str {
+    VERSION_WITH_COMMIT
+}

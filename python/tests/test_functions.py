@@ -1,0 +1,102 @@
+"""The other commands, molecules and correlations."""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+import knotdock
+import numpy as np
+import pytest
+from conftest import CASES, EXAMPLES
+
+
+def test_commands_give_the_objects_of_the_command_line(helices):
+    for words, result in [
+        (["inspect", helices[0]], knotdock.inspect(helices[0])),
+        (["score", *helices, "--pose=1,0,0,0,0,0,0"], knotdock.score(*helices)),
+    ]:
+        program = [sys.executable, "-m", "knotdock", *words, "--json"]
+        said = subprocess.run(program, check=True, capture_output=True, text=True).stdout
+        expected = json.loads(said)
+        differ = [name for name in expected if expected[name] != result[name]]
+        # Times are those of the call.
+        assert set(differ) <= {"timing", "rows"}, differ
+
+
+def test_solids_are_arrays_or_files():
+    cube = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    faces += [[1, 5, 7], [1, 7, 3]]
+    balls = knotdock.sample((cube, faces), grid="2^12")
+    assert np.asarray(balls).shape == (len(balls), 4)
+    assert (balls.centers >= -balls.radii[:, None]).all()
+    near = knotdock.collide((cube, faces), np.array([[0.5, 0.5, 0.5, 0.2]]))
+    far = knotdock.collide((cube, faces), np.array([[0.5, 0.5, 0.5, 0.2]]), pose=[1, 0, 0, 0, 9, 0, 0])
+    assert near != far
+    grown = knotdock.morph("offset", (cube, faces), distance=0.5)
+    assert grown["operation"] if "operation" in grown else grown
+    with pytest.raises(TypeError, match="a mesh is a pair"):
+        knotdock.sample((cube, [[0, 1]]))
+
+
+def test_complexes_are_evaluated_and_measured():
+    native = pathlib.Path(EXAMPLES, "4e43_dimer.pdb")
+    (quality,) = knotdock.evaluate(native, native, chains=("A", "B"))
+    assert quality["dockq"] == pytest.approx(1.0)
+    assert knotdock.interface(native, "A", "B")
+
+
+def test_molecules_are_arrays(helices):
+    molecule = knotdock.Molecule.read(helices[0])
+    assert molecule.positions.shape == (len(molecule), 3)
+    assert len(molecule.atoms) == len(molecule)
+    assert set(molecule.atoms.dtype.names) >= {"x", "r", "chain", "residue_number", "element"}
+    assert (molecule.radii > 1.0).all()
+    chosen = knotdock.Molecule.read(f"{EXAMPLES / '4e43_dimer.pdb'}:B")
+    assert set(chosen.labels["chain"]) == {"B"}
+    with pytest.raises(knotdock.InputError):
+        knotdock.Molecule.read(CASES / "none.pdb")
+    with pytest.raises(knotdock.InputError):
+        knotdock.Molecule.read(helices[0], waters="some")
+
+
+def test_a_correlation_is_the_exact_sum(helices):
+    receptor, ligand = (knotdock.Molecule.read(path).balls for path in helices)
+    correlator = knotdock.Correlator(receptor, ligand, tolerance=1e-3)
+    turn = np.array([0.8, 0.0, 0.6, 0.0])
+    grid = correlator.correlate(turn)
+    assert grid.shape == tuple(correlator.size)
+    peaks = correlator.peaks(turn, 20)
+    scores = np.array([peak[0] for peak in peaks])
+    exact = correlator.score(np.array([peak[1] for peak in peaks]), np.array([peak[2] for peak in peaks]))
+    assert np.abs(scores - exact).max() < 5e-3 * exact.max()
+    assert (np.diff(scores) <= 0).all()
+    best = np.unravel_index(np.argmax(grid), grid.shape)
+    quaternion, shift = correlator.pose(turn, best)
+    assert np.allclose(shift, peaks[0][2]) and np.allclose(quaternion, peaks[0][1])
+    # Weights are factors: twice the weight, twice the score.
+    twice = knotdock.Correlator(receptor, ligand, 2 * np.ones(len(receptor)), tolerance=1e-3)
+    assert np.allclose(twice.correlate(turn), 2 * grid, rtol=1e-4, atol=1e-3 * np.abs(grid).max())
+    for bad in (np.zeros((2, 3)), np.zeros((0, 4)), np.full((2, 4), np.nan)):
+        with pytest.raises(knotdock.InputError):
+            knotdock.Correlator(bad, ligand)
+    with pytest.raises(knotdock.InputError, match="norm"):
+        correlator.correlate([2.0, 0, 0, 0])
+    with pytest.raises(knotdock.InputError, match="outside"):
+        correlator.pose(turn, [10**6, 0, 0])
+
+
+def test_any_command_runs_by_its_name(tmp_path):
+    answer = knotdock.run_command("se3", "distance", "1,0,0,0,0,0,0", "1,0,0,0,3,4,0")
+    assert answer["shift"] == pytest.approx(5.0)
+    with pytest.raises(knotdock.InputError, match="nonsense"):
+        knotdock.run_command("nonsense")
+
+
+def test_the_types_of_options_are_up_to_date():
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "tools"))
+    import make_options
+
+    file = pathlib.Path(knotdock.__file__).parent / "_options.py"
+    assert file.read_text() == make_options.text(), "run python/tools/make_options.py"

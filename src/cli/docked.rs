@@ -1,0 +1,273 @@
+//! A run that is docked: its table, and what is written of it.
+
+use std::path::Path;
+
+use crate::dock::outcome::DockOutcome;
+use crate::output::files::exported::ExportFolder;
+use crate::output::files::seal::REPORT;
+use crate::output::files::staging::Staging;
+use crate::output::files::viewers::{CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol};
+use crate::output::records::manifest::{Machine, Manifest, ManifestParts, Results};
+use crate::output::shards::WIDE_COLUMNS;
+use crate::output::tables::batch_results::RunSummary;
+use crate::output::tables::fields::Column;
+use crate::output::tables::interface_shares::{INTERFACE, write_shares};
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::quality;
+use crate::output::tables::report::{BEST, best_clusters, counted, firsts};
+use crate::output::tables::restraints;
+use crate::output::tables::run_table::{RunTable, pose_rows};
+use crate::report::{MAX_ROWS, RunReport, Viewer};
+use serde_json::{Value, json};
+
+use crate::cli::arguments::machine::machine;
+use crate::cli::arguments::native::measure;
+use crate::cli::docking::Docking;
+use crate::cli::messages::console::Console;
+use crate::cli::messages::dock::{error_warning, few_rotations_warning, outcome_text};
+use crate::cli::messages::failure::Failure;
+use crate::cli::messages::set_aside::warn_set_aside;
+use crate::cli::messages::timings::timings_text;
+
+/// A run that is docked and not written.
+pub struct Docked {
+    docking: Docking,
+    outcome: DockOutcome,
+    /// Columns that restraints and a known complex add to the table.
+    quality: Vec<Column>,
+    /// The same as one of the columns that any run may have each.
+    wide: Vec<Column>,
+}
+
+impl Docked {
+    /// What a docking came to.
+    pub fn new(docking: Docking, outcome: DockOutcome) -> Self {
+        let mut quality: Vec<Column> = restraints::met(&docking.prepared.plan, &outcome.poses)
+            .into_iter()
+            .collect();
+        if let Some(evaluator) = &docking.evaluator {
+            let rows = pose_rows(&outcome.poses);
+            quality.extend(quality::columns(&measure(evaluator, &rows)));
+        }
+        let wide = WIDE_COLUMNS.map(|name| {
+            let found = quality.iter().find(|column| column.name == name);
+            found.cloned().unwrap_or_else(|| Column {
+                name: name.to_owned(),
+                fields: Vec::new(),
+            })
+        });
+        Self {
+            docking,
+            outcome,
+            quality,
+            wide: wide.into(),
+        }
+    }
+
+    /// Its table of poses.
+    pub fn table(&self) -> RunTable<'_> {
+        let docking = &self.docking;
+        let diagnostics = docking.request.options.output.diagnostics;
+        let columns = (docking.prepared.plan.sharp(), diagnostics);
+        RunTable::new(&self.outcome.poses, columns, &self.quality)
+    }
+
+    /// Its table of poses with the columns that any run may have.
+    pub fn wide_table(&self) -> RunTable<'_> {
+        RunTable::wide(&self.outcome.poses, &self.wide)
+    }
+
+    /// What a batch reports of it.
+    pub fn summary(&self) -> RunSummary {
+        let table = self.table();
+        let counts = [self.outcome.poses_kept, self.outcome.clusters];
+        let counts = counts.map(|count| u64::try_from(count).ok());
+        RunSummary::of_rows(counts, table.objects(0..self.outcome.poses.len()))
+    }
+
+    /// Writes the complexes of the best poses into a folder, in place of those that are there.
+    pub fn export_top(&self, folder: &Path) -> Result<(), Failure> {
+        let request = &self.docking.request;
+        let rows = self.rows();
+        let top = rows
+            .get(..request.options.output.write_top)
+            .unwrap_or(&rows);
+        let export = ExportFolder::open(folder, folder)?;
+        let place = (export.staged(), None);
+        request.bodies.write(top, request.arrangement(), place)?;
+        Ok(export.place(true)?)
+    }
+
+    /// Rank and pose of each row.
+    fn rows(&self) -> Vec<PoseRow> {
+        pose_rows(&self.outcome.poses)
+    }
+
+    /// Writes the run; its JSON object. What became of files of the user's is said on `notices`.
+    pub fn save(
+        &self,
+        staging: Staging,
+        console: Console,
+        notices: Console,
+    ) -> Result<Value, Failure> {
+        let written = self.write(&staging)?;
+        warn_set_aside(&staging.commit()?, notices);
+        self.report(console);
+        let directory = &self.docking.directory;
+        let top = directory.join("top");
+        let complexes = written.complexes.iter().map(|name| top.join(name));
+        Ok(json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "report": written.report.then(|| directory.join(REPORT).display().to_string()),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": written.best,
+            "run": written.manifest,
+        }))
+    }
+
+    /// Writes the table, the complexes and the record of a run into its staging folder.
+    fn write(&self, staging: &Staging) -> Result<Written, Failure> {
+        let (docking, outcome) = (&self.docking, &self.outcome);
+        let Docking {
+            request,
+            evaluator,
+            prepared,
+            ..
+        } = docking;
+        let (output, plan) = (&request.options.output, &prepared.plan);
+        let rows = self.rows();
+        if !plan.restraints.is_empty() {
+            staging.write("restraints.csv", |file| {
+                restraints::write_to(plan, &outcome.poses, file)
+            })?;
+        }
+        let table = self.table();
+        staging.write("poses.csv", |file| table.write_to(file))?;
+        let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
+        let top = rows.get(..output.write_top).unwrap_or(&rows);
+        let written = request.bodies.write(
+            top,
+            request.arrangement(),
+            (&staging.folder().join("top"), None),
+        )?;
+        if let Some(chains) = &written.chains {
+            let names = written.names.iter().zip(top);
+            let viewed: Vec<ViewedComplex> = names
+                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
+                .collect();
+            write_scripts(staging, &viewed)?;
+        }
+        let shown = table.first(MAX_ROWS);
+        let contacts = request.bodies.contacts(&shown, &request.options);
+        if let Some(contacts) = &contacts {
+            let [receptor, ligand] = contacts.shares();
+            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
+            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+        }
+        let inputs = request.inputs(prepared.sampling.as_deref())?;
+        let manifest = Manifest::new(ManifestParts {
+            inputs: &inputs,
+            options: &request.options,
+            plan,
+            outcome,
+            results: Results {
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
+                rotations: outcome.searched,
+            },
+            files: staging.checksums()?,
+            chains: written.chains.as_ref(),
+            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            timing: docking.clock.timing(outcome),
+            machine: Machine {
+                chosen: docking.chosen.clone(),
+                adapter: outcome.adapter.clone(),
+                ..machine(plan)
+            },
+        })
+        .map_err(Failure::other)?;
+        staging.write("run.json", |file| manifest.write_to(file))?;
+        let record = serde_json::to_value(&manifest).map_err(Failure::other)?;
+        if !output.no_report {
+            let report = RunReport {
+                record: &record,
+                options: &request.options,
+                table: &shown,
+                bodies: request.bodies.shown(contacts.as_ref()),
+                directory: &docking.directory.display().to_string(),
+            };
+            let text = report.text(Viewer::embedded());
+            staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+        }
+        Ok(Written {
+            manifest: record,
+            report: !output.no_report,
+            complexes: written.names,
+            best,
+        })
+    }
+
+    /// Reports the run: effects, errors, times and the best clusters.
+    fn report(&self, console: Console) {
+        let (docking, outcome) = (&self.docking, &self.outcome);
+        let plan = &docking.prepared.plan;
+        console.say(format!("\n{}", outcome_text(plan, outcome)));
+        console.detail(format!("\n{}", timings_text(outcome)));
+        if let Some(warning) = error_warning(plan, outcome) {
+            console.warn(warning);
+        }
+        if let Some(warning) = few_rotations_warning(outcome, docking.deadline.is_some()) {
+            console.warn(warning);
+        }
+        if let Some(chosen) = &docking.chosen {
+            let stages = outcome.timing.iter();
+            console.say(format!(
+                "The search was expected to take {:.1} s, and took {:.1} s",
+                chosen.predicted_seconds,
+                stages.map(|stage| stage.wall_seconds).sum::<f64>()
+            ));
+            if let Some(budget) = chosen.budget_seconds {
+                console.say(format!(
+                    "The whole run took {:.1} s of {budget} s",
+                    docking.clock.seconds()
+                ));
+            }
+        }
+        console.say(format!(
+            "\n{}",
+            best_clusters(&outcome.poses, &self.quality)
+        ));
+        console.say(format!(
+            "\n{} in {}",
+            counted(outcome.poses.len(), "row"),
+            docking.directory.join("poses.csv").display()
+        ));
+        if !docking.request.options.output.no_report {
+            let report = docking.directory.join(REPORT);
+            console.say(format!("To look at them: {}", report.display()));
+        }
+    }
+}
+
+/// Writes the scripts that show complexes in other programs, if there are any.
+pub fn write_scripts(staging: &Staging, complexes: &[ViewedComplex]) -> Result<(), Failure> {
+    if !complexes.is_empty() {
+        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
+        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
+    }
+    Ok(())
+}
+
+/// What a run wrote.
+struct Written {
+    /// Rows of the best clusters, as JSON.
+    best: Vec<Value>,
+    /// Whether there is a report.
+    report: bool,
+    /// Names of the complexes in `top/`.
+    complexes: Vec<String>,
+    /// run.json.
+    manifest: Value,
+}

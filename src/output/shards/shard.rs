@@ -1,0 +1,84 @@
+//! Which pairs of a table a shard has.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// One of several parts of a batch: every `count`-th pair, beginning with pair `index`. Both count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// The whole batch as one shard.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// Which of the shards it is, from 1.
+    pub fn index(self) -> usize {
+        self.index
+    }
+
+    /// How many there are.
+    pub fn count(self) -> usize {
+        self.count
+    }
+
+    /// Whether it has the pair of a row of the table, rows counted from 1.
+    pub fn has(self, row: usize) -> bool {
+        row >= 1 && (row - 1) % self.count == self.index - 1
+    }
+
+    /// Name of its folder.
+    pub fn folder(self) -> String {
+        format!("{:04}-of-{:04}", self.index, self.count)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/');
+        let numbers = parts.map(|(index, count)| (index.parse(), count.parse()));
+        match numbers {
+            Some((Ok(index), Ok(count))) if (1..=count).contains(&index) => {
+                Ok(Self { index, count })
+            }
+            _ => Err(
+                "write I/N: which of how many shards, such as 3/100, from 1/N to N/N".to_owned(),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pair_is_in_one_shard() {
+        for count in [1usize, 2, 7, 30] {
+            let shards =
+                (1..=count).map(|index| format!("{index}/{count}").parse::<Shard>().unwrap());
+            let shards: Vec<Shard> = shards.collect();
+            for row in 1..=100 {
+                assert_eq!(shards.iter().filter(|shard| shard.has(row)).count(), 1);
+            }
+            assert!(shards.iter().all(|shard| !shard.has(0)));
+        }
+        for text in ["", "3", "0/4", "5/4", "1/0", "a/b", "1/2/3", "-1/2"] {
+            assert!(text.parse::<Shard>().is_err(), "{text}");
+        }
+        assert_eq!("3/100".parse::<Shard>().unwrap().folder(), "0003-of-0100");
+    }
+}
