@@ -10,8 +10,11 @@ use std::path::Path;
 /// Most bytes of a file of options and of a cost model: both are written by hand or hold a few numbers.
 pub const MAX_OPTIONS: u64 = 1 << 20;
 
-/// Most bytes of a table of potentials or of pairs.
+/// Most bytes of a table of potentials or of a batch's results.
 pub const MAX_TABLE: u64 = 64 << 20;
+
+/// Most bytes of a table of pairs: some three million rows.
+pub const MAX_PAIRS: u64 = 256 << 20;
 
 /// Most bytes of a file of distance restraints.
 pub const MAX_RESTRAINTS: u64 = 16 << 20;

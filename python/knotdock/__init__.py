@@ -7,8 +7,8 @@
 
 `dock` docks two structures; `Run` opens what a run left. `batch`, `merge` and `screen` are for many pairs. `score`,
 `evaluate`, `interface`, `inspect`, `sample`, `collide`, `obstacle` and `morph` are the other commands. `Molecule` reads
-structures into arrays, and `Correlator` correlates balls with weights of one's own. `run_command` runs any command by its
-name.
+structures into arrays, and `Correlator` correlates balls with weights of one's own. `run_command` runs any command by
+its name.
 """
 
 from knotdock._knotdock import Correlator, options, version

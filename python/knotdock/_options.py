@@ -45,7 +45,7 @@ class DockOptions(TypedDict, total=False):
     sample_grid: str | float | Sequence[object]
     """Of meshes: nodes of the grid that each part is sampled on, as 2^18 or 262144 [default: 2^18]"""
 
-    sample_weights: Literal['fitted', 'unit']
+    sample_weights: Literal["fitted", "unit"]
     """Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside,
     or one [default: fitted]"""
 
@@ -146,7 +146,7 @@ class DockOptions(TypedDict, total=False):
     ph: float | str
     """pH at which charges are assigned [default: 7]"""
 
-    antibody: Literal['cdrs', 'whole']
+    antibody: Literal["cdrs", "whole"]
     """What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining
     regions and what lies within 5 Å of them, or whole, all of it [default: cdrs]"""
 
@@ -209,11 +209,11 @@ class DockOptions(TypedDict, total=False):
     fine_share: float | str
     """Share of the finer rotations that are searched [default: 0.05]"""
 
-    precision: Literal['single', 'double']
+    precision: Literal["single", "double"]
     """Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What
     is reported is in double precision either way [default: single]"""
 
-    engine: Literal['cpu', 'gpu']
+    engine: Literal["cpu", "gpu"]
     """What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single
     precision; of several the environment variable WGPU_ADAPTER_NAME names one [default: cpu]"""
 
@@ -237,7 +237,7 @@ class DockOptions(TypedDict, total=False):
     """RMSD within which poses form a cluster, in Å, over the ligand's CA atoms or a mesh's sample points; of
     meshes by default 2.273 times the offset [default: 5]"""
 
-    sharp: Literal['auto', 'on', 'off']
+    sharp: Literal["auto", "on", "off"]
     """Fit the best poses at atomic resolution: auto ranks by these fits where one stands out as an exact fit
     does, on always, off never looks for them [default: auto]"""
 

@@ -51,8 +51,12 @@ def dock(
 
     Further keywords are options of the command line, `native` and `force` among them, and:
     """
-    temporary = tempfile.TemporaryDirectory(prefix="knotdock-") if output is None else None
-    directory = pathlib.Path(temporary.name, "run") if temporary else pathlib.Path(os.fspath(output))
+    temporary = None
+    if output is None:
+        temporary = tempfile.TemporaryDirectory(prefix="knotdock-")
+        directory = pathlib.Path(temporary.name, "run")
+    else:
+        directory = pathlib.Path(output)
 
     def folder() -> pathlib.Path:
         # Beside run.json inputs are found again, wherever the directory is moved.

@@ -14,7 +14,19 @@ from knotdock.commands import run_command
 from knotdock.inputs import given
 from knotdock.tables import read_table
 
-__all__ = ["Balls", "batch", "collide", "evaluate", "inspect", "interface", "merge", "morph", "obstacle", "sample", "score"]
+__all__ = [
+    "Balls",
+    "batch",
+    "collide",
+    "evaluate",
+    "inspect",
+    "interface",
+    "merge",
+    "morph",
+    "obstacle",
+    "sample",
+    "score",
+]
 
 
 def _with_files(command: str, *solids: Any, before: Sequence[str] = (), **options: Any) -> Any:

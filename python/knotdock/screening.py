@@ -20,7 +20,17 @@ if TYPE_CHECKING:
 __all__ = ["screen"]
 
 _TEXTS = ("name", "receptor", "ligand", "status", "error", "capri")
-_COUNTS = ("row", "rank", "poses", "clusters", "cluster", "cluster_size", "clashes", "restraints_met", "first_acceptable_rank")
+_COUNTS = (
+    "row",
+    "rank",
+    "poses",
+    "clusters",
+    "cluster",
+    "cluster_size",
+    "clashes",
+    "restraints_met",
+    "first_acceptable_rank",
+)
 # Pairs of a shard where their number is not given: some minutes of work on one core.
 _PAIRS_A_SHARD = 50
 

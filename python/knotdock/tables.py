@@ -39,9 +39,7 @@ def read_table(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
 
         table = polars.read_csv(path, infer_schema_length=None)
         texts = [name for name, kind in table.schema.items() if kind == polars.String]
-        return table.with_columns(
-            polars.col(name).map_elements(unquoted, return_dtype=polars.String) for name in texts
-        )
+        return table.with_columns(polars.col(name).map_elements(unquoted, return_dtype=polars.String) for name in texts)
     if frame == "numpy":
         return _arrays(path)
     message = f"frame is {frame!r}; it must be 'pandas', 'polars' or 'numpy'"
@@ -82,8 +80,10 @@ def read_results(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
 
 
 def read_poses(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
-    """The poses of a run (`poses.csv`) or of a batch (`poses.csv.gz`): a row a pose. `path` is the file or the directory
-    of the run or batch."""
+    """The poses of a run (`poses.csv`) or of a batch (`poses.csv.gz`): a row a pose.
+
+    `path` is the file, or the directory of the run or batch.
+    """
     return read_table(_poses_file(path), frame)
 
 

@@ -26,7 +26,18 @@ def test_commands_give_the_objects_of_the_command_line(helices):
 
 def test_solids_are_arrays_or_files():
     cube = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    faces = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+    ]
     faces += [[1, 5, 7], [1, 7, 3]]
     balls = knotdock.sample((cube, faces), grid="2^12")
     assert np.asarray(balls).shape == (len(balls), 4)

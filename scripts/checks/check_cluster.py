@@ -3,8 +3,8 @@
 
 usage: check_cluster.py FOLDER        with `knotdock` (the Python package) on the path, as root, in an empty folder
 
-Starts a Slurm of one node (scripts/checks/slurm_of_one_node.sh). On it run: an array by scripts/cluster/slurm_array.sh, of
-which one task is killed and submitted again; scripts/cluster/Snakefile with Snakemake's Slurm executor, of which one
+Starts a Slurm of one node (scripts/checks/slurm_of_one_node.sh). On it run: an array by
+scripts/cluster/slurm_array.sh, of which one task is killed and submitted again; scripts/cluster/Snakefile with Snakemake's Slurm executor, of which one
 job is killed; and `knotdock.screen` on dask-jobqueue, of which one worker is killed.
 """
 
@@ -32,7 +32,9 @@ def table(folder):
     names = ["helices", "charged_helices", "salt_bridge", "two_atoms"] * 3
     names[5] = "none"
     path = folder / "pairs.csv"
-    rows = [f"{number}_{name},{CASES}/{name}_receptor.pdb,{CASES}/{name}_ligand.pdb\n" for number, name in enumerate(names)]
+    rows = [
+        f"{number}_{name},{CASES}/{name}_receptor.pdb,{CASES}/{name}_ligand.pdb\n" for number, name in enumerate(names)
+    ]
     path.write_text("name,receptor,ligand\n" + "".join(rows))
     return path
 
@@ -112,8 +114,21 @@ def by_snakemake(folder, pairs, expected):
     """Snakemake with its Slurm executor, a job of which is killed and begun again by Snakemake."""
     out = folder / "snakemake"
     words = ["snakemake", "-s", RECIPES / "Snakefile", "--executor", "slurm", "--jobs", "4"]
-    words += ["--slurm-no-account", "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "1"]
-    words += ["--seconds-between-status-checks", "1", "--latency-wait", "1", "--default-resources", "slurm_partition=batch"]
+    words += [
+        "--slurm-no-account",
+        "--slurm-status-command",
+        "squeue",
+        "--slurm-init-seconds-before-status-checks",
+        "1",
+    ]
+    words += [
+        "--seconds-between-status-checks",
+        "1",
+        "--latency-wait",
+        "1",
+        "--default-resources",
+        "slurm_partition=batch",
+    ]
     words += ["--set-resources", "shard:mem_mb=500", "merge:mem_mb=500"]
     words += ["--config", f"pairs={pairs}", f"output={out}", f"shards={SHARDS}", f"dock={' '.join(WORDS)}"]
     with (folder / "snakemake.log").open("w") as log:
@@ -132,7 +147,13 @@ def by_dask(folder, pairs, expected):
     from distributed import Client
 
     out = folder / "dask"
-    settings = {"cores": 1, "memory": "500MB", "processes": 1, "queue": "batch", "log_directory": str(folder / "dask_logs")}
+    settings = {
+        "cores": 1,
+        "memory": "500MB",
+        "processes": 1,
+        "queue": "batch",
+        "log_directory": str(folder / "dask_logs"),
+    }
     with SLURMCluster(**settings, interface="lo", scheduler_options={"dashboard_address": ":0"}) as cluster:
         cluster.adapt(minimum=2, maximum=2)
         with Client(cluster) as client:

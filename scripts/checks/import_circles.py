@@ -3,9 +3,10 @@
 
 usage: import_circles.py [--graph]      from anywhere in the repository
 
-Nothing outside of `cli` imports the command line either. An import leads to the file that defines the name: a module's `pub use` is followed, and is no import of its own.
-Test modules are left out. A circle is allowed where all its files are one module and its own submodules (a type
-and its split-out implementation). --graph prints the imports between folders of the main crate instead.
+Nothing outside of `cli` imports the command line either. An import leads to the file that defines the name: a module's
+`pub use` is followed, and is no import of its own. Test modules are left out. A circle is allowed where all its files
+are one module and its own submodules (a type and its split-out implementation). --graph prints the imports between
+folders of the main crate instead.
 """
 
 import pathlib

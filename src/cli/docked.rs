@@ -3,6 +3,9 @@
 use std::path::Path;
 
 use crate::dock::outcome::DockOutcome;
+use crate::dock::pair::PreparedPair;
+use crate::dock::run::dock_until;
+use crate::error::SearchError;
 use crate::output::files::exported::ExportFolder;
 use crate::output::files::seal::REPORT;
 use crate::output::files::staging::Staging;
@@ -28,6 +31,33 @@ use crate::cli::messages::dock::{error_warning, few_rotations_warning, outcome_t
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
 use crate::cli::messages::timings::timings_text;
+
+impl Docking {
+    /// Docks, and writes the run; its JSON object. What became of files of the user's is said on `notices`, for a batch
+    /// says that and nothing else of its pairs.
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+        let staging = Staging::open(&self.directory, self.force)?;
+        self.dock(console)?.save(staging, console, notices)
+    }
+
+    /// Docks, and writes nothing.
+    pub fn dock(mut self, console: Console) -> Result<Docked, Failure> {
+        let progress = console.progress();
+        let PreparedPair { plan, points, .. } = &self.prepared;
+        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
+            |error| match error {
+                SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
+                    Failure::input(&error).remedy(error.remedy())
+                }
+                SearchError::Ended(_) => Failure::of_program(&error).remedy(error.remedy()),
+                error => Failure::other(&error).remedy(error.remedy()),
+            },
+        )?;
+        // The record says where the search stopped, so that it can be repeated.
+        self.request.options.stopped = outcome.stopped;
+        Ok(Docked::new(self, outcome))
+    }
+}
 
 /// A run that is docked and not written.
 pub struct Docked {

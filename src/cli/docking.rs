@@ -6,21 +6,16 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use crate::dock::memory::process;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::{PreparedPair, Preparer};
-use crate::dock::run::dock_until;
-use crate::error::SearchError;
 use crate::evaluate::Evaluator;
 use crate::options::{Precision, SharpChoice};
-use crate::output::files::staging::Staging;
 use crate::output::records::manifest::{EffectTime, Timing};
 use crate::output::records::recorded_run::RecordedRun;
 use crate::search::deadline::Deadline;
 use crate::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use crate::tradeoff::cost_model::{CostModel, Workload};
-use serde_json::Value;
 
 use crate::cli::arguments::native::{NativeFiles, announce};
 use crate::cli::calibrate::cost_model;
-use crate::cli::docked::Docked;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{assumed, known_text, regions_text};
@@ -32,7 +27,7 @@ pub struct Docking {
     pub(super) request: Request,
     pub(super) directory: PathBuf,
     /// Whether another run there is replaced.
-    force: bool,
+    pub(super) force: bool,
     pub(super) evaluator: Option<Evaluator>,
     pub(super) prepared: PreparedPair,
     pub(super) chosen: Option<Chosen>,
@@ -141,31 +136,6 @@ impl Docking {
         self.directory.join("poses.csv").is_file()
             && run.is_of_this_program()
             && run.is_same_request(inputs, native.as_ref(), &options)
-    }
-
-    /// Docks, and writes the run; its JSON object. What became of files of the user's is said on `notices`, for a batch
-    /// says that and nothing else of its pairs.
-    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
-        let staging = Staging::open(&self.directory, self.force)?;
-        self.dock(console)?.save(staging, console, notices)
-    }
-
-    /// Docks, and writes nothing.
-    pub fn dock(mut self, console: Console) -> Result<Docked, Failure> {
-        let progress = console.progress();
-        let PreparedPair { plan, points, .. } = &self.prepared;
-        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
-            |error| match error {
-                SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
-                    Failure::input(&error).remedy(error.remedy())
-                }
-                SearchError::Ended(_) => Failure::of_program(&error).remedy(error.remedy()),
-                error => Failure::other(&error).remedy(error.remedy()),
-            },
-        )?;
-        // The record says where the search stopped, so that it can be repeated.
-        self.request.options.stopped = outcome.stopped;
-        Ok(Docked::new(self, outcome))
     }
 }
 

@@ -10,7 +10,7 @@ mod whole;
 
 use std::path::{Path, PathBuf};
 
-use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::bounded_read::{MAX_PAIRS, read_bounded};
 use crate::options::values::{AllOr, all_or_at_least_one, at_least_one};
 use crate::output::files::checksum::sha256;
 use crate::output::files::folder_lock::FolderLock;
@@ -24,6 +24,7 @@ use crate::cli::arguments::program::is_of_program;
 use crate::cli::batch::limits::Limits;
 use crate::cli::batch::sharded::Sharding;
 use crate::cli::inputs::batch_pairs::pairs;
+use crate::cli::inputs::recent_molecules::keep_recent;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -94,6 +95,7 @@ impl Batch {
                     .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
             );
         }
+        keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);
         let (pairs, total) = pairs(&self.pairs, shard, &directory, &self.options)?;
         let unwritable = |source| FileError::Unwritable {
@@ -121,7 +123,7 @@ impl Batch {
 
     /// The shard that the options describe, of a table of so many pairs.
     fn sharding(self, directory: PathBuf, shard: Shard, total: usize) -> Result<Sharding, Failure> {
-        let table = read_bounded(&self.pairs, MAX_TABLE).map_err(|error| {
+        let table = read_bounded(&self.pairs, MAX_PAIRS).map_err(|error| {
             Failure::input(format!("cannot read {}: {error}", self.pairs.display()))
                 .at(&self.pairs)
                 .remedy("give the table as a file")

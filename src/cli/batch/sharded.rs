@@ -71,6 +71,7 @@ impl Sharding {
             code: ExitCode::default(),
             console,
         };
+        console.begins("pairs", waiting.len());
         // A pair that was under way when the process ended may end it again: it comes after all others.
         for pairs in waiting.into_groups() {
             watch.pairs = pairs
@@ -221,6 +222,7 @@ impl Watch<DockedPair> for Shards<'_> {
         self.journal.add(*row, result, pair.poses.as_ref())?;
         // What is in the journal is not held.
         result.outcome = None;
+        self.console.advances();
         Ok(())
     }
 }

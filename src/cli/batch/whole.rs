@@ -78,6 +78,7 @@ pub fn dock_into(
         code: ExitCode::default(),
         console,
     };
+    console.begins("pairs", count);
     let dock = |work: PairWork, threads| work.dock(threads, console);
     dock_all(jobs, threads, dock, &mut watch)?;
     write_listed(directory, console)?;
@@ -107,6 +108,7 @@ impl Watch<DockedPair> for Results<'_> {
         let outcome = pair.outcome.map_err(|failure| failure.line_of_table());
         self.table[place].outcome = Some(outcome);
         self.entries[place] = pair.entry;
+        self.console.advances();
         Ok(write_results(&self.path, &self.table, &self.others)?)
     }
 }

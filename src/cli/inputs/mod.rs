@@ -9,6 +9,7 @@ pub mod meshes;
 pub mod molecules;
 pub mod poses;
 pub mod ranked_rows;
+pub mod recent_molecules;
 pub mod request;
 pub mod room;
 pub mod shapes;

@@ -12,6 +12,7 @@ use knotdock_structures::molecule::{
 };
 
 use crate::cli::inputs::meshes::is_mesh;
+use crate::cli::inputs::recent_molecules::read_recent;
 use crate::cli::messages::failure::Failure;
 
 /// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were; of
@@ -131,10 +132,9 @@ impl Input {
         }
         let read = |options: &ReadOptions| -> Result<Vec<Self>, Failure> {
             let inputs = files.iter().map(|(spec, bytes)| {
-                Ok(Self {
-                    record: InputRecord::new(spec, bytes),
-                    molecule: read_bytes(spec, bytes.clone(), options)?,
-                })
+                let record = InputRecord::new(spec, bytes);
+                let molecule = read_recent((spec, &record), bytes, options)?;
+                Ok(Self { record, molecule })
             });
             inputs.collect()
         };

@@ -127,6 +127,20 @@ impl<'a> Console<'a> {
         write_line(&mut io::stderr(), &shown(&failure.text()));
     }
 
+    /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
+    pub fn begins(&self, stage: &str, total: usize) {
+        if let (Some(listener), false) = (self.listener, self.quiet) {
+            listener.stage(stage, total as u64);
+        }
+    }
+
+    /// Tells whoever listens that a step of the stage is done.
+    pub fn advances(&self) {
+        if let (Some(listener), false) = (self.listener, self.quiet) {
+            listener.advance(1);
+        }
+    }
+
     /// Fails where whoever listens ends the command.
     pub fn go_on(&self) -> Result<(), Failure> {
         let ended = self.listener.map_or(Ok(()), Listener::go_on);

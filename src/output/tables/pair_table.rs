@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
-use crate::bounded_read::{MAX_TABLE, read_bounded};
+use crate::bounded_read::{MAX_PAIRS, read_bounded};
 use crate::output::tables::cells::unquoted;
 use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::spreadsheet::{column_name, plain};
@@ -79,7 +79,7 @@ impl PairTableError {
 /// # Errors
 /// [`PairTableError`].
 pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableError> {
-    let bytes = read_bounded(path, MAX_TABLE).map_err(|source| PairTableError::Open {
+    let bytes = read_bounded(path, MAX_PAIRS).map_err(|source| PairTableError::Open {
         path: path.to_owned(),
         source,
     })?;
