@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# Checks of the Python package, by Python in a virtual environment of its own under target/: the wheel is built and
-# installed, and its tests and the recipes for clusters run. Needs python3 with venv; the recipes need Slurm, for which
-# Debian's slurm-wlm and munge are started as root, and are left out elsewhere. With --install it makes the environment
-# and checks nothing.
+# Checks of the Python package, by Python in a virtual environment of its own under target/: its tests, its types, its
+# README, and the recipes for clusters. Needs python3 (3.11 or later) with venv; the recipes need Slurm, for which Debian's
+# slurm-wlm and munge are started as root, and are left out elsewhere.
+#
+#     scripts/python_checks.sh              the package as the tests' profile builds it, put together in a folder
+#     scripts/python_checks.sh --wheel      the wheel, built by maturin with all optimisations and installed by pip
+#     scripts/python_checks.sh --install    make the environment, and check nothing
 set -euo pipefail
 shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -23,11 +26,26 @@ if [ ! -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ] && command -v apt-ge
 fi
 [ "${1:-}" != --install ] || exit 0
 
-wheels=$target/python/wheels
-rm -rf "$wheels"
-# The profile of the tests, so that little is compiled anew.
-(cd python && "$venv/bin/maturin" build --quiet --locked --profile dev --out "$wheels")
-"$venv/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheels"/*.whl
+packages=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["purelib"])')
+"$venv/bin/pip" uninstall --quiet --yes --disable-pip-version-check knotdock 2>/dev/null || true
+rm -rf "$packages/knotdock.pth" "$venv/bin/knotdock"
+if [ "${1:-}" = --wheel ]; then
+    wheels=$target/python/wheels
+    rm -rf "$wheels"
+    (cd python && "$venv/bin/maturin" build --quiet --locked --release --out "$wheels")
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --no-deps "$wheels"/*.whl
+else
+    # Built with the tests, for maturin would ask for other features and compile all again.
+    cargo build --workspace --lib --tests --quiet --locked
+    site=$target/python/site
+    rm -rf "$site"
+    mkdir -p "$site"
+    cp -r python/knotdock "$site/"
+    cp "$target"/debug/lib_knotdock.so "$site/knotdock/_knotdock.abi3.so"
+    echo "$site" >"$packages/knotdock.pth"
+    printf '#!/bin/sh\nexec "%s" -m knotdock "$@"\n' "$venv/bin/python" >"$venv/bin/knotdock"
+    chmod +x "$venv/bin/knotdock"
+fi
 # Away from the package's source, so that what is installed is what is tested.
 tests=$PWD/python/tests readme=$PWD/python/README.md package=$PWD/python/knotdock
 cd "$target/python"

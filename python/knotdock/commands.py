@@ -116,4 +116,7 @@ def run_command(
         result, _ = _knotdock.call(words, listener)
     finally:
         listener.close()
+        # Parts that failed, such as pairs of a batch, end no command.
+        for text in listener.failures:
+            warnings.warn(text, KnotdockWarning, stacklevel=3)
     return None if result is None else json.loads(result)

@@ -1,6 +1,6 @@
 //! knotdock from Python: the module `knotdock._knotdock`, on which the package `knotdock` is built.
 //!
-//! Commands run by their words, as on the command line ([`mod@command`]); molecules and correlations are classes of
+//! Commands run by their words, as on the command line; molecules and correlations are classes of
 //! their own.
 
 mod command;

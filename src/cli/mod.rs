@@ -1,5 +1,8 @@
 //! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
-//! [`crate::output`] and the [`messages::console`].
+//! [`crate::output`] and the console.
+//!
+//! The program is [`main`]. Other programs run commands in their own process by [`call`] and hear what they say by a
+//! [`Listener`].
 
 mod arguments;
 mod batch;
