@@ -21,10 +21,14 @@ trust *options:
     cargo build --release
     scripts/checks/trust.py target/release/knotdock --write docs/trust.md {{options}}
 
+# The Python package: its tests, types and README, and the recipes for clusters
+python *options:
+    scripts/python_checks.sh {{options}}
+
 # Layout and lints of the scripts; needs ruff (PyPI)
 lint-scripts:
-    ruff format --check scripts
-    ruff check scripts
+    ruff format --check scripts python --config scripts/ruff.toml
+    ruff check scripts python --config scripts/ruff.toml
 
 # Documentation of the crates
 doc:

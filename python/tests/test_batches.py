@@ -36,6 +36,9 @@ def test_shards_are_merged_and_read(pairs, tmp_path):
     run = knotdock.dock(CASES / "helices_receptor.pdb", CASES / "helices_ligand.pdb", **DOCK)
     own = poses[poses["name"] == "helices"]
     assert np.array_equal(own["score"], run.scores[: len(own)])
+    pairwise = dict(knotdock.iterate_poses(out))
+    assert list(pairwise) == list(dict.fromkeys(poses["name"]))
+    assert np.array_equal(pairwise["helices"]["score"], own["score"])
     assert len(knotdock.read_poses(out, "polars")) == len(knotdock.read_poses(out, "numpy")["name"]) == len(poses)
     assert list(knotdock.read_poses(run.directory).columns) == list(run.poses.columns)
 

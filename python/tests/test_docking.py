@@ -1,5 +1,6 @@
 """Docking from Python gives what the command line gives."""
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -111,6 +112,25 @@ def test_ctrl_c_ends_a_docking(helices):
     assert done.stdout == "interrupted\n", done
     # The whole search would take minutes.
     assert time.monotonic() - started < 60
+
+
+def test_a_panic_is_an_exception(helices):
+    """Only builds with debug assertions can be made to panic; they say nothing of others."""
+    code = (
+        "import knotdock\n"
+        "try:\n"
+        f"    knotdock.dock({helices[0]!r}, {helices[1]!r}, rotations=4)\n"
+        "except knotdock.KnotdockError as error:\n"
+        "    print(error.message, '|', error.remedy)\n"
+        f"print(len(knotdock.Molecule.read({helices[0]!r})) > 0)\n"
+    )
+    environment = {**os.environ, "KNOTDOCK_FAULT": "panic 3"}
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
+    said = done.stdout.splitlines()
+    if len(said) == 1:
+        pytest.skip("built without debug assertions")
+    assert said == ["knotdock failed, which is a fault of the program | report it with the call and its files", "True"]
 
 
 def test_other_threads_of_python_run_meanwhile(helices, options):

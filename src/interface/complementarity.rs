@@ -136,7 +136,7 @@ mod tests {
 
     /// A square sheet of balls at a height, so close that it is nearly flat.
     fn sheet(height: f64) -> Vec<(Vector3<f64>, f64)> {
-        let places = (-16..=16).flat_map(|i| (-16..=16).map(move |j| (f64::from(i), f64::from(j))));
+        let places = (-9..=9).flat_map(|i| (-9..=9).map(move |j| (f64::from(i), f64::from(j))));
         places
             .map(|(i, j)| (Vector3::new(0.7 * i, 0.7 * j, height), 1.7))
             .collect()

@@ -1,7 +1,8 @@
 //! Faults on purpose: a run ends, or a change of the disk fails, at a chosen change. For tests of crashes.
 //!
 //! Only builds with debug assertions have them. The variable `KNOTDOCK_FAULT` names the fault: `kill N` ends the
-//! process at change N, counted from 1, as a kill would; `fail N` lets change N fail as a full disk would.
+//! process at change N, counted from 1, as a kill would; `fail N` lets change N fail as a full disk would; `panic N` lets
+//! the program fail there.
 //! `KNOTDOCK_FAULT_LOG` names a file to which each change adds a line: its kind, a tab and its path.
 
 use std::io;
@@ -38,6 +39,7 @@ mod debug {
     enum Fault {
         Kill(usize),
         Fail(usize),
+        Panic(usize),
         None,
     }
 
@@ -48,9 +50,11 @@ mod debug {
         let number = |rest: &str| rest.trim().parse().ok();
         let kill = text.strip_prefix("kill ").and_then(number);
         let fail = text.strip_prefix("fail ").and_then(number);
-        match (kill, fail) {
-            (Some(change), _) => Fault::Kill(change),
-            (_, Some(change)) => Fault::Fail(change),
+        let panic = text.strip_prefix("panic ").and_then(number);
+        match (kill, fail, panic) {
+            (Some(change), ..) => Fault::Kill(change),
+            (_, Some(change), _) => Fault::Fail(change),
+            (_, _, Some(change)) => Fault::Panic(change),
             _ => Fault::None,
         }
     });
@@ -71,6 +75,10 @@ mod debug {
         match *FAULT {
             // Nothing is flushed or removed on the way out, as after a kill.
             Fault::Kill(chosen) if chosen == change => std::process::exit(137),
+            // This is the one panic that is meant.
+            Fault::Panic(chosen) if chosen == change => {
+                std::panic::panic_any("a panic on purpose")
+            }
             Fault::Fail(chosen) if chosen == change => Err(io::ErrorKind::StorageFull.into()),
             _ => Ok(()),
         }
