@@ -4,8 +4,9 @@
 usage: check_cluster.py FOLDER        with `knotdock` (the Python package) on the path, as root, in an empty folder
 
 Starts a Slurm of one node (scripts/checks/slurm_of_one_node.sh). On it run: an array by
-scripts/cluster/slurm_array.sh, of which one task is killed and submitted again; scripts/cluster/Snakefile with Snakemake's Slurm executor, of which one
-job is killed; and `knotdock.screen` on dask-jobqueue, of which one worker is killed.
+scripts/cluster/slurm_array.sh, of which one task is killed and submitted again; scripts/cluster/Snakefile with
+Snakemake's Slurm executor, of which one job is killed; and `knotdock.screen` on dask-jobqueue, of which one worker is
+killed.
 """
 
 import os

@@ -76,9 +76,7 @@ mod debug {
             // Nothing is flushed or removed on the way out, as after a kill.
             Fault::Kill(chosen) if chosen == change => std::process::exit(137),
             // This is the one panic that is meant.
-            Fault::Panic(chosen) if chosen == change => {
-                std::panic::panic_any("a panic on purpose")
-            }
+            Fault::Panic(chosen) if chosen == change => std::panic::panic_any("a panic on purpose"),
             Fault::Fail(chosen) if chosen == change => Err(io::ErrorKind::StorageFull.into()),
             _ => Ok(()),
         }
