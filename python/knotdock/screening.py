@@ -51,7 +51,7 @@ def screen(
     """Dock the pairs of a table on a cluster of Dask.
 
     Each shard is one task: `knotdock batch --shard I/N --keep table`, then its tables as Parquet. A task whose worker
-    dies is begun anew elsewhere, and goes on after the last pair that it finished. Called again, the function goes on
+    dies is started again elsewhere, and goes on after the last pair that it finished. Called again, the function goes on
     with what is left.
 
     Args:

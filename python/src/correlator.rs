@@ -14,9 +14,9 @@ use crate::failure::bad_input;
 
 /// Correlates two sets of balls over all translations, one rotation after another.
 ///
-/// The score of a pose is that of `knotdock dock` by shape alone: -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), with g the
-/// weighted overlap of balls grown by an offset (Behandish and Ilies 2016, equation 53, with the sign that its text
-/// gives). Lengths are in the unit of the centres.
+/// The score of a pose is that of `knotdock dock` by shape alone: -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), where g is
+/// the weighted overlap of balls grown by an offset. It is equation 53 of Behandish and Ilies (2016), with the sign that
+/// their text gives. Lengths are in the unit of the centres.
 #[pyclass(unsendable, module = "knotdock._knotdock")]
 pub struct Correlator {
     inner: Inner,

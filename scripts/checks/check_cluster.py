@@ -53,12 +53,12 @@ def children():
 
 
 def kill_one(words, shards, seconds=120):
-    """Kill the first process whose command line has all words, once some pair of the shards was begun."""
+    """Kill the first process whose command line has all words, once some pair of the shards was started."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
-        begun = [path for path in shards.glob("shards/*/attempts.csv") if path.stat().st_size > 2]
+        started = [path for path in shards.glob("shards/*/attempts.csv") if path.stat().st_size > 2]
         for pid, line in children().items():
-            if begun and all(word in line for word in words) and pid != os.getpid():
+            if started and all(word in line for word in words) and pid != os.getpid():
                 os.kill(pid, signal.SIGKILL)
                 return
         time.sleep(0.02)
@@ -112,7 +112,7 @@ def by_array(folder, pairs, expected):
 
 
 def by_snakemake(folder, pairs, expected):
-    """Snakemake with its Slurm executor, a job of which is killed and begun again by Snakemake."""
+    """Snakemake with its Slurm executor, a job of which is killed and started again by Snakemake."""
     out = folder / "snakemake"
     words = ["snakemake", "-s", RECIPES / "Snakefile", "--executor", "slurm", "--jobs", "4"]
     words += [

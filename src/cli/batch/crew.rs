@@ -16,10 +16,10 @@ pub struct Job<J> {
     pub work: J,
 }
 
-/// Hears which pairs are begun and what came of them, on one thread.
+/// Hears which pairs are started and what came of them, on one thread.
 pub trait Watch<T> {
     /// A pair at a place is about to be docked.
-    fn begin(&mut self, place: usize) -> Result<(), Failure>;
+    fn start(&mut self, place: usize) -> Result<(), Failure>;
     /// What came of it.
     fn done(&mut self, place: usize, row: T) -> Result<(), Failure>;
 }
@@ -27,7 +27,7 @@ pub trait Watch<T> {
 /// Docks pairs in their order by `dock`, as many at once as `threads` suffice for, before the eyes of `watch`.
 ///
 /// # Errors
-/// The first of `watch`, after which no pair is begun, and [`Failure`] where a thread cannot be started.
+/// The first of `watch`, after which no pair is started, and [`Failure`] where a thread cannot be started.
 pub fn dock_all<J: Send, T: Send>(
     jobs: Vec<Job<J>>,
     threads: usize,
@@ -45,7 +45,7 @@ pub fn dock_all<J: Send, T: Send>(
                     && (running == 0 || (!job.turn.is_alone && job.turn.threads <= free))
             };
             if let Some(Job { turn, work }) = waiting.next_if(fits) {
-                failed = watch.begin(turn.pair).err();
+                failed = watch.start(turn.pair).err();
                 if failed.is_some() {
                     continue;
                 }

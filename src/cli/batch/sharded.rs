@@ -128,7 +128,7 @@ impl Sharding {
         Ok(code.of_failed(failed))
     }
 
-    /// The pairs that have to be docked: those that were never begun, and those that were under way when the process
+    /// The pairs that have to be docked: those that were never started, and those that were under way when the process
     /// ended. What ended the process too often is noted as failed.
     fn waiting(&self, pairs: Vec<Pair>, journal: &mut Journal) -> Result<Waiting, Failure> {
         let mut waiting = Waiting::default();
@@ -138,7 +138,7 @@ impl Sharding {
             if journal.is_done(row) || (journal.has_failed(row) && !is_again) {
                 continue;
             }
-            match journal.begun(row) {
+            match journal.attempts(row) {
                 0 => waiting.fresh.push(pair),
                 _ if is_again => waiting.fresh.push(pair),
                 kills if kills >= KILLS => {
@@ -149,7 +149,7 @@ impl Sharding {
                     result.outcome = Some(Err(failure));
                     journal.add(row, &result, None)?;
                 }
-                _ => waiting.begun.push_back(pair),
+                _ => waiting.stopped.push_back(pair),
             }
         }
         Ok(waiting)
@@ -172,18 +172,18 @@ impl Sharding {
 #[derive(Default)]
 struct Waiting {
     fresh: Vec<Pair>,
-    begun: VecDeque<Pair>,
+    stopped: VecDeque<Pair>,
 }
 
 impl Waiting {
     fn len(&self) -> usize {
-        self.fresh.len() + self.begun.len()
+        self.fresh.len() + self.stopped.len()
     }
 
     /// Those that are docked side by side: all fresh ones, then each of the others by itself.
     fn into_groups(self) -> impl Iterator<Item = Vec<Pair>> {
-        let begun = self.begun.into_iter().map(|pair| vec![pair]);
-        std::iter::once(self.fresh).chain(begun)
+        let stopped = self.stopped.into_iter().map(|pair| vec![pair]);
+        std::iter::once(self.fresh).chain(stopped)
     }
 }
 
@@ -206,9 +206,9 @@ struct Shards<'a> {
 }
 
 impl Watch<DockedPair> for Shards<'_> {
-    fn begin(&mut self, place: usize) -> Result<(), Failure> {
+    fn start(&mut self, place: usize) -> Result<(), Failure> {
         self.console.go_on()?;
-        Ok(self.journal.begin(self.pairs[place].0)?)
+        Ok(self.journal.start(self.pairs[place].0)?)
     }
 
     fn done(&mut self, place: usize, pair: DockedPair) -> Result<(), Failure> {

@@ -96,7 +96,7 @@ struct Results<'a> {
 }
 
 impl Watch<DockedPair> for Results<'_> {
-    fn begin(&mut self, _: usize) -> Result<(), Failure> {
+    fn start(&mut self, _: usize) -> Result<(), Failure> {
         self.console.go_on()
     }
 

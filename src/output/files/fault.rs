@@ -65,6 +65,10 @@ mod debug {
         Some(Mutex::new(file))
     });
 
+    #[allow(
+        clippy::panic,
+        reason = "a panic on purpose, for tests of what becomes of it"
+    )]
     pub(super) fn point(kind: &str, path: &Path) -> io::Result<()> {
         let change = 1 + CHANGES.fetch_add(1, Ordering::SeqCst);
         if let Some(log) = &*LOG
@@ -75,8 +79,7 @@ mod debug {
         match *FAULT {
             // Nothing is flushed or removed on the way out, as after a kill.
             Fault::Kill(chosen) if chosen == change => std::process::exit(137),
-            // This is the one panic that is meant.
-            Fault::Panic(chosen) if chosen == change => std::panic::panic_any("a panic on purpose"),
+            Fault::Panic(chosen) if chosen == change => panic!("a panic on purpose"),
             Fault::Fail(chosen) if chosen == change => Err(io::ErrorKind::StorageFull.into()),
             _ => Ok(()),
         }

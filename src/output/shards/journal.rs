@@ -20,12 +20,12 @@ const ATTEMPTS: &str = "attempts.csv";
 pub struct Journal {
     results: AppendedFile,
     poses: Option<AppendedFile>,
-    attempts: AppendedFile,
+    attempts_file: AppendedFile,
     /// Rows of pairs that have been docked, and of those that failed.
     done: HashSet<usize>,
     failed: HashSet<usize>,
-    /// How often each pair was begun.
-    begun: HashMap<usize, usize>,
+    /// How often each pair was started.
+    started: HashMap<usize, usize>,
     /// What of the files was of no use, if anything.
     lost: usize,
 }
@@ -67,7 +67,7 @@ impl Journal {
             place.insert(row.row);
             ends.0 = row.end;
         }
-        let mut begun = HashMap::new();
+        let mut started = HashMap::new();
         let attempts = folder.join(ATTEMPTS);
         let listed = bytes_of(&attempts)?;
         let whole = listed
@@ -79,7 +79,7 @@ impl Journal {
                 .ok()
                 .and_then(|row| row.parse().ok());
             if let Some(row) = row {
-                *begun.entry(row).or_insert(0) += 1;
+                *started.entry(row).or_insert(0) += 1;
             }
         }
         let mut journal = Self {
@@ -88,10 +88,10 @@ impl Journal {
                 true => Some(AppendedFile::open(&poses, ends.1)?),
                 false => None,
             },
-            attempts: AppendedFile::open(&attempts, whole as u64)?,
+            attempts_file: AppendedFile::open(&attempts, whole as u64)?,
             done,
             failed,
-            begun,
+            started,
             lost,
         };
         if ends.1 == 0
@@ -116,9 +116,9 @@ impl Journal {
         self.failed.contains(&row) && !self.is_done(row)
     }
 
-    /// How often a pair was begun.
-    pub fn begun(&self, row: usize) -> usize {
-        self.begun.get(&row).copied().unwrap_or(0)
+    /// how often a pair was started.
+    pub fn attempts(&self, row: usize) -> usize {
+        self.started.get(&row).copied().unwrap_or(0)
     }
 
     /// Pairs that were listed as done and have to be docked again, since a file is damaged.
@@ -132,13 +132,13 @@ impl Journal {
         [self.done.len(), failed.count()]
     }
 
-    /// Notes that a pair is begun.
+    /// Notes that a pair is started.
     ///
     /// # Errors
     /// [`ShardError::File`].
-    pub fn begin(&mut self, row: usize) -> Result<(), ShardError> {
-        self.attempts.append(format!("{row}\n").as_bytes())?;
-        *self.begun.entry(row).or_insert(0) += 1;
+    pub fn start(&mut self, row: usize) -> Result<(), ShardError> {
+        self.attempts_file.append(format!("{row}\n").as_bytes())?;
+        *self.started.entry(row).or_insert(0) += 1;
         Ok(())
     }
 

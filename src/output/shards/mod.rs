@@ -7,7 +7,7 @@
 //! | `shard.json` | which pairs and options it is of ([`record`]) |
 //! | `results.csv` | a row a pair in the order in which they were done: the pair's row in the table of pairs, then the columns of a batch's `results.csv` |
 //! | `poses.csv.gz` | the first poses of each pair: a gzip member a pair, in the same order |
-//! | `attempts.csv` | the rows of pairs that were begun, so that a pair that ends the process is not begun for ever |
+//! | `attempts.csv` | the rows of pairs that were started, so that a pair that ends the process is not started for ever |
 //!
 //! A pair's poses are written first, then its row, each to the device ([`journal`]). A shard that is killed goes on
 //! after the last pair that has both. [`merge`] puts the pairs of all shards in the order of the table: the same bytes
