@@ -13,7 +13,7 @@ pub const MAX_OPTIONS: u64 = 1 << 20;
 /// Most bytes of a table of potentials or of a batch's results.
 pub const MAX_TABLE: u64 = 64 << 20;
 
-/// Most bytes of a table of pairs: some three million rows.
+/// Most bytes of a table of pairs: some five million rows.
 pub const MAX_PAIRS: u64 = 256 << 20;
 
 /// Most bytes of a file of distance restraints.
