@@ -3,6 +3,7 @@
 usage: python python/tools/make_options.py        with the package installed
 """
 
+import json
 import pathlib
 import textwrap
 
@@ -66,7 +67,7 @@ def text() -> str:
     """The file."""
     parts = [HEAD]
     for option in _knotdock.options():
-        kind = KINDS.get(option["kind"]) or f"Literal[{', '.join(repr(value) for value in option['values'])}]"
+        kind = KINDS.get(option["kind"]) or f"Literal[{', '.join(json.dumps(value) for value in option['values'])}]"
         help_text = " ".join(option["help"].split()).replace("\\", "\\\\")
         if option["default"] is not None:
             help_text += f" [default: {option['default']}]"
