@@ -115,7 +115,7 @@ impl Docked {
         RunSummary::of_rows(counts, table.objects(0..self.outcome.poses.len()))
     }
 
-    /// Writes the complexes of the best poses into a folder, in place of those that are there.
+    /// Writes the complexes of the best poses into a folder, which may hold the same ones.
     pub fn export_top(&self, folder: &Path) -> Result<(), Failure> {
         let request = &self.docking.request;
         let rows = self.rows();
@@ -125,7 +125,7 @@ impl Docked {
         let export = ExportFolder::open(folder, folder)?;
         let place = (export.staged(), None);
         request.bodies.write(top, request.arrangement(), place)?;
-        Ok(export.place(true)?)
+        Ok(export.place(false)?)
     }
 
     /// Rank and pose of each row.

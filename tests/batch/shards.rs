@@ -325,6 +325,33 @@ fn what_does_not_belong_together_is_refused() {
     fs::remove_dir_all(root.join("out/shards/0003-of-0003")).unwrap();
     refused("merge out out -o both", "shard 1/2 is in");
     refused("merge out in", "none is named");
+    // Files of the user's, and tables of other pairs, stay.
+    let poses = root.join("out/poses.csv.gz");
+    let (table, merged) = (
+        fs::read(root.join("out/results.csv")).unwrap(),
+        fs::read(&poses).unwrap(),
+    );
+    fs::write(root.join("out/results.csv"), "name,value\n").unwrap();
+    refused("merge out --partial", "no table of a batch's results");
+    refused(
+        "batch in/pairs.csv -o out --keep table",
+        "no table of a batch's results",
+    );
+    let mut other = table.clone();
+    other.extend(b"other,a.pdb,b.pdb,done,,,,,,,,,,,,,,\n");
+    fs::write(root.join("out/results.csv"), &other).unwrap();
+    refused("merge out --partial", "results of other pairs");
+    assert_eq!(fs::read(root.join("out/results.csv")).unwrap(), other);
+    fs::write(root.join("out/results.csv"), table).unwrap();
+    fs::write(&poses, "mine").unwrap();
+    refused("merge out --partial", "no file of a batch's poses");
+    fs::write(&poses, merged).unwrap();
+    fs::create_dir_all(root.join("mine/shards/0001-of-0002")).unwrap();
+    fs::write(root.join("mine/shards/0001-of-0002/poses.csv.gz"), "mine").unwrap();
+    refused(
+        &shard("--shard 1/2").replace("-o out", "-o mine"),
+        "of no shard",
+    );
     // A shard that is not done.
     assert!(batch(root, &shard("--shard 2/2")).status.success());
     let results = root.join("out/shards/0002-of-0002/results.csv");

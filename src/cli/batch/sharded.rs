@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::output::files::workplace::Workplace;
 use crate::output::shards::SHARDS;
 use crate::output::shards::journal::Journal;
-use crate::output::shards::merge::merge;
+use crate::output::shards::merge::{check_places, merge};
 use crate::output::shards::record::ShardRecord;
 use crate::output::tables::batch_results::{PairResult, RESULTS};
 use crate::output::tables::report::counted;
@@ -46,6 +46,10 @@ impl Sharding {
     /// Docks those of the pairs that are not done; the exit code.
     pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<ExitCode, Failure> {
         let shard = self.record.shard;
+        if self.is_whole {
+            // Known before anything is docked.
+            check_places(&self.directory, self.record.keep.has_poses(), None)?;
+        }
         let final_place = self.directory.join(SHARDS).join(shard.folder());
         let workplace = Workplace::open(&final_place, self.scratch.as_deref(), RESULTS)?;
         let held = lock(workplace.folder())?;

@@ -46,7 +46,18 @@ impl Journal {
                 ));
             }
             Some(_) => {}
-            None => record.write(folder)?,
+            None => {
+                // The record comes before all others, so that these are none of a shard's.
+                let files = [RESULTS, POSES, ATTEMPTS].map(|name| folder.join(name));
+                if let Some(file) = files.iter().find(|file| file.exists()) {
+                    return Err(ShardError::wrong(
+                        file,
+                        "the file is of no shard: there is no shard.json beside it",
+                        "choose another directory with -o, or move the file away",
+                    ));
+                }
+                record.write(folder)?;
+            }
         }
         let results = folder.join(RESULTS);
         let found = rows(&results, &bytes_of(&results)?)?;

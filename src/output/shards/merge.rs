@@ -1,8 +1,8 @@
 //! The shards of a batch put together, in the order of the table of pairs.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::journal::{ShardPair, with_poses};
@@ -11,9 +11,9 @@ use super::record::ShardRecord;
 use super::results::rows;
 use super::{POSES, SHARDS, Shard, ShardError, pose_rows};
 use crate::bounded_read::{MAX_POSES, read_bounded_file};
-use crate::output::files::whole_file::write_whole;
-use crate::output::tables::batch_results::{RESULTS, header};
-use crate::output::tables::cells::TableWriter;
+use crate::output::files::whole_file::{is_blank, write_whole};
+use crate::output::tables::batch_results::{RESULTS, header, is_ours};
+use crate::output::tables::cells::{TableWriter, unquoted};
 
 /// Files that are open at the same time.
 const OPEN: usize = 128;
@@ -94,6 +94,8 @@ pub fn merge(directories: &[PathBuf], out: &Path, partial: bool) -> Result<Merge
             "run its `knotdock batch --shard` again, which goes on where it was, or pass --partial",
         ));
     }
+    let names = pairs().map(|(_, pair)| pair.row.name().to_lowercase());
+    check_places(out, record.keep.has_poses(), Some(&names.collect()))?;
     let results = out.join(RESULTS);
     write_whole(&results, |file| {
         let mut table = TableWriter::new(file);
@@ -130,6 +132,54 @@ pub fn merge(directories: &[PathBuf], out: &Path, partial: bool) -> Result<Merge
         results,
         poses,
     })
+}
+
+/// Refuses a directory in which the tables would take the place of something else: of a file that is no such table, and,
+/// where the `names` of the pairs are known, of a table with other pairs.
+///
+/// # Errors
+/// [`ShardError::Wrong`] and [`ShardError::Unreadable`].
+pub fn check_places(
+    out: &Path,
+    has_poses: bool,
+    names: Option<&HashSet<String>>,
+) -> Result<(), ShardError> {
+    const REMEDY: &str = "choose another directory with -o, or move the file away";
+    let results = out.join(RESULTS);
+    if !is_ours(&results) {
+        let message = "this is no table of a batch's results";
+        return Err(ShardError::wrong(&results, message, REMEDY));
+    }
+    if let (Some(names), true) = (names, results.exists()) {
+        let table =
+            read_bounded_file(&results, MAX_POSES).map_err(ShardError::reading(&results))?;
+        let mut rows = csv::Reader::from_reader(table.as_slice()).into_records();
+        let is_other = |row: &csv::StringRecord| {
+            let name = unquoted(row.get(0).unwrap_or_default());
+            !names.contains(&name.to_lowercase())
+        };
+        if rows.any(|row| row.is_ok_and(|row| is_other(&row))) {
+            let message = "the table has results of other pairs";
+            return Err(ShardError::wrong(&results, message, REMEDY));
+        }
+    }
+    let poses = out.join(POSES);
+    if has_poses && poses.exists() && !is_of_poses(&poses) {
+        let message = "this is no file of a batch's poses";
+        return Err(ShardError::wrong(&poses, message, REMEDY));
+    }
+    Ok(())
+}
+
+/// Whether a file begins as a file of poses does, or has no content.
+fn is_of_poses(path: &Path) -> bool {
+    let Ok(header) = pose_rows::header() else {
+        return false;
+    };
+    let mut start = Vec::new();
+    let read =
+        File::open(path).and_then(|file| file.take(header.len() as u64).read_to_end(&mut start));
+    read.is_ok() && (is_blank(&start) || start == header)
 }
 
 /// The folders of a directory's shards, in the order of their names.
