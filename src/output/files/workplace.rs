@@ -47,11 +47,17 @@ impl Workplace {
         let length =
             |folder: &Path| fs::metadata(folder.join(progress)).map_or(0, |found| found.len());
         if length(place) > length(&folder) {
-            if folder.exists() {
-                disk::remove_tree(&folder).map_err(unwritable(&folder))?;
-            }
             disk::create_dir_all(scratch).map_err(unwritable(scratch))?;
-            copy_tree(place, &folder).map_err(unwritable(&folder))?;
+            // A copy that is cut short is none.
+            let copy = folder.with_extension("new");
+            for left in [&folder, &copy] {
+                if left.exists() {
+                    disk::remove_tree(left).map_err(unwritable(left))?;
+                }
+            }
+            copy_tree(place, &copy)
+                .and_then(|()| disk::rename(&copy, &folder))
+                .map_err(unwritable(&folder))?;
         }
         disk::create_dir_all(&folder).map_err(unwritable(&folder))?;
         Ok(Self {
