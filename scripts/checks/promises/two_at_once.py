@@ -54,7 +54,7 @@ def batches_at_once(trial):
     found = below(tree(trial.folder), "runs")
     rows = found.get("runs/results.csv", b"").decode().splitlines()[1:]
     trial.check(sorted(row.split(",")[0] for row in rows) == ["one", "three", "two"], f"results.csv has rows {rows}")
-    expected = {"runs", "runs/results.csv", "runs/one", "runs/two", "runs/three"}
+    expected = {"runs", "runs/results.csv", "runs/report.html", "runs/one", "runs/two", "runs/three"}
     there = {name for name in found if name.count("/") < 2}
     trial.check(expected <= there, f"missing: {expected - there}")
     # A file that batches lock may stay.
