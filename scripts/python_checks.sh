@@ -47,12 +47,11 @@ else
     chmod +x "$venv/bin/knotdock"
 fi
 # Away from the package's source, so that what is installed is what is tested.
-tests=$PWD/python/tests readme=$PWD/python/README.md package=$PWD/python/knotdock
+tests=$PWD/python/tests package=$PWD/python/knotdock
 cd "$target/python"
 PATH=$venv/bin:$PATH
 pytest --quiet --rootdir "$tests" --config-file /dev/null -p no:cacheprovider "$tests"
 pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-modules --pyargs knotdock
-pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-glob='*.md' "$readme"
 mypy --no-error-summary --ignore-missing-imports "$package"
 if [ -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ]; then
     python "$tests/../../scripts/checks/check_cluster.py" "$(mktemp -d)"
