@@ -175,6 +175,8 @@ def by_dask(folder, pairs, expected):
 def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
+    # Munge runs as a user of its own.
+    folder.chmod(0o755)
     pairs = table(folder)
     expected = folder / "expected"
     knotdock.batch(pairs, expected, dock=DOCK, keep="table")
