@@ -5,10 +5,13 @@ from __future__ import annotations
 import gzip
 import os
 import pathlib
+import tempfile
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+
+from knotdock.errors import InputError
 
 __all__ = ["given"]
 
@@ -35,16 +38,13 @@ def given(what: Any, folder: Callable[[], pathlib.Path], name: str) -> str:
     library = type(what).__module__.split(".")[0]
     for module, write in (("biotite", _of_biotite), ("Bio", _of_biopython), ("gemmi", _of_gemmi)):
         if library == module:
-            path = folder() / f"{name}.cif"
-            write(what, path)
-            return str(path)
+            return _made(lambda path, write=write: write(what, path), folder() / f"{name}.cif")
     if isinstance(what, tuple) and len(what) == 2:
-        return _mesh(*what, folder() / f"{name}.obj")
+        return _made(lambda path: _mesh(*what, path), folder() / f"{name}.obj")
     array = np.asarray(what)
     if array.ndim == 2 and array.shape[1] == 4 and np.issubdtype(array.dtype, np.number):
-        path = folder() / f"{name}.csv"
-        np.savetxt(path, array, fmt="%.17g", delimiter=",", header="x,y,z,r", comments="")
-        return str(path)
+        columns = {"fmt": "%.17g", "delimiter": ",", "header": "x,y,z,r", "comments": ""}
+        return _made(lambda path: np.savetxt(path, array, **columns), folder() / f"{name}.csv")
     message = (
         f"{type(what).__name__} is neither a path, the text of a structure file, a structure of biotite, Biopython "
         "or gemmi, an array (n, 4) of balls, nor a pair of vertices and triangles"
@@ -57,8 +57,23 @@ def _written(text: bytes, folder: pathlib.Path, name: str) -> str:
         text = gzip.decompress(text)
     start = text[:4096].decode("latin-1").lstrip()
     is_cif = start.startswith(_CIF) or "\n_atom_site." in start or "\nloop_" in start
-    path = folder / f"{name}.{'cif' if is_cif else 'pdb'}"
-    path.write_bytes(text)
+    return _placed(text, folder / f"{name}.{'cif' if is_cif else 'pdb'}")
+
+
+def _made(write: Callable[[pathlib.Path], None], path: pathlib.Path) -> str:
+    """A file as some library writes it."""
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        made = pathlib.Path(folder, path.name)
+        write(made)
+        return _placed(made.read_bytes(), path)
+
+
+def _placed(content: bytes, path: pathlib.Path) -> str:
+    """A file in its place, which holds nothing else of its user's."""
+    if path.exists() and path.read_bytes() != content:
+        message = "a file of another content is where the structure has to be written"
+        raise InputError(message, str(path), None, "name another output, or give the structure as a path")
+    path.write_bytes(content)
     return str(path)
 
 
@@ -83,7 +98,7 @@ def _of_gemmi(structure: Any, path: pathlib.Path) -> None:
     structure.make_mmcif_document().write_file(str(path))
 
 
-def _mesh(vertices: Any, triangles: Any, path: pathlib.Path) -> str:
+def _mesh(vertices: Any, triangles: Any, path: pathlib.Path) -> None:
     vertices, triangles = np.asarray(vertices, dtype=float), np.asarray(triangles)
     if vertices.ndim != 2 or vertices.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
         message = "a mesh is a pair of vertices (n, 3) and triangles (m, 3)"
@@ -91,4 +106,3 @@ def _mesh(vertices: Any, triangles: Any, path: pathlib.Path) -> str:
     with path.open("w") as file:
         np.savetxt(file, vertices, fmt="v %.17g %.17g %.17g")
         np.savetxt(file, triangles + 1, fmt="f %d %d %d")
-    return str(path)

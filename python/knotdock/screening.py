@@ -51,8 +51,8 @@ def screen(
     """Dock the pairs of a table on a cluster of Dask.
 
     Each shard is one task: `knotdock batch --shard I/N --keep table`, then its tables as Parquet. A task whose worker
-    dies is started again elsewhere, and goes on after the last pair that it finished. Called again, the function goes on
-    with what is left.
+    dies is started again elsewhere, and goes on after the last pair that it finished. Called again, the function goes
+    on with what is left.
 
     Args:
         pairs: a table of pairs: a path, or rows (a DataFrame or a list of dicts) with columns `receptor`, `ligand` and
@@ -105,7 +105,7 @@ def screen(
         bar.close()
         client.cancel([task for task in tasks if not task.done()])
     folders = {name: str(place / name) for name in ("results", "poses")}
-    return {**folders, "pairs": count, "done": done, "failed": failed}
+    return {**folders, "pairs": done + failed, "done": done, "failed": failed}
 
 
 def _table(pairs: Any, place: pathlib.Path) -> tuple[pathlib.Path, int]:
@@ -134,14 +134,18 @@ def _rows(pairs: Any) -> str:
     writer = csv.DictWriter(text, columns, lineterminator="\n")
     writer.writeheader()
     for row in rows:
-        # The table is not where the caller is.
-        files = {name: _absolute(row[name]) for name in ("receptor", "ligand") if row.get(name)}
-        writer.writerow({**row, **files})
+        # What a DataFrame has in an empty cell differs from itself.
+        there = {name: value for name, value in row.items() if value is not None and value == value}
+        writer.writerow({name: _absolute(name, value) for name, value in there.items()})
     return text.getvalue()
 
 
-def _absolute(file: str | os.PathLike[str]) -> str:
-    return os.path.abspath(os.fspath(file))
+def _absolute(name: str, value: Any) -> Any:
+    """A cell of the table: files are looked for from the table's folder, which is not where the caller is."""
+    is_structure = name in ("receptor", "ligand", "native", "native_receptor", "native_ligand")
+    if is_structure or (isinstance(value, (str, os.PathLike)) and os.path.exists(value)):
+        return os.path.abspath(os.fspath(value))
+    return value
 
 
 def _shards(place: pathlib.Path, wanted: int | None, pairs: int, cores: int) -> int:

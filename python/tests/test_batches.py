@@ -43,7 +43,7 @@ def test_shards_are_merged_and_read(pairs, tmp_path):
     assert list(knotdock.read_poses(run.directory).columns) == list(run.poses.columns)
 
 
-def test_a_screen_on_a_cluster_makes_the_same_table(pairs, tmp_path):
+def test_a_screen_on_a_cluster_makes_the_same_table(pairs, tmp_path, monkeypatch):
     pytest.importorskip("distributed")
     import pandas
     from distributed import Client, LocalCluster
@@ -65,9 +65,14 @@ def test_a_screen_on_a_cluster_makes_the_same_table(pairs, tmp_path):
         assert len(parts) == 6 and len(kept) == 4
         with pytest.raises(ValueError, match="3 shards"):
             knotdock.screen(pairs, client, output=place, shards=4)
-        rows = [{"receptor": CASES / "helices_receptor.pdb", "ligand": CASES / "helices_ligand.pdb", "rotations": 12}]
+        monkeypatch.chdir(CASES)
+        sides = {side: f"helices_{side}.pdb" for side in ("receptor", "ligand")}
+        native = {f"native_{side}": path for side, path in sides.items()}
+        rows = pandas.DataFrame([{"name": "a", **sides, **native, "rotations": "12"}, {"name": "b", **sides}])
         few = knotdock.screen(rows, client, output=tmp_path / "few", rows=None)
-        assert few["done"] == 1
+        assert few["done"] == 2
+        labels = pandas.read_parquet(few["poses"]).groupby("name")["irmsd"].count()
+        assert labels["a"] > 0 and labels["b"] == 0
     poses = pandas.read_parquet(done["poses"]).sort_values(["name", "rank"]).reset_index(drop=True)
     expected = expected.sort_values(["name", "rank"]).reset_index(drop=True)
     pandas.testing.assert_frame_equal(poses, expected, check_dtype=False)

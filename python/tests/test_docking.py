@@ -77,6 +77,16 @@ def test_a_run_is_saved_opened_and_evaluated(helices, options, tmp_path):
         knotdock.Run(tmp_path)
 
 
+def test_a_file_of_the_user_s_stays(helices, options, tmp_path):
+    text = pathlib.Path(helices[0]).read_text()
+    (tmp_path / "receptor.pdb").write_text("mine")
+    with pytest.raises(knotdock.InputError, match="another content"):
+        knotdock.dock(text, helices[1], output=tmp_path, **options)
+    assert (tmp_path / "receptor.pdb").read_text() == "mine"
+    (tmp_path / "receptor.pdb").write_text(text)
+    assert len(knotdock.dock(text, helices[1], output=tmp_path, **options).scores)
+
+
 def test_errors_have_their_parts(helices, tmp_path):
     broken = tmp_path / "broken.pdb"
     broken.write_text("ATOM      1  CA  ALA A   1      nonsense\n")
