@@ -305,6 +305,11 @@ fn what_does_not_belong_together_is_refused() {
     }
     refused("batch in/pairs.csv -o out --rows 0", "or `all`");
     refused("batch in/pairs.csv -o out --scratch near", "of shards");
+    refused("batch in/pairs.csv -o out --rows 5", "no such file is kept");
+    refused(
+        "batch in/pairs.csv -o out --keep none --rows all",
+        "no such file is kept",
+    );
     refused("merge in", "no shards");
     let shard = |words: &str| {
         format!("batch in/pairs.csv -o out --keep table --failures-ok {words} {DOCK}")

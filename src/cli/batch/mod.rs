@@ -51,9 +51,9 @@ pub struct Batch {
     /// What is kept of each pair.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Keep::All)]
     keep: Keep,
-    /// Rows of each pair that go to poses.csv.gz, best first, or `all`.
-    #[arg(long, value_name = "COUNT", value_parser = all_or_at_least_one, default_value = "200")]
-    rows: AllOr,
+    /// Rows of each pair that go to poses.csv.gz, best first, or `all` [default: 200].
+    #[arg(long, value_name = "COUNT", value_parser = all_or_at_least_one)]
+    rows: Option<AllOr>,
     /// Dock one of N parts of the table, such as 3/100: every hundredth pair, from the third on. Its files are in
     /// DIR/shards; `knotdock merge DIR` puts all parts together.
     #[arg(long, value_name = "I/N")]
@@ -95,6 +95,12 @@ impl Batch {
                     .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
             );
         }
+        if self.rows.is_some() && !self.keep.has_poses() {
+            return Err(
+                Failure::input("--rows is of poses.csv.gz, and no such file is kept")
+                    .remedy("leave it out, or give --keep table or --keep top"),
+            );
+        }
         keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);
         let (pairs, total) = pairs(&self.pairs, shard, &directory, &self.options)?;
@@ -128,7 +134,8 @@ impl Batch {
                 .at(&self.pairs)
                 .remedy("give the table as a file")
         })?;
-        let kept = (self.keep, self.rows.0);
+        let rows = self.rows.unwrap_or(AllOr(Some(ROWS)));
+        let kept = (self.keep, rows.0);
         Ok(Sharding {
             record: ShardRecord::new(shard, (total, sha256(&table)), self.options, kept),
             directory,
@@ -140,6 +147,9 @@ impl Batch {
         })
     }
 }
+
+/// Rows of a pair that are kept where their number is not given: some 35 kB.
+const ROWS: usize = 200;
 
 /// The exit code of a batch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -127,7 +127,7 @@ impl Journal {
         self.failed.contains(&row) && !self.is_done(row)
     }
 
-    /// how often a pair was started.
+    /// How often a pair was started.
     pub fn attempts(&self, row: usize) -> usize {
         self.started.get(&row).copied().unwrap_or(0)
     }

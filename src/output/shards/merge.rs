@@ -1,5 +1,6 @@
 //! The shards of a batch put together, in the order of the table of pairs.
 
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -116,8 +117,8 @@ pub fn merge(directories: &[PathBuf], out: &Path, partial: bool) -> Result<Merge
                     open.clear();
                 }
                 let from = match open.entry(number) {
-                    std::collections::hash_map::Entry::Occupied(entry) => entry.into_mut(),
-                    std::collections::hash_map::Entry::Vacant(entry) => {
+                    Entry::Occupied(entry) => entry.into_mut(),
+                    Entry::Vacant(entry) => {
                         entry.insert(File::open(shards[number].folder.join(POSES))?)
                     }
                 };
