@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gzip
 import os
 import pathlib
@@ -38,7 +39,7 @@ def given(what: Any, folder: Callable[[], pathlib.Path], name: str) -> str:
     library = type(what).__module__.split(".")[0]
     for module, write in (("biotite", _of_biotite), ("Bio", _of_biopython), ("gemmi", _of_gemmi)):
         if library == module:
-            return _made(lambda path, write=write: write(what, path), folder() / f"{name}.cif")
+            return _made(functools.partial(write, what), folder() / f"{name}.cif")
     if isinstance(what, tuple) and len(what) == 2:
         return _made(lambda path: _mesh(*what, path), folder() / f"{name}.obj")
     array = np.asarray(what)
