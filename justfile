@@ -16,10 +16,10 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
 
-# What is promised, tried many times (at most 20 minutes); writes the table of docs/trust.md
+# What is promised, tried many times (at most 20 minutes); writes the table of docs/method/trust.md
 trust *options:
     cargo build --release
-    scripts/checks/trust.py target/release/knotdock --write docs/trust.md {{options}}
+    scripts/checks/trust.py target/release/knotdock --write docs/method/trust.md {{options}}
 
 # The Python package: its tests, types and README, and the recipes for clusters
 python *options:
@@ -29,6 +29,10 @@ python *options:
 lint-scripts:
     ruff format --check scripts python --config scripts/ruff.toml
     ruff check scripts python --config scripts/ruff.toml
+
+# The documentation as a site, in target/book; needs mdBook (cargo install mdbook)
+docs *options:
+    mdbook build docs {{options}}
 
 # Documentation of the crates
 doc:

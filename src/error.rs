@@ -171,7 +171,7 @@ impl SearchError {
                 format!("allow more with --memory {needed}, or check for atoms or parts far from the rest")
             }
             Self::Graphics(_) => {
-                "dock with --engine cpu, or see docs/engines.md for what a graphics processor needs"
+                "dock with --engine cpu, or see docs/method/engines.md for what a graphics processor needs"
                     .to_owned()
             }
             Self::Threads(error) => error.remedy().to_owned(),

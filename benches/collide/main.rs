@@ -10,7 +10,7 @@
 //!   scripts/reference_checks.sh or the system's is tried.
 //!
 //! One thread asks each question of one pose after another. A time is wall time, the least of three runs of the pose:
-//! of knotdock for all poses, of the others for every `--stride`th. The page docs/collision.md shows the results.
+//! of knotdock for all poses, of the others for every `--stride`th. The page docs/method/collision.md shows the results.
 
 mod accuracy;
 mod measured;

@@ -8,7 +8,7 @@
 //! - `--images docs/images` writes the pictures to that folder as well.
 //! - `--grids 12,15` takes fewer grid sizes, `--figures 5,6` fewer figures; Table 1 belongs to Figure 6.
 //!
-//! The page docs/paper_figures.md says what is measured and shows the results.
+//! The page docs/results/paper_figures.md says what is measured and shows the results.
 //!
 //! - Figure 5 ([`figure5`]): two samples and their Minkowski sum.
 //! - Table 1 and Figure 6 ([`figure6`]): counts, memory and time of Minkowski sums by pairs.

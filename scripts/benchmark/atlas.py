@@ -2,7 +2,7 @@
 """The atlas: success against processor time as settings change, on one or two sets of pairs, as a page and a picture.
 
     python3 scripts/benchmark/atlas.py [--train NAME=RUNS ...] --eval NAME=RUNS [NAME=RUNS ...] \\
-        --page docs/atlas.md --picture docs/images/atlas.svg
+        --page docs/results/atlas.md --picture docs/images/atlas.svg
 
 Each RUNS is the --out folder (or several, with commas between them) of a `benchmark.py` run; a setting has the same
 NAME in both sets. Pairs that all settings of a set hold are compared, each setting over the seeds that it has.

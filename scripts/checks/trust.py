@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the program promises, tried many times: prints a table of promises, trials and failures.
 
-    scripts/checks/trust.py target/release/knotdock [--short] [--seed N] [--write docs/trust.md] [--json FILE]
+    scripts/checks/trust.py target/release/knotdock [--short] [--seed N] [--write docs/method/trust.md] [--json FILE]
     scripts/checks/trust.py target/release/knotdock --only kills --trial 17 --keep FOLDER     one trial again
 
 Each trial runs the program in a folder of its own, on inputs that its seed fixes. promises/__init__.py lists the

@@ -4,7 +4,7 @@
     python3 scripts/reference/pair_sum.py target/release/knotdock
 
 The program gives the atoms that it keeps and their radii (`inspect --atoms`); all else is computed here, by the
-formulae of docs/effects.md and the default options. Distances in Å, frequencies in cycles per Å:
+formulae of docs/research/effects.md and the default options. Distances in Å, frequencies in cycles per Å:
 
     slice(rho) = sum_ij kappa(d_ij, r_i + s_j + rho),  kappa^(w) = W(w) sigma^3 psi^(w sigma), times a window V(d)
     shape      = -lambda^2 slice(0) + 2 lambda slice(r0) - slice(2 r0)

@@ -10,7 +10,7 @@
 //!
 //! [`samplers`] has a file for each. `lattice` makes balls of one radius and correlates them by B&I's cone; `bi` makes
 //! those of Algorithm 1 and correlates them by the product kernel. Both score two flat faces most at a gap of one
-//! offset: **the offset r0 is the gap that is looked for**, of a peg in its hole the clearance. docs/mesh_docking.md
+//! offset: **the offset r0 is the gap that is looked for**, of a peg in its hole the clearance. docs/method/mesh_docking.md
 //! compares them.
 
 pub mod samplers;

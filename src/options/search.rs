@@ -53,7 +53,7 @@ pub struct SearchOptions {
 const MAX_ROTATIONS: usize = 10_000_000;
 
 /// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on the
-/// ligand's random start orientation (docs/defaults.md). Beside other effects refining cost ranks.
+/// ligand's random start orientation (docs/research/defaults.md). Beside other effects refining cost ranks.
 pub const REFINED_BY_SHAPE: usize = 600;
 
 /// Axes of rings by default: 4 degrees to the nearest at most, and up to twice that for the copies about it.

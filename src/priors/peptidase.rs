@@ -19,7 +19,7 @@ use serde_json::json;
 use super::peptidase_families::{Anchor, families};
 use super::{Findings, Prior, Site, SiteRole};
 
-/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/effects.md,
+/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
 pub const WEIGHT: f64 = 500.0;
 

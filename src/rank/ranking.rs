@@ -10,7 +10,7 @@
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
 //! score where that pose stands alone. It is more where many good poses lie about it, as they do about a native one.
 //! T is a tenth of the run's best score, sharp fits left out. On training pairs anything from a twentieth to a fifth
-//! ranked better than the best pose alone (docs/defaults.md).
+//! ranked better than the best pose alone (docs/research/defaults.md).
 //!
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
 //! score, so that such a cluster has many good poses; where a joint fits there is one place.

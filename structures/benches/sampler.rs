@@ -1,7 +1,7 @@
 //! The paper's Tables 1 and 2 again, on the Stanford bunny: how many balls each sampler needs, how near they come, and
 //! the time.
 //!
-//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/sampling.md; `-- 15` goes no further
+//! `cargo bench -p knotdock-structures --bench sampler` prints the tables of docs/method/sampling.md; `-- 15` goes no further
 //! than m = 2^15. Counts are given only where the inclusions and the Hausdorff bounds were measured to hold; anything
 //! else ends the run with an error.
 

@@ -90,7 +90,7 @@ fn seconds_of_children() -> f64 {
     ticks.sum::<f64>() / 100.0
 }
 
-/// Both samplers on all pairs, as the table of docs/mesh_docking.md.
+/// Both samplers on all pairs, as the table of docs/method/mesh_docking.md.
 #[test]
 #[ignore = "ten dockings for a table"]
 fn samplers() {
@@ -132,7 +132,7 @@ fn samplers() {
     }
 }
 
-/// What fitted weights do to the summed bumps and to scores, as the table of docs/mesh_docking.md: fitted ones
+/// What fitted weights do to the summed bumps and to scores, as the table of docs/method/mesh_docking.md: fitted ones
 /// integrate to the volume within a tenth, and with either the first pose is right.
 #[test]
 #[ignore = "six dockings for a table"]

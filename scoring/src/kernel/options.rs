@@ -24,7 +24,7 @@ pub struct KernelOptions {
 
 impl Default for KernelOptions {
     /// The options that `knotdock dock` uses: lambda, r0 and the resolution were chosen on training pairs
-    /// (docs/defaults.md), alpha is B&I's.
+    /// (docs/research/defaults.md), alpha is B&I's.
     fn default() -> Self {
         Self {
             lambda: 9.0,

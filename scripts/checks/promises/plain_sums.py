@@ -1,4 +1,4 @@
-"""Scores as plain sums over pairs of balls, in double precision, by the formulae of docs/effects.md.
+"""Scores as plain sums over pairs of balls, in double precision, by the formulae of docs/research/effects.md.
 
 Distances in Å, frequencies in cycles per Å; lambda = 9, offset r0 = 2.2, resolution 4.5 and alpha = 2:
 

@@ -3,7 +3,7 @@
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
 //! The margin of the best place is how far it lies below the median of the next thirty ones, in their standard
 //! deviations. These follow from the median of absolute deviations, which copies of the best place in a symmetric
-//! partner do not move. Bound and unbound training pairs are its two classes (docs/defaults.md, "Sharp fits").
+//! partner do not move. Bound and unbound training pairs are its two classes (docs/research/defaults.md, "Sharp fits").
 
 use serde::Serialize;
 
